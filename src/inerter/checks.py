@@ -1,0 +1,20 @@
+"""Checks that every layer makes where input enters."""
+
+from __future__ import annotations
+
+import math
+from numbers import Real
+from typing import TypeGuard
+
+from inerter.errors import InerterError
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether `value` is a finite real number (a bool is not)."""
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def check_positive(error: type[InerterError], what: str, value: object, unit: str) -> None:
+    """Raises `error` unless `value` is a positive, finite number of `unit`."""
+    if not is_number(value) or value <= 0.0:
+        raise error(f"{what} must be a positive number of {unit}, got {value!r}.")

@@ -1,0 +1,72 @@
+"""Exceptions of the package, and the `Status` that a number carries when it is not an ordinary one.
+
+Bad input raises, where it enters. A numerical failure of one case among many is a `Status`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class InerterError(Exception):
+    """Base of all errors of this package: the request was wrong, and the message says how to mend it."""
+
+
+class NetworkError(InerterError, ValueError):
+    """An element, an expression or a network that cannot be."""
+
+
+class MechanismError(InerterError, ValueError):
+    """A vehicle or mechanism that cannot be assembled."""
+
+
+class LinearSystemError(InerterError, ValueError):
+    """Matrices that do not fit, or a norm asked of a system that does not have it."""
+
+
+class IndicatorError(InerterError, ValueError):
+    """An index that the vehicle cannot answer, or that is set up wrongly."""
+
+
+class DesignError(InerterError, ValueError):
+    """Free values where none may be, none where some must be, or values that do not fit them."""
+
+
+class UnitError(InerterError, ValueError):
+    """A quantity without a unit, with an unknown one, or with one of another dimension."""
+
+
+class StudyError(InerterError, ValueError):
+    """A study file, or a result folder, that cannot be used."""
+
+
+class StatusKind(StrEnum):
+    """What kind of number a result is."""
+
+    OK = "ok"
+    UNSTABLE = "unstable"
+    MARGINAL = "marginal"
+    DIRECT_TERM = "direct-term"
+    NOT_CONVERGED = "not-converged"
+    INACCURATE = "inaccurate"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a number can be trusted, with a sentence for the reader when it is not simply `ok`."""
+
+    kind: StatusKind = StatusKind.OK
+    message: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """True for an ordinary, trustworthy number."""
+        return self.kind is StatusKind.OK
+
+    def __str__(self) -> str:
+        return self.kind.value if not self.message else f"{self.kind.value}: {self.message}"
+
+
+OK = Status()

@@ -1,0 +1,117 @@
+"""Networks seen as data: their free values, values put in, and the linear network that analysis uses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from inerter.errors import DesignError
+from inerter.networks.elements import Element, Free, Friction, Gap, Network, Parallel, Series
+
+
+def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
+    """The same network with each element replaced by what `change` makes of it."""
+    match network:
+        case Parallel(parts):
+            return Parallel(tuple(map_elements(part, change) for part in parts))
+        case Series(parts):
+            return Series(tuple(map_elements(part, change) for part in parts))
+        case Element():
+            return change(network)
+    raise TypeError(f"not a network: {network!r}")
+
+
+def with_values(network: Network, values: Mapping[str, float]) -> Network:
+    """`network` with the free values named in `values` fixed; other names are passed over."""
+
+    def fix(element: Element) -> Network:
+        value = element.value
+        if isinstance(value, Free) and value.name is not None and value.name in values:
+            return element.with_value(values[value.name])
+        return element
+
+    return map_elements(network, fix)
+
+
+def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
+    """The networks with every free value named: by itself, by its element, else by its symbol and a number if needed.
+
+    `networks` goes from the name of the mount to its network. Two free values of the same name are one variable and
+    must have the same bounds and unit; unnamed ones are all different.
+
+    Raises `DesignError` where one name stands for two different ranges.
+    """
+    found = [element for network in networks.values() for element in network.elements()]
+    taken = {e.value.name or e.name for e in found if isinstance(e.value, Free)} - {None}
+    known: dict[str, tuple[str, float, float]] = {}
+
+    def name(element: Element) -> Network:
+        value = element.value
+        if not isinstance(value, Free):
+            return element
+        label = value.name or element.name
+        if label is None:
+            label, count = element.symbol, 1
+            while label in taken:
+                count += 1
+                label = f"{element.symbol}{count}"
+            taken.add(label)
+        here = (element.unit, value.lower, value.upper)
+        if known.setdefault(label, here) != here:
+            unit, lower, upper = known[label]
+            raise DesignError(
+                f"The free value {label!r} stands for {lower:g} to {upper:g} {unit} in one place and for "
+                f"{value.lower:g} to {value.upper:g} {element.unit} in another. "
+                f"Give them different names, or one range."
+            )
+        return element.with_value(Free(value.lower, value.upper, label))
+
+    return {mount: map_elements(network, name) for mount, network in networks.items()}
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """What is left of a network for linear analysis, and what was done to get there.
+
+    `network` is None if no force can pass (`rigid` False) or if the ends are rigidly joined (`rigid` True).
+    """
+
+    network: Network | None
+    rigid: bool
+    frictions: tuple[str, ...]
+    gaps: tuple[str, ...]
+    idle: tuple[str, ...]
+
+
+def linearise(network: Network) -> Linearised:
+    """Leave friction out (it transmits no force) and close every gap (rigid contact).
+
+    Elements that carry no force any more, because they are in series with a friction, or that cannot move, because
+    they are beside a closed gap, are named in `idle`.
+    """
+    before = list(network.elements())
+    kept, rigid = _linear(network)
+    after = {id(element) for element in kept.elements()} if kept is not None else set()
+    frictions = tuple(e.label for e in before if isinstance(e, Friction))
+    gaps = tuple(e.label for e in before if isinstance(e, Gap))
+    idle = tuple(e.label for e in before if id(e) not in after and not isinstance(e, Friction | Gap))
+    return Linearised(kept, rigid, frictions, gaps, idle)
+
+
+def _linear(network: Network) -> tuple[Network | None, bool]:
+    if isinstance(network, Friction):
+        return None, False
+    if isinstance(network, Gap):
+        return None, True
+    if isinstance(network, Element):
+        return network, False
+    assert isinstance(network, Parallel | Series)
+    parts = [_linear(part) for part in network.parts]
+    rigid = [r for kept, r in parts if kept is None]
+    kept_parts = tuple(kept for kept, _ in parts if kept is not None)
+    in_parallel = isinstance(network, Parallel)
+    if in_parallel in rigid:  # a rigid branch in parallel, or an open link in series, decides alone
+        return None, in_parallel
+    if not kept_parts:
+        return None, not in_parallel
+    return (kept_parts[0] if len(kept_parts) == 1 else type(network)(kept_parts)), False

@@ -1,0 +1,1 @@
+"""Roads and, later, forces and sampled signals."""

@@ -1,0 +1,1 @@
+"""Mechanisms, and the cars that are mechanisms."""

@@ -1,0 +1,225 @@
+"""A mechanism: coordinates with masses, and networks mounted between ports and on roads.
+
+Vertical up is positive. A port is a linear combination of coordinates, such as body height + lever x pitch. A mounted
+network's elongation is the displacement of its upper end less that of its lower end; its force is positive in tension.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from inerter.checks import check_positive, is_number
+from inerter.errors import DesignError, MechanismError
+from inerter.networks.elements import NAME, Free, Network, check_network
+from inerter.networks.transform import name_free_values, with_values
+
+Port = Mapping[str, float]
+GROUND: Port = {}
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A degree of freedom with its mass [kg], or its moment of inertia [kg m^2] if it is an angle [rad]."""
+
+    name: str
+    inertia: float
+    angle: bool = False
+
+
+@dataclass(frozen=True)
+class Strut:
+    """A network mounted between two ports; `GROUND` is the port that does not move."""
+
+    name: str
+    network: Network
+    upper: Port
+    lower: Port
+
+
+@dataclass(frozen=True)
+class Tyre:
+    """A network between a port above and a road below."""
+
+    name: str
+    network: Network
+    port: Port
+    road: str
+
+
+@dataclass(frozen=True)
+class RoadInput:
+    """Where the mechanism meets the road.
+
+    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later.
+    """
+
+    name: str
+    distance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Force:
+    """An external force [N] on a port, positive upwards (a moment [N m] if the port is an angle)."""
+
+    name: str
+    port: Port
+
+
+@dataclass(frozen=True)
+class Weighted:
+    """An output of the mechanism with the weight that brings it to the unit of an index."""
+
+    output: str
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Which outputs answer the questions that indices ask; empty where the mechanism has no answer."""
+
+    comfort: tuple[Weighted, ...] = ()  # body accelerations [m/s^2 after weighting]
+    tyre_load: tuple[Weighted, ...] = ()  # dynamic tyre forces [N]
+    load_input: str | None = None  # the external force of the load-carrying index
+    load_output: str | None = None  # the displacement that answers it
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Any number of coordinates, struts, tyres, roads and forces.
+
+    Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`;
+    `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`.
+
+    Raises `MechanismError` where a part names a coordinate or a road that is not there, where a mass is not positive,
+    where names clash, and where a coordinate is attached to nothing; `DesignError` where one free name has two ranges.
+    """
+
+    coordinates: tuple[Coordinate, ...]
+    struts: tuple[Strut, ...]
+    tyres: tuple[Tyre, ...] = ()
+    roads: tuple[RoadInput, ...] = ()
+    forces: tuple[Force, ...] = ()
+    measures: Measures = field(default_factory=Measures)
+
+    def __post_init__(self) -> None:
+        for name in ("coordinates", "struts", "tyres", "roads", "forces"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        _check_names(self)
+        _check_numbers(self)
+        _check_ports(self)
+        _check_attached(self)
+        named = name_free_values({mount.name: mount.network for mount in self.mounts()})
+        object.__setattr__(self, "struts", tuple(replace(s, network=named[s.name]) for s in self.struts))
+        object.__setattr__(self, "tyres", tuple(replace(t, network=named[t.name]) for t in self.tyres))
+
+    def mechanism(self) -> Mechanism:
+        """Itself: a mechanism is a vehicle."""
+        return self
+
+    def mounts(self) -> Iterator[Strut | Tyre]:
+        """Struts, then tyres."""
+        yield from self.struts
+        yield from self.tyres
+
+    def free_values(self) -> dict[str, Free]:
+        """The design variables by name, in the order in which they appear."""
+        elements = (element for mount in self.mounts() for element in mount.network.elements())
+        return {str(e.value.name): e.value for e in elements if isinstance(e.value, Free)}
+
+    def with_values(self, values: Mapping[str, float]) -> Mechanism:
+        """The same mechanism with the named free values fixed.
+
+        Raises `DesignError` for a name that is not a free value here.
+        """
+        check_known(values, self.free_values())
+        return replace(
+            self,
+            struts=tuple(replace(s, network=with_values(s.network, values)) for s in self.struts),
+            tyres=tuple(replace(t, network=with_values(t.network, values)) for t in self.tyres),
+        )
+
+
+def check_known(values: Mapping[str, object], free_values: Mapping[str, Free]) -> None:
+    """Raises `DesignError` for a name in `values` that is not a free value."""
+    for name in values:
+        if name not in free_values:
+            known = ", ".join(free_values) or "none"
+            raise DesignError(f"There is no free value named {name!r} in this design (free: {known}).")
+
+
+def _check_names(mechanism: Mechanism) -> None:
+    seen: set[str] = set()
+    parts: tuple[Coordinate | Strut | Tyre | RoadInput | Force, ...] = (
+        *mechanism.coordinates,
+        *mechanism.struts,
+        *mechanism.tyres,
+        *mechanism.roads,
+        *mechanism.forces,
+    )
+    for part in parts:
+        kind = type(part).__name__
+        if not isinstance(part.name, str) or not NAME.fullmatch(part.name):
+            raise MechanismError(
+                f"The name of a {kind} is a letter followed by letters, digits and underscores, got {part.name!r}."
+            )
+        if part.name in seen:
+            raise MechanismError(f"Two parts of the mechanism are named {part.name!r}. Give each its own name.")
+        seen.add(part.name)
+    for mount in mechanism.mounts():
+        check_network(mount.network)
+
+
+def _check_numbers(mechanism: Mechanism) -> None:
+    if not mechanism.coordinates:
+        raise MechanismError("A mechanism needs at least one coordinate with a mass.")
+    for coordinate in mechanism.coordinates:
+        what = "Moment of inertia" if coordinate.angle else "Mass"
+        check_positive(
+            MechanismError, f"{what} of {coordinate.name!r}", coordinate.inertia, "kg m^2" if coordinate.angle else "kg"
+        )
+    for road in mechanism.roads:
+        if not is_number(road.distance) or road.distance < 0.0:
+            raise MechanismError(
+                f"The distance of road {road.name!r} behind the first one must be zero or more metres, "
+                f"got {road.distance!r}. Measure from the foremost axle."
+            )
+
+
+def _check_ports(mechanism: Mechanism) -> None:
+    coordinates = {c.name for c in mechanism.coordinates}
+    roads = {r.name for r in mechanism.roads}
+    ports = [(f"strut {s.name!r}", p) for s in mechanism.struts for p in (s.upper, s.lower)]
+    ports += [(f"tyre {t.name!r}", t.port) for t in mechanism.tyres]
+    ports += [(f"force {f.name!r}", f.port) for f in mechanism.forces]
+    for where, port in ports:
+        for name, lever in port.items():
+            if name not in coordinates:
+                known = ", ".join(sorted(coordinates))
+                raise MechanismError(f"The {where} is at {name!r}, which is not a coordinate (coordinates: {known}).")
+            if not is_number(lever):
+                raise MechanismError(f"The lever of {name!r} in {where} must be a finite number, got {lever!r}.")
+    for strut in mechanism.struts:
+        if _travel(strut) == {}:
+            raise MechanismError(f"Both ends of strut {strut.name!r} are at the same port: it can never move.")
+    for tyre in mechanism.tyres:
+        if tyre.road not in roads:
+            known = ", ".join(sorted(roads)) or "none"
+            raise MechanismError(f"Tyre {tyre.name!r} stands on {tyre.road!r}, which is not a road (roads: {known}).")
+
+
+def _travel(strut: Strut) -> dict[str, float]:
+    names = {*strut.upper, *strut.lower}
+    travel = {name: strut.upper.get(name, 0.0) - strut.lower.get(name, 0.0) for name in names}
+    return {name: lever for name, lever in travel.items() if lever != 0.0}
+
+
+def _check_attached(mechanism: Mechanism) -> None:
+    held = {name for strut in mechanism.struts for name in _travel(strut)}
+    held |= {name for tyre in mechanism.tyres for name, lever in tyre.port.items() if lever != 0.0}
+    for coordinate in mechanism.coordinates:
+        if coordinate.name not in held:
+            raise MechanismError(
+                f"Coordinate {coordinate.name!r} is held by nothing: no strut or tyre is mounted on it. "
+                f"Mount one, or leave the coordinate out."
+            )

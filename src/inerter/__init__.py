@@ -11,6 +11,16 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from inerter.errors import InerterError as InerterError
+    from inerter.errors import Status as Status
+    from inerter.errors import StatusKind as StatusKind
+    from inerter.indices.index import LoadCarrying as LoadCarrying
+    from inerter.indices.index import RideComfort as RideComfort
+    from inerter.indices.index import TyreLoad as TyreLoad
+    from inerter.methods.method import Estimate as Estimate
+    from inerter.methods.method import evaluate as evaluate
+    from inerter.methods.method import evaluate_many as evaluate_many
+    from inerter.methods.norm import Norm as Norm
     from inerter.networks.catalogue import LAYOUTS as LAYOUTS
     from inerter.networks.elements import Damper as Damper
     from inerter.networks.elements import Friction as Friction
@@ -19,28 +29,110 @@ if TYPE_CHECKING:
     from inerter.networks.elements import Spring as Spring
     from inerter.networks.elements import free as free
     from inerter.networks.parser import network as network
+    from inerter.norms.h2 import h2_norm as h2_norm
+    from inerter.norms.hinf import hinf_norm as hinf_norm
+    from inerter.norms.response import frequency_response as frequency_response
+    from inerter.optimisation.optimise import Optimum as Optimum
+    from inerter.optimisation.optimise import optimise as optimise
     from inerter.signals.road import Road as Road
+    from inerter.study.file import load_study as load_study
+    from inerter.systems.assemble import assemble as assemble
+    from inerter.systems.linear import LinearSystem as LinearSystem
     from inerter.vehicle.cars import HalfCar as HalfCar
     from inerter.vehicle.cars import QuarterCar as QuarterCar
+    from inerter.vehicle.mechanism import GROUND as GROUND
+    from inerter.vehicle.mechanism import Coordinate as Coordinate
+    from inerter.vehicle.mechanism import Force as Force
+    from inerter.vehicle.mechanism import Measures as Measures
     from inerter.vehicle.mechanism import Mechanism as Mechanism
+    from inerter.vehicle.mechanism import RoadInput as RoadInput
+    from inerter.vehicle.mechanism import Strut as Strut
+    from inerter.vehicle.mechanism import Tyre as Tyre
+    from inerter.vehicle.mechanism import Weighted as Weighted
 
 __version__ = version("inerter")
+__all__ = [
+    "GROUND",
+    "LAYOUTS",
+    "Coordinate",
+    "Damper",
+    "Estimate",
+    "Force",
+    "Friction",
+    "Gap",
+    "HalfCar",
+    "Inerter",
+    "InerterError",
+    "LinearSystem",
+    "LoadCarrying",
+    "Measures",
+    "Mechanism",
+    "Norm",
+    "Optimum",
+    "QuarterCar",
+    "RideComfort",
+    "Road",
+    "RoadInput",
+    "Spring",
+    "Status",
+    "StatusKind",
+    "Strut",
+    "Tyre",
+    "TyreLoad",
+    "Weighted",
+    "__version__",
+    "assemble",
+    "evaluate",
+    "evaluate_many",
+    "free",
+    "frequency_response",
+    "h2_norm",
+    "hinf_norm",
+    "load_study",
+    "network",
+    "optimise",
+]
 
 _HOME = {
-    "LAYOUTS": "networks.catalogue",
+    "Coordinate": "vehicle.mechanism",
     "Damper": "networks.elements",
+    "Estimate": "methods.method",
+    "Force": "vehicle.mechanism",
     "Friction": "networks.elements",
+    "GROUND": "vehicle.mechanism",
     "Gap": "networks.elements",
     "HalfCar": "vehicle.cars",
     "Inerter": "networks.elements",
+    "InerterError": "errors",
+    "LAYOUTS": "networks.catalogue",
+    "LinearSystem": "systems.linear",
+    "LoadCarrying": "indices.index",
+    "Measures": "vehicle.mechanism",
     "Mechanism": "vehicle.mechanism",
+    "Norm": "methods.norm",
+    "Optimum": "optimisation.optimise",
     "QuarterCar": "vehicle.cars",
+    "RideComfort": "indices.index",
     "Road": "signals.road",
+    "RoadInput": "vehicle.mechanism",
     "Spring": "networks.elements",
+    "Status": "errors",
+    "StatusKind": "errors",
+    "Strut": "vehicle.mechanism",
+    "Tyre": "vehicle.mechanism",
+    "TyreLoad": "indices.index",
+    "Weighted": "vehicle.mechanism",
+    "assemble": "systems.assemble",
+    "evaluate": "methods.method",
+    "evaluate_many": "methods.method",
     "free": "networks.elements",
+    "frequency_response": "norms.response",
+    "h2_norm": "norms.h2",
+    "hinf_norm": "norms.hinf",
     "network": "networks.parser",
+    "load_study": "study.file",
+    "optimise": "optimisation.optimise",
 }
-__all__ = ["__version__", *_HOME]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,0 +1,182 @@
+"""Gains of single-input single-output systems, their gradients and their peaks, compiled."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels import compiled
+from inerter.kernels.closing import close, pull_back
+from inerter.kernels.h2 import units
+from inerter.kernels.linalg import factor, solve, solve_transposed
+
+Array = Any
+_GOLDEN = 0.6180339887498949
+
+
+@compiled
+def resolve(A: Array, omega: float, M: Array, pivots: Array) -> bool:
+    """M becomes the factors of j omega - A."""
+    n = A.shape[0]
+    for i in range(n):
+        for j in range(n):
+            M[i, j] = -A[i, j]
+        M[i, i] += 1j * omega
+    return factor(M, pivots)
+
+
+@compiled
+def gain_at(A: Array, B: Array, C: Array, D: Array, omega: float) -> Any:
+    """|G(j omega)|, infinite at a pole."""
+    n = A.shape[0]
+    M, pivots, r = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
+    for i in range(n):
+        r[i] = B[i, 0]
+    if not resolve(A, omega, M, pivots):
+        return np.inf
+    solve(M, pivots, r)
+    G = D[0, 0] + 0j
+    for i in range(n):
+        G += C[0, i] * r[i]
+    return abs(G)
+
+
+@compiled
+def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
+    """|G(j omega)| and its gradient over the values p (frequencies, values) at each of `omegas`."""
+    A, B, C, D, T, LU, S_pivots, good = close(p, descriptor)
+    n, count = A.shape[0], omegas.size
+    values, gradients = np.full(count, np.nan), np.full((count, p.size), np.nan)
+    if not good:
+        return values, gradients
+    M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
+    r, left = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    G_A, G_B, G_C, G_D = np.empty((n, n)), np.empty((n, 1)), np.empty((1, n)), np.empty((1, 1))
+    for k in range(count):
+        for i in range(n):
+            r[i], left[i] = B[i, 0], C[0, i]
+        if not resolve(A, omegas[k], M, pivots):
+            values[k] = np.inf
+            continue
+        solve(M, pivots, r)
+        solve_transposed(M, pivots, left)
+        G = D[0, 0] + 0j
+        for i in range(n):
+            G += C[0, i] * r[i]
+        values[k] = abs(G)
+        h = np.conj(G) / values[k] if values[k] > 0.0 else 0j
+        for i in range(n):
+            for j in range(n):
+                G_A[i, j] = (h * left[i] * r[j]).real
+            G_B[i, 0], G_C[0, i] = (h * left[i]).real, (h * r[i]).real
+        G_D[0, 0] = h.real
+        gradients[k] = pull_back(p, descriptor, T, LU, S_pivots, G_A, G_B, G_C, G_D)
+    return values, gradients
+
+
+@compiled
+def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> float:
+    """|G(j omega)| from partial fractions."""
+    G = direct + 0j
+    for i in range(poles.size):
+        G += residues[i] / (1j * omega - poles[i])
+    return abs(G)
+
+
+@compiled
+def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
+    """Frequencies and values of the local maxima of the gain, found in partial fractions, valued by a direct solve.
+
+    Partial fractions cost little at each frequency; where they lose digits (nearly equal poles) only the place of a
+    peak suffers, and there by the square root only, because the value at it is computed anew.
+    """
+    n = A.shape[0]
+    scale = units(A)
+    scaled = np.empty((n, n), np.complex128)
+    for i in range(n):
+        for j in range(n):
+            scaled[i, j] = A[i, j] * scale[j] / scale[i]
+    poles, vectors = np.linalg.eig(scaled)
+    LU, pivots, weights = vectors.copy(), np.empty(n, np.int64), np.empty(n, np.complex128)
+    for i in range(n):
+        weights[i] = B[i, 0] / scale[i]
+    if not factor(LU, pivots):
+        return np.zeros(0), np.zeros(0)
+    solve(LU, pivots, weights)
+    residues = np.zeros(n, np.complex128)
+    slowest, fastest = np.inf, 0.0
+    for k in range(n):
+        for i in range(n):
+            residues[k] += C[0, i] * scale[i] * vectors[i, k]
+        residues[k] *= weights[k]
+        size = abs(poles[k])
+        slowest, fastest = min(slowest, max(size, 1e-300)), max(fastest, size)
+    steps = 24 + int(24.0 * np.log10(max(fastest / slowest, 1.0)))
+    grid = np.empty(steps + 1 + 15 * n)
+    grid[0] = 0.0
+    for k in range(steps):
+        grid[1 + k] = slowest * 0.1 * (100.0 * fastest / slowest) ** (k / (steps - 1))
+    count = steps + 1
+    for k in range(n):
+        if poles[k].imag >= 0.0:
+            for offset in (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0):
+                omega = poles[k].imag + offset * abs(poles[k].real)
+                if omega > 0.0:
+                    grid[count] = omega
+                    count += 1
+            grid[count] = abs(poles[k])
+            count += 1
+    grid = np.sort(grid[:count])
+    values = np.empty(count)
+    for k in range(count):
+        values[k] = modal_gain(poles, residues, D[0, 0], grid[k])
+    omegas, found = np.empty(count), np.empty(count)
+    number = 0
+    if values[0] >= values[1] * (1.0 - 1e-12):
+        omegas[0], found[0] = 0.0, gain_at(A, B, C, D, 0.0)
+        number = 1
+    for k in range(1, count - 1):
+        if values[k] > values[k - 1] * (1.0 + 1e-11) and values[k] >= values[k + 1]:
+            low, high = grid[k - 1], grid[k + 1]
+            a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+            ga, gb = modal_gain(poles, residues, D[0, 0], a), modal_gain(poles, residues, D[0, 0], b)
+            width = 1e-5 * (high - low) + 1e-14 * high  # the grid is as fine as a resonance is wide
+            while high - low > width:
+                if ga > gb:
+                    high, b, gb = b, a, ga
+                    a = high - _GOLDEN * (high - low)
+                    ga = modal_gain(poles, residues, D[0, 0], a)
+                else:
+                    low, a, ga = a, b, gb
+                    b = low + _GOLDEN * (high - low)
+                    gb = modal_gain(poles, residues, D[0, 0], b)
+            omegas[number] = 0.5 * (low + high)
+            found[number] = gain_at(A, B, C, D, omegas[number])
+            number += 1
+    return omegas[:number], found[:number]
+
+
+@compiled
+def peaks_at(p: Array, descriptor: Array) -> Any:
+    """`peaks` of the system at the values p."""
+    A, B, C, D, _, _, _, good = close(p, descriptor)
+    if not good:
+        return np.zeros(0), np.zeros(0)
+    return peaks(A, B, C, D)
+
+
+@compiled
+def largest_gains(points: Array, descriptor: Array) -> Array:
+    """Largest gain at each row of `points`; nan where it could not be found."""
+    result = np.full(points.shape[0], np.nan)
+    for i in range(points.shape[0]):
+        A, B, C, D, _, _, _, good = close(points[i], descriptor)
+        if good:
+            _, found = peaks(A, B, C, D)
+            largest = abs(D[0, 0])
+            for value in found:
+                largest = max(largest, value)
+            if found.size > 0 and np.isfinite(largest):
+                result[i] = largest
+    return result

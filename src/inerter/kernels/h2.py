@@ -1,0 +1,242 @@
+"""H2 norms and their gradients, compiled, for many values of one descriptor.
+
+The covariance solves A P + P A' + W = 0 as one linear system for its n (n + 1) / 2 entries. The adjoint equation
+A' Q + Q A + C' C = 0 has the transpose of the same matrix, up to the double count of off-diagonal entries, so both
+share one factorisation.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels import compiled
+from inerter.kernels.closing import close, pull_back
+from inerter.kernels.linalg import exponential, factor, solve, solve_transposed
+
+Array = Any
+
+
+@compiled
+def lyapunov_factors(A: Array, A_scale: Array) -> Any:
+    """Factors of P -> A P + P A' over packed symmetric P; entries are balanced by `A_scale`."""
+    n = A.shape[0]
+    N = n * (n + 1) // 2
+    place = np.empty((n, n), np.int64)
+    count = 0
+    for i in range(n):
+        for j in range(i, n):
+            place[i, j] = count
+            place[j, i] = count
+            count += 1
+    K = np.zeros((N, N))
+    for i in range(n):
+        for j in range(i, n):
+            row = place[i, j]
+            for k in range(n):
+                K[row, place[k, j]] += A[i, k] * A_scale[k] / A_scale[i]
+                K[row, place[i, k]] += A[j, k] * A_scale[k] / A_scale[j]
+    pivots = np.empty(N, np.int64)
+    good = factor(K, pivots)
+    return K, pivots, place, good
+
+
+@compiled
+def units(A: Array) -> Array:
+    """Units of the states that even out rows and columns of A: a few sweeps of balancing."""
+    n = A.shape[0]
+    scale = np.ones(n)
+    for _ in range(4):
+        for i in range(n):
+            row, column = 0.0, 0.0
+            for j in range(n):
+                if j != i:
+                    row += abs(A[i, j]) * scale[j]
+                    column += abs(A[j, i]) / scale[j]
+            if row > 0.0 and column > 0.0:
+                scale[i] = np.sqrt(row / column)
+    return scale
+
+
+@compiled
+def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, direct: float) -> Array:
+    """exp(A time) u, or its Pade approximant where poles are given."""
+    n = A.shape[0]
+    if poles.size == 0:
+        E, _ = exponential(A * time, A, False)
+        return E @ u
+    out = direct * u
+    M, pivots, z = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
+    for k in range(poles.size):
+        for i in range(n):
+            for j in range(n):
+                M[i, j] = A[i, j] * time
+            M[i, i] += poles[k]
+            z[i] = u[i]
+        factor(M, pivots)
+        solve(M, pivots, z)
+        for i in range(n):
+            out[i] -= (residues[k] * z[i]).real
+    return out
+
+
+@compiled
+def propagated_adjoint(
+    A: Array, time: float, u: Array, bar: Array, poles: Array, residues: Array, direct: float, G_A: Array
+) -> Array:
+    """The adjoint of `propagated`: adds d(bar' E u)/dA to G_A and returns E' bar."""
+    n = A.shape[0]
+    if poles.size == 0:
+        N = np.empty((n, n))
+        for i in range(n):
+            for j in range(n):
+                N[i, j] = time * bar[i] * u[j]
+        E, L = exponential(A.T.copy() * time, N, True)
+        for i in range(n):
+            for j in range(n):
+                G_A[i, j] += L[i, j]
+        return E @ bar
+    out = direct * bar
+    M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
+    z, y = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    for k in range(poles.size):
+        for i in range(n):
+            for j in range(n):
+                M[i, j] = A[i, j] * time
+            M[i, i] += poles[k]
+            z[i], y[i] = u[i], bar[i]
+        factor(M, pivots)
+        solve(M, pivots, z)
+        solve_transposed(M, pivots, y)
+        for i in range(n):
+            out[i] -= (residues[k] * y[i]).real
+            for j in range(n):
+                G_A[i, j] += time * (residues[k] * y[i] * z[j]).real
+    return out
+
+
+@compiled
+def high_passed(A: Array, B: Array, C: Array, D: Array, corner: float) -> Any:
+    """The system with each output filtered by s/(s + corner)."""
+    n, m, o = A.shape[0], B.shape[1], C.shape[0]
+    A2, B2, C2 = np.zeros((n + o, n + o)), np.zeros((n + o, m)), np.zeros((o, n + o))
+    A2[:n, :n], A2[n:, :n], B2[:n], B2[n:], C2[:, :n] = A, C, B, D, C
+    for i in range(o):
+        A2[n + i, n + i] = -corner
+        C2[i, n + i] = -corner
+    return A2, B2, C2
+
+
+@compiled
+def solve_symmetric(K: Array, pivots: Array, place: Array, scale: Array, W: Array, adjoint: bool, b: Array) -> Array:
+    """P of A P + P A' + W = 0, or Q of A' Q + Q A + W = 0, from the factors of the former."""
+    n = W.shape[0]
+    P = np.empty((n, n))
+    for i in range(n):
+        for j in range(i, n):
+            weight = 2.0 if adjoint and i != j else 1.0
+            unit = scale[i] * scale[j] if adjoint else 1.0 / (scale[i] * scale[j])
+            b[place[i, j]] = -W[i, j] * weight * unit
+    if adjoint:
+        solve_transposed(K, pivots, b)
+    else:
+        solve(K, pivots, b)
+    for i in range(n):
+        for j in range(i, n):
+            weight = 0.5 if adjoint and i != j else 1.0
+            unit = 1.0 / (scale[i] * scale[j]) if adjoint else scale[i] * scale[j]
+            P[i, j] = b[place[i, j]] * weight * unit
+            P[j, i] = P[i, j]
+    return P
+
+
+@compiled
+def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array, want_gradient: bool) -> Any:
+    """Norm of each output, gradient of their weighted sum over p, and whether all went well.
+
+    `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the next, and the Pade
+    approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
+    """
+    gaps, poles, residues, direct = arrivals
+    A0, B0, C0, D0, T, LU, S_pivots, good = close(p, descriptor)
+    o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
+    result, gradient = np.full(o, np.nan), np.full(p.size, np.nan)
+    if not good:
+        return result, gradient, False
+    A, B, C = A0, B0, C0
+    if corner > 0.0:
+        A, B, C = high_passed(A0, B0, C0, D0, corner)
+    n = A.shape[0]
+    scale = units(A)
+    K, pivots, place, good = lyapunov_factors(A, scale)
+    if not good:
+        return result, gradient, False
+    met = np.zeros((m, n))
+    for j in range(1, m):
+        met[j] = propagated(A, gaps[j - 1], met[j - 1] + B[:, j - 1], poles, residues, direct)
+    W = np.zeros((n, n))
+    for c in range(m):
+        for i in range(n):
+            for j in range(n):
+                W[i, j] += B[i, c] * B[j, c] + met[c, i] * B[j, c] + B[i, c] * met[c, j]
+    work = np.empty(K.shape[0])
+    P = solve_symmetric(K, pivots, place, scale, W, False, work)
+    CP = np.zeros((o, n))
+    for k in range(o):
+        total = 0.0
+        for i in range(n):
+            for j in range(n):
+                CP[k, i] += P[i, j] * C[k, j]
+            total += CP[k, i] * C[k, i]
+        result[k] = np.sqrt(total)
+    for i in range(n):
+        if not P[i, i] >= 0.0:
+            good = False
+    if not want_gradient or not good:
+        return result, gradient, good
+    CC = np.zeros((n, n))
+    G_C = np.zeros((o, n))
+    for k in range(o):
+        share = weights[k] / (2.0 * result[k]) if result[k] > 0.0 else 0.0
+        for i in range(n):
+            G_C[k, i] = 2.0 * share * CP[k, i]
+            for j in range(n):
+                CC[i, j] += share * C[k, i] * C[k, j]
+    Q = solve_symmetric(K, pivots, place, scale, CC, True, work)
+    G_A, G_B = 2.0 * (Q @ P), np.zeros((n, m))
+    carry = np.zeros(n)
+    for c in range(m - 1, -1, -1):
+        QB, Qmet = np.zeros(n), np.zeros(n)
+        for i in range(n):
+            for j in range(n):
+                QB[i] += Q[i, j] * B[j, c]
+                Qmet[i] += Q[i, j] * met[c, j]
+        for i in range(n):
+            G_B[i, c] += 2.0 * (QB[i] + Qmet[i]) + carry[i]
+        if c > 0:
+            # carry reaches met[c] from the arrival after this one, as well as B[:, c]
+            bar = 2.0 * QB + carry
+            u = met[c - 1] + B[:, c - 1]
+            carry = propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A)
+    G_D = np.zeros((o, m))
+    if corner > 0.0:
+        G_C0 = G_C[:, :n0] + G_A[n0:, :n0]
+        for i in range(o):
+            for j in range(m):
+                G_D[i, j] = G_B[n0 + i, j]
+        gradient = pull_back(p, descriptor, T, LU, S_pivots, G_A[:n0, :n0].copy(), G_B[:n0].copy(), G_C0, G_D)
+    else:
+        gradient = pull_back(p, descriptor, T, LU, S_pivots, G_A, G_B, G_C, G_D)
+    return result, gradient, good
+
+
+@compiled
+def norms_of_many(points: Array, descriptor: Array, arrivals: Array, corner: float) -> Any:
+    """Norms (designs, outputs) at each row of `points`, and whether each went well."""
+    outputs = descriptor[7].shape[1]
+    result, good = np.empty((points.shape[0], outputs)), np.empty(points.shape[0], np.bool_)
+    weights = np.ones(outputs)
+    for i in range(points.shape[0]):
+        result[i], _, good[i] = norms(points[i], descriptor, arrivals, corner, weights, False)
+    return result, good

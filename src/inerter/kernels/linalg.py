@@ -1,0 +1,142 @@
+"""Small dense linear algebra in place, for real and complex matrices alike. Faster than a library below order 20."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels import compiled
+
+Array = Any  # compiled code is typed when it is compiled
+
+
+@compiled
+def factor(A: Array, pivots: Array) -> bool:
+    """LU factors of A in its place, with scaled partial pivoting; False if A is singular."""
+    n = A.shape[0]
+    size = np.empty(n)
+    for i in range(n):
+        largest = 0.0
+        for j in range(n):
+            largest = max(largest, abs(A[i, j]))
+        if largest == 0.0 or not np.isfinite(largest):
+            return False
+        size[i] = 1.0 / largest
+    for k in range(n):
+        best, row = -1.0, k
+        for i in range(k, n):
+            here = abs(A[i, k]) * size[i]
+            if here > best:
+                best, row = here, i
+        if best == 0.0:
+            return False
+        pivots[k] = row
+        if row != k:
+            for j in range(n):
+                A[k, j], A[row, j] = A[row, j], A[k, j]
+            size[row] = size[k]
+        inverse = 1.0 / A[k, k]
+        for i in range(k + 1, n):
+            if A[i, k] != 0.0:
+                A[i, k] *= inverse
+                ratio = A[i, k]
+                for j in range(k + 1, n):
+                    A[i, j] -= ratio * A[k, j]
+    return True
+
+
+@compiled
+def solve(LU: Array, pivots: Array, b: Array) -> None:
+    """Solve A x = b; b becomes x."""
+    n = LU.shape[0]
+    for k in range(n):
+        row = pivots[k]
+        if row != k:
+            b[k], b[row] = b[row], b[k]
+    for i in range(n):
+        total = b[i]
+        for j in range(i):
+            total -= LU[i, j] * b[j]
+        b[i] = total
+    for i in range(n - 1, -1, -1):
+        total = b[i]
+        for j in range(i + 1, n):
+            total -= LU[i, j] * b[j]
+        b[i] = total / LU[i, i]
+
+
+@compiled
+def solve_transposed(LU: Array, pivots: Array, b: Array) -> None:
+    """Solve A^T x = b (no conjugation); b becomes x."""
+    n = LU.shape[0]
+    for i in range(n):
+        total = b[i] / LU[i, i]
+        b[i] = total
+        for j in range(i + 1, n):
+            b[j] -= LU[i, j] * total
+    for i in range(n - 1, -1, -1):
+        total = b[i]
+        for j in range(i):
+            b[j] -= LU[i, j] * total
+    for k in range(n - 1, -1, -1):
+        row = pivots[k]
+        if row != k:
+            b[k], b[row] = b[row], b[k]
+
+
+@compiled
+def matmul(A: Array, B: Array, out: Array) -> None:
+    """Multiply: out = A B."""
+    for i in range(A.shape[0]):
+        for j in range(B.shape[1]):
+            out[i, j] = 0.0
+        for k in range(A.shape[1]):
+            a = A[i, k]
+            if a != 0.0:
+                for j in range(B.shape[1]):
+                    out[i, j] += a * B[k, j]
+
+
+@compiled
+def exponential(X: Array, N: Array, with_derivative: bool) -> Any:
+    """exp(X), and its derivative in the direction N, by a Taylor series of a scaled X and repeated squaring."""
+    n = X.shape[0]
+    norm = 0.0
+    for i in range(n):
+        total = 0.0
+        for j in range(n):
+            total += abs(X[i, j])
+        norm = max(norm, total)
+    squarings = 0
+    while norm > 0.5:
+        norm *= 0.5
+        squarings += 1
+    scale = 0.5**squarings
+    E, L = np.eye(n), np.zeros((n, n))
+    T, dT = np.eye(n), np.zeros((n, n))
+    work, dwork = np.empty((n, n)), np.empty((n, n))
+    for k in range(1, 15):  # 0.5^15 / 15! is below rounding
+        factor_k = scale / k
+        if with_derivative:
+            matmul(X, dT, dwork)
+            matmul(N, T, work)
+            for i in range(n):
+                for j in range(n):
+                    dT[i, j] = factor_k * (dwork[i, j] + work[i, j])
+                    L[i, j] += dT[i, j]
+        matmul(X, T, work)
+        for i in range(n):
+            for j in range(n):
+                T[i, j] = factor_k * work[i, j]
+                E[i, j] += T[i, j]
+    for _ in range(squarings):
+        if with_derivative:
+            matmul(E, L, work)
+            matmul(L, E, dwork)
+            for i in range(n):
+                for j in range(n):
+                    L[i, j] = work[i, j] + dwork[i, j]
+        matmul(E, E, work)
+        E[:, :] = work
+    return E, L

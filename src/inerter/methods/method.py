@@ -1,0 +1,143 @@
+"""What every method offers, what it returns, and the functions that put a design, an index and a method together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from inerter.errors import OK, DesignError, IndicatorError, Status
+from inerter.indices.index import Index
+from inerter.norms.hinf import Peak
+from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.mechanism import check_known
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The value of an index, and how far it can be trusted."""
+
+    value: float
+    unit: str
+    status: Status = OK
+    standard_error: float | None = None  # None: the method has no scatter
+    peaks: tuple[Peak, ...] = ()  # local maxima of the gain, for an index that is a peak gain
+    notes: tuple[str, ...] = ()  # what the method left out
+
+
+class Objective(Protocol):
+    """An index of a design as a function of its free values, for an optimiser. Points are (values,) or (n, values)."""
+
+    def values(self, points: Array) -> Array:
+        """The index at each row of `points`."""
+        ...
+
+    def value_and_gradient(self, point: Array) -> tuple[float, Array]:
+        """The index and its gradient at one point, where it is smooth."""
+        ...
+
+    def active(self, point: Array) -> Array | None:
+        """Where the index is the largest of many smooth functions: those that matter here; None if it is smooth."""
+        ...
+
+    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
+        """Those smooth functions and their gradients (components,), (components, values)."""
+        ...
+
+
+@runtime_checkable
+class Method(Protocol):
+    """A way to get a number."""
+
+    @property
+    def name(self) -> str:
+        """Its name in study files and results."""
+        ...
+
+    def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
+        """The index of a vehicle without free values."""
+        ...
+
+    def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
+        """The indices (designs, indices) of a vehicle at many values of its free values."""
+        ...
+
+    def objective(self, vehicle: Vehicle, index: Index) -> Objective:
+        """The index as a function of the free values."""
+        ...
+
+
+def evaluate(vehicle: Vehicle, index: Index, method: Method) -> Estimate:
+    """One index of one design by one method.
+
+    Raises `DesignError` if the design still has free values, `MechanismError` if it is ill-posed, `IndicatorError`
+    if the vehicle cannot answer the index.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(4981)
+    >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    >>> round(it.evaluate(car, it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.Norm()).value, 4)
+    2.9882
+    """
+    check_request(vehicle, index, method)
+    free = ", ".join(vehicle.free_values())
+    if free:
+        raise DesignError(
+            f"The design still has free values: {free}. Fix them with with_values(...), or use optimise(...)."
+        )
+    return method.estimate(vehicle, index)
+
+
+def evaluate_many(
+    vehicle: Vehicle, indices: Sequence[Index] | Index, values: Mapping[str, ArrayLike], method: Method
+) -> Array:
+    """Indices of many designs of one layout: an array (designs, indices).
+
+    `values` gives for each free value of `vehicle` an array of one length (or one number for all designs).
+
+    Raises `DesignError` if a free value is missing, unknown, not positive or not finite, or if lengths differ; and
+    what `evaluate` raises.
+    """
+    several = [indices] if not isinstance(indices, Sequence) else list(indices)
+    for index in several:
+        check_request(vehicle, index, method)
+    return method.estimate_many(vehicle, several, check_points(vehicle, values))
+
+
+def check_request(vehicle: object, index: object, method: object) -> None:
+    """Raises `DesignError` or `IndicatorError` where an argument is not what its place asks for."""
+    if not hasattr(vehicle, "mechanism"):
+        raise DesignError(f"The first argument must be a vehicle such as a QuarterCar, got {vehicle!r}.")
+    if isinstance(index, type) or not hasattr(index, "question"):
+        raise IndicatorError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
+    if isinstance(method, type) or not isinstance(method, Method):
+        raise IndicatorError(f"Expected a method such as Norm(), got {method!r}.")
+
+
+def check_points(vehicle: Vehicle, values: Mapping[str, ArrayLike]) -> dict[str, Array]:
+    """`values` as float arrays of one length, one for each free value of `vehicle`; raises `DesignError`."""
+    free = vehicle.free_values()
+    check_known(values, free)
+    missing = [name for name in free if name not in values]
+    if missing:
+        raise DesignError(f"Give values for {', '.join(missing)} too: every free value of the design needs some.")
+    arrays: dict[str, Array] = {}
+    for name, given in values.items():
+        try:
+            array = np.asarray(given, dtype=float)
+        except (TypeError, ValueError):
+            raise DesignError(f"The values of {name!r} must be numbers, got {given!r}.") from None
+        if array.ndim > 1 or not np.all(np.isfinite(array)) or not np.all(array > 0.0):
+            raise DesignError(f"The values of {name!r} must be a list of positive, finite numbers.")
+        arrays[name] = array
+    lengths = {array.size for array in arrays.values() if array.ndim == 1}
+    if len(lengths) > 1:
+        sizes = ", ".join(f"{name}: {array.size}" for name, array in arrays.items())
+        raise DesignError(f"The values must be as many for every free value, got {sizes}.")
+    length = lengths.pop() if lengths else 1
+    return {name: np.broadcast_to(arrays[name], (length,)).copy() for name in free}

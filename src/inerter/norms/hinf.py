@@ -1,0 +1,165 @@
+"""The H-infinity norm with all peaks of the gain and their frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+import scipy.optimize
+from numpy.typing import NDArray
+
+from inerter.errors import OK, LinearSystemError, Status
+from inerter.norms.response import resolvent
+from inerter.norms.stability import split
+from inerter.systems.linear import LinearSystem
+
+Matrix = NDArray[np.float64]
+Gain = Callable[[Matrix], Matrix]
+_RISE = 1e-11  # a smaller relative rise of the gain is rounding, not a peak
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A local maximum of the gain."""
+
+    omega: float  # [rad/s], infinite for the gain of the direct term
+    gain: float
+
+
+@dataclass(frozen=True)
+class HInfinity:
+    """The largest gain, every local maximum of the gain (highest first), and why it is infinite if it is."""
+
+    value: float
+    peaks: tuple[Peak, ...]
+    status: Status
+
+
+def hinf_norm(system: LinearSystem) -> HInfinity:
+    """Largest singular value of G(j omega) over all frequencies, with every local maximum.
+
+    Peaks are sought from every pole and on a grid, refined one by one, and the highest is then certified by the level
+    sets of the gain: eigenvalues of a Hamiltonian matrix on the imaginary axis tell where the gain crosses a level
+    just above it (Bruinsma and Steinbuch, 1990). Motions that do not decay count only if they can be excited and seen.
+
+    Raises `LinearSystemError` if inputs of one source arrive at different times.
+    """
+    merged = _merge(system)
+    parts = split(merged)
+    if parts.poles.size and np.any(parts.visible()):
+        frequencies = np.unique(np.abs(parts.poles.imag))
+        return HInfinity(np.inf, tuple(Peak(float(w), np.inf) for w in frequencies), parts.status)
+    stable = LinearSystem(parts.decaying.A, parts.decaying.B, parts.decaying.C, merged.D)
+    gain = _gain(stable)
+    poles = np.linalg.eigvals(stable.A) if stable.order else np.zeros(0)
+    grid = _grid(np.asarray(poles, dtype=complex))
+    peaks = _peaks(gain, grid, stable.D)
+    for _ in range(50):
+        higher = _above(stable, gain, peaks[0].gain) if peaks else []
+        if not higher:
+            break
+        grid = np.unique(np.concatenate([grid, higher]))
+        peaks = _peaks(gain, grid, stable.D)
+    value = peaks[0].gain if peaks else 0.0
+    return HInfinity(value, tuple(peaks), OK)
+
+
+def _merge(system: LinearSystem) -> LinearSystem:
+    sources = list(dict.fromkeys(system.sources))
+    merge = np.array([[source == other for other in sources] for source in system.sources], dtype=float)
+    for j, source in enumerate(sources):
+        delays = system.delays[merge[:, j] > 0.0] if merge.size else np.zeros(0)
+        if np.ptp(delays) > 0.0:
+            raise LinearSystemError(
+                f"The H-infinity norm needs the inputs of {source!r} to arrive together, but they are "
+                f"{float(np.ptp(delays)):g} s apart. Choose one of them with select(inputs=...)."
+            )
+    merge = merge.reshape(len(system.sources), len(sources))
+    return LinearSystem(system.A, system.B @ merge, system.C, system.D @ merge)
+
+
+def _gain(system: LinearSystem) -> Gain:
+    evaluate = resolvent(system)
+
+    def gain(omega: Matrix) -> Matrix:
+        G = evaluate(np.atleast_1d(omega)) + system.D
+        if min(G.shape[1:]) == 0:
+            return np.zeros(G.shape[0])
+        if min(G.shape[1:]) == 1:
+            return np.asarray(np.sqrt(np.sum(np.abs(G) ** 2, axis=(1, 2))))
+        return np.asarray(np.linalg.norm(G, 2, axis=(1, 2)))
+
+    return gain
+
+
+def _grid(poles: NDArray[np.complex128]) -> Matrix:
+    """Zero, a logarithmic grid over all time scales, and points on and around every resonance."""
+    sizes = np.abs(poles)[np.abs(poles) > 0.0]
+    if sizes.size == 0:
+        return np.array([0.0, 1.0])
+    low, high = np.log10(sizes.min()) - 3.0, np.log10(sizes.max()) + 3.0
+    spread = np.concatenate([[0.0], np.geomspace(0.03, 30.0, 25)])
+    around = np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * np.concatenate([-spread, spread])
+    grid = np.concatenate([[0.0], np.logspace(low, high, int(60 * (high - low))), sizes, around.ravel()])
+    return np.unique(grid[grid >= 0.0])
+
+
+def _peaks(gain: Gain, grid: Matrix, D: Matrix) -> list[Peak]:
+    values = gain(grid)
+    inner = np.flatnonzero(
+        (values[1:-1] >= values[:-2])
+        & (values[1:-1] >= values[2:])
+        & (values[1:-1] > np.minimum(values[:-2], values[2:]) * (1.0 + _RISE))
+    )
+    found = [_refine(gain, grid[i], grid[i + 1], grid[i + 2]) for i in inner]
+    if values[0] > values[1] * (1.0 + _RISE) or np.all(np.abs(values - values[0]) <= _RISE * values[0]):
+        found.append(Peak(0.0, float(values[0])))
+    at_infinity = float(np.linalg.norm(D, 2)) if D.size else 0.0
+    if at_infinity > values[-1]:
+        found.append(Peak(np.inf, at_infinity))
+    found = [peak for peak in found if peak.gain > 0.0]
+    return _distinct(sorted(found, key=lambda peak: -peak.gain))
+
+
+def _refine(gain: Gain, left: float, middle: float, right: float) -> Peak:
+    """The maximum in a bracket: bounded search."""
+    result = scipy.optimize.minimize_scalar(
+        lambda w: -float(gain(np.array([w]))[0]),
+        bounds=(left, right),
+        method="bounded",
+        options={"xatol": 1e-9 * (right - left) + 1e-12 * middle, "maxiter": 200},
+    )
+    best, at_middle = -float(result.fun), float(gain(np.array([middle]))[0])
+    return Peak(float(result.x), best) if best >= at_middle else Peak(float(middle), at_middle)
+
+
+def _distinct(peaks: list[Peak]) -> list[Peak]:
+    kept: list[Peak] = []
+    for peak in peaks:
+        if all(abs(peak.omega - other.omega) > 1e-7 * other.omega for other in kept if np.isfinite(other.omega)):
+            kept.append(peak)
+    return kept
+
+
+def _above(system: LinearSystem, gain: Gain, level: float) -> list[float]:
+    """Frequencies at which the gain exceeds `level`: between crossings of a level set just above it."""
+    gamma = level * (1.0 + 1e-7)
+    R = gamma**2 * np.eye(system.D.shape[1]) - system.D.T @ system.D
+    A, B = system.A, system.B / gamma
+    inverse = np.linalg.inv(R) * gamma**2
+    F = A + B @ inverse @ (system.D.T / gamma) @ system.C
+    lower = system.C.T @ (np.eye(system.D.shape[0]) + system.D @ np.linalg.inv(R) @ system.D.T) @ system.C
+    H = np.block([[F, B @ inverse @ B.T], [-lower, -F.T]])
+    if not H.size:
+        return []
+    H = np.asarray(scipy.linalg.matrix_balance(H, permute=False)[0])
+    eigenvalues = np.linalg.eigvals(H)
+    near_axis = np.abs(eigenvalues.real) <= 1e-5 * np.abs(eigenvalues) + 1e-12 * np.abs(eigenvalues).max()
+    crossings = np.unique(np.abs(eigenvalues[near_axis].imag))
+    if crossings.size == 0:
+        return []
+    edges = np.concatenate([[0.0], crossings, [2.0 * crossings[-1]]])
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    return [float(w) for w, g in zip(middles, gain(middles), strict=True) if g > gamma]

@@ -1,0 +1,129 @@
+"""Which part of a system decays, and whether the part that does not can be seen at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from inerter.errors import OK, Status, StatusKind
+from inerter.systems.linear import LinearSystem
+
+Matrix = NDArray[np.float64]
+_VISIBLE = 1e-10  # relative size below which rounding, not mechanics, connects input, mode and output
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Matrices of a part of a system, in coordinates of its own."""
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """A system as the sum of a part that decays and a part that does not; `poles` are those of the latter."""
+
+    decaying: Part
+    lasting: Part
+    poles: NDArray[np.complex128]
+
+    def visible(self, B: Matrix | None = None) -> NDArray[np.bool_]:
+        """For each output, whether the lasting part connects it to the inputs (or to other input columns `B`).
+
+        Its Markov parameters C A^k B tell, relative to what sizes of rows and columns could make of them.
+        """
+        part = self.lasting
+        columns = part.B if B is None else B
+        rows_seen = np.zeros(part.C.shape[0], dtype=bool)
+        row_size = np.hypot(_norms(part.C, 1), _norms(self.decaying.C, 1))
+        column_size = np.hypot(_norms(part.B, 0), _norms(self.decaying.B, 0))
+        bound = np.outer(row_size, column_size)
+        rate = max(float(np.linalg.norm(part.A)), np.finfo(float).tiny)
+        product = columns
+        for _ in range(part.A.shape[0]):
+            rows_seen |= np.any(np.abs(part.C @ product) > _VISIBLE * bound, axis=1)
+            product = part.A @ product / rate
+        return rows_seen
+
+    @property
+    def status(self) -> Status:
+        """What the lasting poles are, in words."""
+        worst = self.poles[int(np.argmax(self.poles.real))]
+        if worst.real > 0.0 and not _is_marginal(worst, self.poles):
+            return Status(StatusKind.UNSTABLE, f"the system is unstable: a pole at {_pole(worst)} rad/s")
+        return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {_pole(worst)} rad/s")
+
+
+def split(system: LinearSystem) -> Split:
+    """Split `system` into its decaying and its lasting part.
+
+    A pole counts as lasting when its real part is not negative beyond the rounding error of that very pole, found
+    from its left and right eigenvectors; a lightly damped mode beside much faster ones is thus told from an undamped
+    one.
+    """
+    n = system.order
+    A, scale = balance(system.A)
+    B, C = system.B / scale[:, None], system.C * scale
+    margins = pole_margins(A)
+    if np.all(margins < 0.0):
+        empty = Part(np.zeros((0, 0)), np.zeros((0, B.shape[1])), np.zeros((C.shape[0], 0)))
+        return Split(Part(A, B, C), empty, np.zeros(0, dtype=complex))
+    poles = np.linalg.eigvals(A).real
+    decays = np.sort(poles[margins < 0.0])
+    edge = 0.5 * (decays[-1] + np.min(poles[margins >= 0.0])) if decays.size else -np.inf
+    T, Z, count = scipy.linalg.schur(A, output="real", sort=lambda re, im: re < edge)
+    Bz, Cz = Z.T @ B, C @ Z
+    X = (
+        scipy.linalg.solve_sylvester(T[:count, :count], -T[count:, count:], -T[:count, count:])
+        if 0 < count < n
+        else (np.zeros((count, n - count)))
+    )
+    decaying = Part(T[:count, :count], Bz[:count] - X @ Bz[count:], Cz[:, :count])
+    lasting = Part(T[count:, count:], Bz[count:], Cz[:, count:] + Cz[:, :count] @ X)
+    return Split(decaying, lasting, np.asarray(np.linalg.eigvals(lasting.A), dtype=complex))
+
+
+def stability(system: LinearSystem) -> Status:
+    """`OK` if every pole decays, else what the worst pole is."""
+    parts = split(system)
+    return OK if parts.poles.size == 0 else parts.status
+
+
+def balance(A: Matrix) -> tuple[Matrix, Matrix]:
+    """A after a diagonal change of units by powers of two, and the units: A_new = A / scale[:, None] * scale."""
+    if A.shape[0] == 0:
+        return A, np.ones(0)
+    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    return np.asarray(balanced, dtype=float), np.asarray(scale, dtype=float)
+
+
+def pole_margins(A: Matrix) -> Matrix:
+    """Real parts of the poles plus their rounding errors: negative where a pole surely decays."""
+    if A.shape[0] == 0:
+        return np.zeros(0)
+    eigen: tuple[Any, Any, Any] = scipy.linalg.eig(A, left=True, right=True)  # type: ignore[assignment]
+    poles, left, right = eigen
+    overlap = np.abs(np.sum(left.conj() * right, axis=0))
+    spread = np.einsum("ik,ij,jk->k", np.abs(left), np.abs(A), np.abs(right))
+    error = 4.0 * np.finfo(float).eps * spread / np.maximum(overlap, np.finfo(float).tiny)
+    return np.asarray(poles.real + error, dtype=float)
+
+
+def _norms(matrix: Matrix, axis: int) -> Matrix:
+    return np.asarray(np.linalg.norm(matrix, axis=axis), dtype=float)
+
+
+def _is_marginal(worst: complex, poles: NDArray[np.complex128]) -> bool:
+    return abs(worst.real) <= 1e-9 * max(abs(worst), float(np.abs(poles).max(initial=0.0)), 1e-300)
+
+
+def _pole(value: complex) -> str:
+    if abs(value.imag) <= 1e-12 * abs(value):
+        return f"{value.real:.3g}"
+    return f"{value.real:.3g} {'+' if value.imag > 0 else '-'} {abs(value.imag):.4g}j"

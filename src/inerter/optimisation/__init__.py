@@ -1,0 +1,1 @@
+"""The best values of a design's free values."""

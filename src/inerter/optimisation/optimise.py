@@ -1,0 +1,141 @@
+"""`optimise`: many starts of a gradient method, because these problems have many local optima."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.spatial
+import scipy.stats
+from numpy.typing import NDArray
+
+from inerter.errors import DesignError, Status, StatusKind
+from inerter.indices.index import Index
+from inerter.methods.method import Estimate, Method, Objective, check_request
+from inerter.networks.elements import Free
+from inerter.optimisation.local import LocalOptimum, descend
+from inerter.vehicle.cars import Vehicle
+
+Array = NDArray[np.float64]
+AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
+_AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """The best design found, and what speaks for its being the best.
+
+    `agreed` of `starts` local searches ended within 1e-6 of the best value; `ranges` gives for each parameter the
+    least and the largest value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to
+    "lower" or "upper" where its bound holds it back.
+    """
+
+    estimate: Estimate
+    parameters: dict[str, float]
+    design: Vehicle
+    active_bounds: dict[str, str]
+    ranges: dict[str, tuple[float, float]]
+    starts: int
+    agreed: int
+    evaluations: int
+    seed: int
+
+    @property
+    def value(self) -> float:
+        """The index at the optimum."""
+        return self.estimate.value
+
+    @property
+    def unit(self) -> str:
+        """Unit of the index."""
+        return self.estimate.unit
+
+    @property
+    def status(self) -> Status:
+        """How far the value can be trusted."""
+        return self.estimate.status
+
+
+def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, starts: int = 16) -> Optimum:
+    """The free values of `vehicle` that make `index` smallest, within their bounds.
+
+    A scrambled Sobol sequence in the logarithms of the values is searched for local minima; the best `starts` of them
+    start a gradient method each (L-BFGS-B; for a peak gain a minimax search with SLSQP). The same seed gives the same
+    result.
+
+    Raises `DesignError` if nothing is free, if a free value has no effect in the method, or if `starts` is not a
+    positive whole number; and what `evaluate` raises.
+    """
+    check_request(vehicle, index, method)
+    variables = _variables(vehicle)
+    if not isinstance(starts, int) or starts < 1 or not isinstance(seed, int) or seed < 0:
+        raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
+    lower = np.array([free.lower for free in variables.values()])
+    upper = np.array([free.upper for free in variables.values()])
+    objective = method.objective(vehicle, index)
+    first, evaluations = _starting_points(objective, lower, upper, starts, seed)
+    found = [descend(objective, start, lower, upper) for start in first]
+    evaluations += sum(local.evaluations for local in found)
+    best = min(found, key=lambda local: local.value, default=None)
+    if best is None or not np.isfinite(best.value):
+        best = LocalOptimum(np.sqrt(lower * upper), np.inf, 0)
+    same = [local.point for local in found if local.value <= best.value * (1.0 + AGREEMENT)] or [best.point]
+    parameters = dict(zip(variables, best.point.tolist(), strict=True))
+    design = vehicle.with_values(parameters)
+    return Optimum(
+        estimate=_confirmed(method.estimate(design, index), best.value),
+        parameters=parameters,
+        design=design,
+        active_bounds=_active_bounds(variables, parameters),
+        ranges={name: (min(c), max(c)) for name, c in zip(variables, np.array(same).T.tolist(), strict=True)},
+        starts=len(found),
+        agreed=len(same) if found else 0,
+        evaluations=evaluations,
+        seed=seed,
+    )
+
+
+def _variables(vehicle: Vehicle) -> dict[str, Free]:
+    variables = vehicle.free_values()
+    if not variables:
+        raise DesignError("Nothing to optimise: the design has no free value. Give one with free(lower, upper).")
+    for name, free in variables.items():
+        if free.lower == 0.0:
+            raise DesignError(
+                f"The lower bound of {name!r} is 0; the search runs in logarithms and needs a positive bound."
+            )
+    return variables
+
+
+def _starting_points(
+    objective: Objective, lower: Array, upper: Array, starts: int, seed: int
+) -> tuple[list[Array], int]:
+    """The lowest local minima of a sample: points that are lower than all their neighbours."""
+    sampler = scipy.stats.qmc.Sobol(lower.size, rng=np.random.default_rng(seed))
+    unit = sampler.random_base2(min(6 + lower.size, 12))
+    points = np.exp(np.log(lower) + unit * (np.log(upper) - np.log(lower)))
+    values = objective.values(points)
+    neighbours = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * lower.size + 1)[1])
+    order = np.argsort(values, kind="stable")
+    minima = [i for i in order if np.isfinite(values[i]) and values[i] <= values[neighbours[i]].min()]
+    others = [i for i in order if np.isfinite(values[i]) and i not in set(minima)]
+    return [points[i] for i in (minima + others)[:starts]], len(points)
+
+
+def _active_bounds(variables: dict[str, Free], parameters: dict[str, float]) -> dict[str, str]:
+    active = {}
+    for name, free in variables.items():
+        place = np.log(parameters[name] / free.lower) / np.log(free.upper / free.lower)
+        if place < _AT_BOUND:
+            active[name] = "lower"
+        elif place > 1.0 - _AT_BOUND:
+            active[name] = "upper"
+    return active
+
+
+def _confirmed(estimate: Estimate, searched: float) -> Estimate:
+    """The estimate, which must be the value that the search saw."""
+    if not estimate.status.ok or abs(estimate.value - searched) <= 1e-6 * abs(searched):
+        return estimate
+    message = f"the search saw {searched:.9g}, the exact value of the design is {estimate.value:.9g}"
+    return replace(estimate, status=Status(StatusKind.INACCURATE, message))

@@ -1,0 +1,219 @@
+"""Reading a study file: TOML to a checked `Study`, or one error with a line for every problem."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from inerter.errors import NetworkError, StudyError
+from inerter.networks.elements import ELEMENT_TYPES, Element, Free, Value
+from inerter.networks.parser import names, network
+from inerter.signals.road import Road
+from inerter.study.entries import Amount
+from inerter.study.problems import at, explain, refusal
+from inerter.study.schema import Axles, Range, StudyFile, SweepRange
+from inerter.study.suggest import nearest
+from inerter.study.values import MOUNTS, StrutLayout, Study, Sweep, write_resolved
+from inerter.units import shown
+
+__all__ = ["StrutLayout", "Study", "Sweep", "load_study", "write_resolved"]
+
+_LARGEST = 1_000_000  # bytes
+_POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
+_KINDS: dict[str, Callable[[Value, str], Element]] = {kind.unit: kind for kind in ELEMENT_TYPES}
+
+
+def load_study(path: str | Path) -> Study:
+    """The study in the TOML file at `path`.
+
+    Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
+    """
+    path = Path(path)
+    tables = _read(path)
+    try:
+        shape = StudyFile.model_validate(tables)
+    except ValidationError as error:
+        raise refusal(path, explain(error)) from None
+    study = _resolve(path, shape)
+    problems = [*_layout_problems(study), *_sweep_problems(study), *_setting_problems(study)]
+    if not problems:
+        problems = list(_free_value_problems(study))
+    if problems:
+        raise refusal(path, problems)
+    return study
+
+
+def _read(path: Path) -> dict[str, Any]:
+    if path.is_dir():
+        raise StudyError(f"{path}: this is a folder; expected a study file. Give the path of a .toml file in it.")
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(_LARGEST + 1)
+    except FileNotFoundError:
+        raise StudyError(f"{path}: there is no such file; expected a study file. Check the path.") from None
+    except OSError as error:
+        raise StudyError(f"{path}: cannot be read ({error.strerror}); expected a study file.") from None
+    if len(data) > _LARGEST:
+        raise refusal(path, [f"larger than {_LARGEST} bytes; expected a study file, which is a page of TOML."])
+    try:
+        return tomllib.loads(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise refusal(path, [f"line {line}: not UTF-8 text; save the file with the encoding UTF-8."]) from None
+    except tomllib.TOMLDecodeError as error:
+        raise refusal(path, [_syntax_problem(str(error), data)]) from None
+    except (RecursionError, ValueError):  # thousands of brackets, or of digits in a whole number
+        raise refusal(path, ["not a study file: brackets nested too deeply, or a number too long."]) from None
+
+
+def _syntax_problem(message: str, data: bytes) -> str:
+    """Tomllib's message with its position in front and a hint for the two most frequent causes."""
+    position = _POSITION.search(message)
+    lines = data.decode("utf-8-sig").split("\n")
+    line, column = position.groups() if position else (None, None)
+    where = f"line {line or len(lines)}, column {column or len(lines[-1]) + 1}"
+    what = _POSITION.sub("", message)
+    if what.startswith(("Cannot", "Duplicate")):
+        return f"{where}: a key or section is given twice ({what}); expected each once. Rename or remove one."
+    return f'{where}: not valid TOML ({what}); quantities, names and networks are quoted, such as k = "120 kN/m".'
+
+
+def _resolve(path: Path, shape: StudyFile) -> Study:
+    vehicle = shape.vehicle.model_dump()
+    model = vehicle.pop("model")
+    layouts = {name: StrutLayout(_struts(model, entry)) for name, entry in shape.layouts.items()}
+    settings = shape.study
+    baseline = settings.baseline
+    if baseline is None and len(layouts) > 1:
+        baseline = next(iter(layouts))
+    return Study(
+        title=path.stem if shape.title is None else shape.title,
+        path=path,
+        model=model,
+        vehicle=vehicle,
+        road=Road(roughness=shape.road.roughness, speed=shape.road.speed),
+        elements={name: _element(name, entry) for name, entry in shape.elements.items()},
+        layouts=layouts,
+        indices=settings.indices,
+        conventions=settings.conventions,
+        optimise=settings.optimise,
+        evaluate=settings.evaluate,
+        baseline=baseline,
+        sweep=None if settings.sweep is None else _sweep(*next(iter(settings.sweep.items()))),
+        seed=settings.seed,
+        high_pass=settings.high_pass,
+    )
+
+
+def _struts(model: str, entry: Axles | str) -> dict[str, str]:
+    return entry.model_dump() if isinstance(entry, Axles) else dict.fromkeys(MOUNTS[model], entry)
+
+
+def _element(name: str, entry: Range | Amount) -> Element:
+    if isinstance(entry, Range):
+        return _KINDS[entry.lower.unit](Free(entry.lower.value, entry.upper.value, name), name)
+    return _KINDS[entry.unit](entry.value, name)
+
+
+def _sweep(element: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
+    if not isinstance(entry, SweepRange):
+        return Sweep(element, tuple(amount.value for amount in entry), entry[0].unit)
+    space = np.geomspace if entry.spacing == "log" else np.linspace
+    values = space(entry.lower.value, entry.upper.value, entry.points)
+    return Sweep(element, tuple(float(value) for value in values), entry.lower.unit)
+
+
+def _layout_problems(study: Study) -> Iterator[str]:
+    for name, layout in study.layouts.items():
+        if tuple(layout.struts) != MOUNTS[study.model]:
+            yield at(
+                ("layouts", name),
+                "got a table; a quarter car has one strut, so expected its network in quotes, such as "
+                f"{shown(next(iter(layout.struts.values())))}.",
+            )
+            continue
+        alike = len(set(layout.struts.values())) == 1
+        for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
+            place = ("layouts", name) if alike else ("layouts", name, mount)
+            yield from (at(place, problem) for problem in _network_problems(expression, study.elements))
+
+
+def _network_problems(expression: str, elements: dict[str, Element]) -> Iterator[str]:
+    try:
+        unknown = [name for name in names(expression) if name not in elements]
+        for name in unknown:
+            defined = ", ".join(elements)
+            yield (
+                f"got {shown(expression)}: {shown(name)} is not in [elements], where there are {defined}"
+                f".{nearest(name, elements)}"
+            )
+        if not unknown:
+            network(expression, **elements)
+    except NetworkError as error:
+        yield str(error)
+
+
+def _used(study: Study) -> dict[str, list[str]]:
+    """The elements in layouts, each with the layouts that it is in."""
+    used: dict[str, list[str]] = {}
+    for layout, struts in study.layouts.items():
+        for element in dict.fromkeys(name for text in struts.struts.values() for name in _names(text)):
+            used.setdefault(element, []).append(layout)
+    return used
+
+
+def _names(expression: str) -> tuple[str, ...]:
+    try:
+        return names(expression)
+    except NetworkError:  # reported with its layout
+        return ()
+
+
+def _sweep_problems(study: Study) -> Iterator[str]:
+    sweep = study.sweep
+    if sweep is None:
+        return
+    place, name = ("study", "sweep", sweep.element), sweep.element
+    if name not in study.elements:
+        hint = nearest(name, study.elements)
+        yield at(place, f"{shown(name)} is not in [elements], where there are {', '.join(study.elements)}.{hint}")
+        return
+    element = study.elements[name]
+    if isinstance(element.value, Free):
+        yield at(place, f"{name} is free; expected an element with a fixed value. Fix it, or leave the sweep out.")
+    if element.unit != sweep.unit:
+        yield at(place, f"got values in {sweep.unit}, but {name} is in {element.unit}; expected the unit of {name}.")
+    if name not in _used(study):
+        yield at(place, f"{name} is in no layout, so a sweep changes nothing; expected an element that a layout uses.")
+
+
+def _setting_problems(study: Study) -> Iterator[str]:
+    if study.baseline is not None and study.baseline not in study.layouts:
+        known = ", ".join(study.layouts)
+        hint = nearest(study.baseline, study.layouts)
+        yield at(("study", "baseline"), f"got {shown(study.baseline)}; expected a layout, one of {known}.{hint}")
+    if study.high_pass is not None and "J3" not in study.indices:
+        yield at(
+            ("study", "high_pass"), 'a filter of J3, which is not in indices; expected "J3" there, or no high_pass.'
+        )
+
+
+def _free_value_problems(study: Study) -> Iterator[str]:
+    used = [name for name in _used(study) if isinstance(study.elements[name].value, Free)]
+    if used and study.optimise is None:
+        yield at(
+            ("study", "optimise"),
+            f'missing, but there are free values, {", ".join(used)}; expected optimise = "norm", or fixed values.',
+        )
+    if not used and study.optimise is not None:
+        yield at(
+            ("study", "optimise"),
+            f"got {shown(study.optimise)}, but no layout has a free value; expected one such as "
+            f'c = {{ from = "100 N s/m", to = "100 kN s/m" }} in [elements], or no optimise.',
+        )

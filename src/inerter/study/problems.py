@@ -1,0 +1,87 @@
+"""What is wrong with a study file, one line a problem: the place, what arrived, what was expected."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inerter.errors import StudyError
+from inerter.study.schema import SHAPES, Shape
+from inerter.study.suggest import nearest
+from inerter.units import shown
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+    from pydantic_core import ErrorDetails
+
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def refusal(path: Path, problems: Iterable[str]) -> StudyError:
+    """The error that reports all `problems` of the file, one a line."""
+    return StudyError("\n".join(f"{path.name}: {problem}" for problem in problems))
+
+
+def at(place: Iterable[str], sentence: str) -> str:
+    """A problem: its dotted path in the file and a sentence, which may be another exception's."""
+    keys = ".".join(key if _BARE_KEY.fullmatch(key) else shown(key) for key in place)
+    return f"{keys}: {sentence[0].lower()}{sentence[1:]}"
+
+
+def explain(error: ValidationError) -> Iterator[str]:
+    """The problems that the shape of the file has."""
+    for detail in error.errors(include_url=False):
+        place = tuple(str(part) for part in detail["loc"])
+        yield at([key for key in place if not _is_tag(key)], _sentence(detail, place))
+
+
+def _sentence(detail: ErrorDetails, place: tuple[str, ...]) -> str:
+    match detail["type"]:
+        case "value_error":
+            return str(detail["ctx"]["error"])
+        case "missing":
+            return f"missing; expected {_example(place)}."
+        case "extra_forbidden":
+            return _unknown_key(place)
+        case "too_short":
+            return f"none given; expected {_example(place)}."
+        case _:  # model_type, dict_type: everything else is checked by validators of our own
+            return f"got {shown(detail['input'])}: not a table; expected {_example(place)}."
+
+
+def _unknown_key(place: tuple[str, ...]) -> str:
+    key, known = place[-1], _keys(_shape(place[:-1]))
+    sentence = f"unknown key; expected one of {', '.join(known)}."
+    elsewhere = [path for path, shape in SHAPES.items() if path != () and "*" not in path and key in _keys(shape)]
+    for path in elsewhere:
+        if path[0] == "vehicle" == place[0]:
+            return f'{sentence} It is a key of model = "{path[1].strip("<>")}".'
+    return sentence + (f" It belongs in [{elsewhere[0][0]}]." if elsewhere else nearest(key, known))
+
+
+def _example(place: tuple[str, ...]) -> str:
+    """The example of the key at `place`; tags at its end are not keys."""
+    while _is_tag(place[-1]):
+        place = place[:-1]
+    for name, field in _shape(place[:-1]).model_fields.items():
+        if place[-1] in (name, field.alias) and field.examples:
+            return str(field.examples[0])
+    raise KeyError(place)
+
+
+def _shape(place: tuple[str, ...]) -> type[Shape]:
+    for path, shape in SHAPES.items():
+        if len(path) == len(place) and all(a in ("*", b) for a, b in zip(path, place, strict=True)):
+            return shape
+    raise KeyError(place)
+
+
+def _keys(shape: type[Shape]) -> list[str]:
+    return [field.alias or name for name, field in shape.model_fields.items()]
+
+
+def _is_tag(key: str) -> bool:
+    """Which alternative pydantic took, or that a key and not its value is meant: no part of the path in the file."""
+    return key == "[key]" or (key.startswith("<") and key.endswith(">"))

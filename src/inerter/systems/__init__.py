@@ -1,0 +1,1 @@
+"""Matrices: linear systems, and the one place where mechanics becomes matrices."""

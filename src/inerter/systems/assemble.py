@@ -1,0 +1,33 @@
+"""`assemble`: from a vehicle without free values to its linear system."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from inerter.errors import DesignError
+from inerter.systems.descriptor import close, describe
+from inerter.systems.linear import LinearSystem
+from inerter.vehicle.cars import Vehicle
+
+
+def assemble(
+    vehicle: Vehicle, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
+) -> LinearSystem:
+    """State matrices of a vehicle, with road velocities [m/s] and external forces [N] as inputs.
+
+    States are node velocities and spring elongations. Outputs are `<coordinate>_velocity`, `_acceleration` and
+    `_displacement`, `<strut>_force` and `_travel`, `<tyre>_load` and `_deflection`, in SI units. By default all
+    inputs, and every output that needs no further state: a displacement above a moving road drifts with the road, and
+    comes only when it is named.
+
+    Raises `DesignError` if a value is free, `MechanismError` if the mechanism is ill-posed, `LinearSystemError` for
+    an input or output that is not there.
+    """
+    mechanism = vehicle.mechanism()
+    free = ", ".join(mechanism.free_values())
+    if free:
+        raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+    names = (
+        None if names is None else [names] if isinstance(names, str) else list(names) for names in (inputs, outputs)
+    )
+    return close(describe(mechanism, *names), {})

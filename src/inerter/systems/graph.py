@@ -1,0 +1,140 @@
+"""A mechanism as a graph: nodes that move, and elements between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import MechanismError
+from inerter.networks.elements import Element, Network, Parallel, Series
+from inerter.networks.transform import linearise
+from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """An element with its place: its elongation is `nodes` @ node displacements + `roads` @ road displacements."""
+
+    element: Element
+    label: str
+    nodes: Matrix
+    roads: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Mount:
+    """A mounted network: its own elongation, and branches whose forces add up to its force."""
+
+    nodes: Matrix
+    roads: Matrix
+    carriers: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """Nodes (coordinates first, then the massless ones inside networks), branches between them, and mounts by name."""
+
+    nodes: tuple[str, ...]
+    branches: tuple[Branch, ...]
+    mounts: dict[str, Mount]
+    notes: tuple[str, ...]
+
+
+def linear_graph(mechanism: Mechanism) -> Graph:
+    """The graph that linear analysis sees: friction left out, gaps closed, both told in `notes`.
+
+    Raises `MechanismError` if a mounted network then carries no force at all, or is rigid.
+    """
+    networks: dict[str, Network] = {}
+    notes: list[str] = []
+    for mount in mechanism.mounts():
+        linear = linearise(mount.network)
+        if linear.network is None and linear.rigid:
+            raise MechanismError(
+                f"{mount.name!r} is rigid in linear analysis, which closes gaps: {linear.gaps[0]!r} joins its two "
+                f"ends with nothing in between. Put a spring or damper in series with the gap."
+            )
+        if linear.network is None:
+            raise MechanismError(
+                f"{mount.name!r} carries no force in linear analysis, which leaves friction out "
+                f"({', '.join(linear.frictions)}): what it holds is held by nothing. Add a spring, damper or inerter."
+            )
+        networks[mount.name] = linear.network
+        notes += [f"friction {label!r} in {mount.name!r} left out" for label in linear.frictions]
+        notes += [f"gap {label!r} in {mount.name!r} closed" for label in linear.gaps]
+        notes += [f"{label!r} in {mount.name!r} carries no force then" for label in linear.idle]
+    return _expand(mechanism, networks, tuple(notes))
+
+
+def _expand(mechanism: Mechanism, networks: dict[str, Network], notes: tuple[str, ...]) -> Graph:
+    coordinates = [c.name for c in mechanism.coordinates]
+    roads = [r.name for r in mechanism.roads]
+    size = len(coordinates) + sum(_inner_nodes(network) for network in networks.values())
+    builder = _Builder([*coordinates])
+    mounts: dict[str, Mount] = {}
+    for mount in mechanism.mounts():
+        upper, lower = np.zeros(size + len(roads)), np.zeros(size + len(roads))
+        match mount:
+            case Strut():
+                ports = ((upper, mount.upper), (lower, mount.lower))
+            case Tyre():
+                ports = ((upper, mount.port), (lower, {}))
+                lower[size + roads.index(mount.road)] = 1.0
+        for end, port in ports:
+            for name, lever in port.items():
+                end[coordinates.index(name)] = lever
+        carriers = builder.add(mount.name, networks[mount.name], upper, lower)
+        elongation = upper - lower
+        mounts[mount.name] = Mount(elongation[:size], elongation[size:], carriers)
+    labels = _unique([(mount, element.label) for mount, element, _ in builder.branches])
+    branches = tuple(
+        Branch(element, label, row[:size], row[size:])
+        for (_, element, row), label in zip(builder.branches, labels, strict=True)
+    )
+    return Graph(tuple(builder.nodes), branches, mounts, notes)
+
+
+@dataclass
+class _Builder:
+    nodes: list[str]
+    branches: list[tuple[str, Element, Matrix]] = field(default_factory=list)
+
+    def add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> tuple[int, ...]:
+        """Add `network` between two ends; returns the branches whose forces add up to its force."""
+        match network:
+            case Element():
+                self.branches.append((mount, network, upper - lower))
+                return (len(self.branches) - 1,)
+            case Parallel(parts):
+                return sum((self.add(mount, part, upper, lower) for part in parts), ())
+            case Series(parts):
+                ends = [upper, *(self._node(mount, i, upper.size) for i in range(1, len(parts))), lower]
+                carriers = [self.add(mount, part, ends[i], ends[i + 1]) for i, part in enumerate(parts)]
+                return min(carriers, key=len)
+        raise TypeError(f"not a network: {network!r}")
+
+    def _node(self, mount: str, number: int, size: int) -> Matrix:
+        end = np.zeros(size)
+        end[len(self.nodes)] = 1.0
+        self.nodes.append(f"{mount}.node{len(self.nodes)}_{number}")
+        return end
+
+
+def _inner_nodes(network: Network) -> int:
+    match network:
+        case Parallel(parts):
+            return sum(map(_inner_nodes, parts))
+        case Series(parts):
+            return len(parts) - 1 + sum(map(_inner_nodes, parts))
+    return 0
+
+
+def _unique(pairs: list[tuple[str, str]]) -> list[str]:
+    """Plain labels where they are unique, else with the mount before them, else with a number behind them."""
+    labels = [label for _, label in pairs]
+    full = [label if labels.count(label) == 1 else f"{mount}.{label}" for mount, label in pairs]
+    return [name if full.count(name) == 1 else f"{name}{full[: i + 1].count(name)}" for i, name in enumerate(full)]

@@ -1,0 +1,130 @@
+"""Linear systems x' = A x + B u, y = C x + D u, whose inputs may share a source and arrive late."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import LinearSystemError
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class LinearSystem:
+    """A linear system with named states, inputs and outputs.
+
+    `A` (n, n), `B` (n, m), `C` (p, n), `D` (p, m). Input j is the signal `sources[j]` delayed by `delays[j]` seconds;
+    inputs of the same source are one signal that arrives at several places, as a road does at the axles. By default
+    every input is a source of its own and arrives at once.
+
+    Raises `LinearSystemError` if shapes or names do not fit, if a number is not finite, or if a delay is negative.
+    """
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+    states: tuple[str, ...] = ()
+    inputs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
+    delays: Matrix = field(default_factory=lambda: np.zeros(0))
+    sources: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # what was left out on the way here, for a reader
+
+    def __post_init__(self) -> None:
+        for name in "ABCD":
+            matrix = np.asarray(getattr(self, name), dtype=float)
+            if matrix.ndim != 2:
+                raise LinearSystemError(f"{name} must be a matrix, got an array of shape {matrix.shape}.")
+            if not np.all(np.isfinite(matrix)):
+                raise LinearSystemError(f"{name} has entries that are not finite numbers.")
+            object.__setattr__(self, name, matrix)
+        n, m, p = self.A.shape[0], self.B.shape[1], self.C.shape[0]
+        wanted = {"A": (n, n), "B": (n, m), "C": (p, n), "D": (p, m)}
+        for name, shape in wanted.items():
+            if getattr(self, name).shape != shape:
+                raise LinearSystemError(
+                    f"{name} has the shape {getattr(self, name).shape}, but A, B and C ask for {shape}."
+                )
+        for name, letter, count in (("states", "x", n), ("inputs", "u", m), ("outputs", "y", p)):
+            object.__setattr__(self, name, _labels(name, getattr(self, name), letter, count))
+        object.__setattr__(self, "sources", tuple(self.sources) or self.inputs)
+        delays = np.asarray(self.delays, dtype=float)
+        object.__setattr__(self, "delays", delays if delays.size else np.zeros(m))
+        if len(self.sources) != m or self.delays.shape != (m,) or not np.all(self.delays >= 0.0):
+            raise LinearSystemError(f"Each of the {m} inputs needs one source and one delay of zero or more seconds.")
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return int(self.A.shape[0])
+
+    def select(
+        self, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
+    ) -> LinearSystem:
+        """The same system with only the named inputs and outputs, in that order; None keeps all.
+
+        Raises `LinearSystemError` for a name that is not there.
+        """
+        columns = _positions("input", inputs, self.inputs)
+        rows = _positions("output", outputs, self.outputs)
+        return replace(
+            self,
+            B=self.B[:, columns],
+            C=self.C[rows],
+            D=self.D[np.ix_(rows, columns)],
+            inputs=tuple(self.inputs[j] for j in columns),
+            outputs=tuple(self.outputs[i] for i in rows),
+            delays=self.delays[columns],
+            sources=tuple(self.sources[j] for j in columns),
+        )
+
+    def delayed(self, source: str, delays: Sequence[float]) -> LinearSystem:
+        """The same system with all its inputs driven by one `source`, each with its delay [s]."""
+        return replace(self, sources=(source,) * len(self.inputs), delays=np.asarray(delays, dtype=float))
+
+    def __repr__(self) -> str:
+        return (
+            f"LinearSystem({self.order} states; inputs {', '.join(self.inputs) or 'none'}; "
+            f"outputs {', '.join(self.outputs) or 'none'})"
+        )
+
+
+def with_high_pass(system: LinearSystem, omega: float) -> LinearSystem:
+    """`system` with every output filtered by s/(s + omega), omega in rad/s.
+
+    Raises `LinearSystemError` unless omega is positive.
+    """
+    if not omega > 0.0 or not np.isfinite(omega):
+        raise LinearSystemError(f"A high-pass filter needs a corner above 0 rad/s, got {omega!r}.")
+    n, p, m = system.order, len(system.outputs), len(system.inputs)
+    A = np.block([[system.A, np.zeros((n, p))], [system.C, -omega * np.eye(p)]])
+    return replace(
+        system,
+        A=A,
+        B=np.vstack([system.B, system.D.reshape(p, m)]),
+        C=np.hstack([system.C, -omega * np.eye(p)]),
+        states=(*system.states, *(f"{name}_low_pass" for name in system.outputs)),
+    )
+
+
+def _labels(what: str, names: Sequence[str], letter: str, count: int) -> tuple[str, ...]:
+    if not names:
+        return tuple(f"{letter}{i + 1}" for i in range(count))
+    if len(names) != count or len(set(names)) != count:
+        raise LinearSystemError(f"The system has {count} {what}, which need as many different names, got {names}.")
+    return tuple(names)
+
+
+def _positions(what: str, names: Sequence[str] | str | None, known: tuple[str, ...]) -> list[int]:
+    if names is None:
+        return list(range(len(known)))
+    wanted = (names,) if isinstance(names, str) else tuple(names)
+    for name in wanted:
+        if name not in known:
+            raise LinearSystemError(f"There is no {what} named {name!r} (there are: {', '.join(known) or 'none'}).")
+    return [known.index(name) for name in wanted]

@@ -1,0 +1,183 @@
+"""Quantities as text: "120 kN/m" to a number in SI units and back. Pint lives here alone and loads on first use."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from inerter.errors import UnitError
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+ELEMENT_UNITS = {"N/m": "spring", "N s/m": "damper", "kg": "inerter", "N": "friction", "m": "gap"}
+_ELEMENT_EXAMPLES = {"N/m": "120 kN/m", "N s/m": "3000 N s/m", "kg": "300 kg", "N": "10 N", "m": "0.1 mm"}
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*")
+_NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
+# Pint evaluates what it is given, so only names, small exponents and separators reach it.
+_UNIT = re.compile(r"(?:[^\W\d_]++(?:(?:\^|\*\*)-?\d|[²³])?+|[()\s*/·.])+")
+_LONGEST = 100
+
+_PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
+    "N/m": ((1e6, "MN/m"), (1e3, "kN/m"), (1.0, "N/m")),
+    "N s/m": ((1e6, "MN s/m"), (1e3, "kN s/m"), (1.0, "N s/m")),
+    "N": ((1e6, "MN"), (1e3, "kN"), (1.0, "N")),
+    "m": ((1.0, "m"), (1e-3, "mm")),
+}
+
+
+def parse_quantity(text: str, unit: str) -> float:
+    """The number that `text` stands for, expressed in `unit`.
+
+    Cycles are counted, not turned into 2 pi rad: "m^3/cycle" is its own kind; "Hz" becomes 2 pi rad/s.
+
+    Raises `UnitError` unless `text` is a finite number followed by a unit of the same kind as `unit`.
+
+    >>> parse_quantity("120 kN/m", "N/m")
+    120000.0
+    """
+    expected = f"a unit of {unit}"
+    number, given = _split(text, expected, unit)
+    if _dimension(given) != _dimension(unit):
+        problem = f"{_described(given)} is a unit of another kind"
+        _fail(text, problem, expected, f"{_number_of(text)} {_prefixed(given, unit)}")
+    return _converted(text, number, given, unit)
+
+
+def parse_element(text: str) -> tuple[str, float]:
+    """The SI unit that tells the kind of element (a key of `ELEMENT_UNITS`), and the value in that unit.
+
+    Raises `UnitError` unless `text` is a finite number followed by a unit of one of the five kinds.
+
+    >>> parse_element("3.2 kN s/m")
+    ('N s/m', 3200.0)
+    """
+    number, given = _split(text, f"one of {', '.join(ELEMENT_UNITS)}", "N s/m")
+    kind = _dimension(given)
+    for unit in ELEMENT_UNITS:
+        if _dimension(unit) == kind:
+            return unit, _converted(text, number, given, unit)
+    kinds = ", ".join(f"{unit} ({name}, such as {_ELEMENT_EXAMPLES[unit]})" for unit, name in ELEMENT_UNITS.items())
+    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no element; expected one of {kinds}.")
+
+
+def format_quantity(value: float, unit: str, digits: int = 4) -> str:
+    """`value`, given in `unit`, for people: `digits` significant digits and a prefix that suits the size.
+
+    `parse_quantity` reads it back, to that many digits.
+
+    >>> format_quantity(7544.2, "N s/m")
+    '7.544 kN s/m'
+    """
+    rounded = float(f"{value:.{digits}g}")
+    if rounded == 0.0 or not math.isfinite(rounded):
+        return f"{rounded:g} {unit}"
+    choices = _PREFIXES.get(unit, ((1.0, unit),))
+    scale, name = next((choice for choice in choices if abs(rounded) >= choice[0]), choices[-1])
+    return f"{rounded / scale:.12g} {name}"
+
+
+def shown(value: object) -> str:
+    """A value as it stands in a study file, on one line and not too long, for messages."""
+    match value:
+        case dict():
+            return "a table"
+        case list() | tuple():
+            return "a list"
+        case str() | bool():
+            text = json.dumps(value, ensure_ascii=False)
+        case _:
+            text = str(value)
+    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return text if len(text) <= 62 else f"{text[:58]}..." + text[-1] * text.startswith('"')
+
+
+def _split(text: object, expected: str, unit: str) -> tuple[str, str]:
+    """The number and the unit in `text`, the latter known to pint; `unit` is for the example in an error."""
+    example = f"{_number_of(text)} {unit}"
+    if not isinstance(text, str):
+        is_number = isinstance(text, int | float) and not isinstance(text, bool)
+        _fail(text, "a number without a unit" if is_number else "not a quantity in quotes", expected, example)
+    if _NOT_FINITE.match(text):
+        _fail(text, "not a finite number", expected, example)
+    number = _NUMBER.match(text)
+    if number is None:
+        _fail(text, "does not begin with a number", expected, example)
+    given = text[number.end() :].strip()
+    if given.startswith(","):
+        _fail(text, "a comma in a number, where the decimal mark is a point", expected, example)
+    if not given:
+        _fail(text, "no unit", expected, example)
+    if not _is_known(given):
+        why = "is not known (capitals matter; a product needs a space or *)"
+        _fail(text, f"the unit {shown(given)} {why}", expected, example)
+    return number.group(1), given
+
+
+def _number_of(text: object) -> str:
+    """The number in `text` for use in an example, or one that is plausible."""
+    if isinstance(text, int | float) and not isinstance(text, bool) and abs(text) < 1e12:
+        return shown(text)
+    number = _NUMBER.match(text) if isinstance(text, str) and "," not in text else None
+    return number.group(1) if number and len(number.group(1)) < 12 else "120"
+
+
+def _prefixed(given: str, unit: str) -> str:
+    """`unit`, with the k or M of `given` where that is what the author meant ("120 kN" for N/m)."""
+    return given[0] + unit if given[0] in "kM" and given[1:2] == unit[0] else unit
+
+
+def _is_known(unit: str) -> bool:
+    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
+        return False
+    try:
+        _registry().parse_units(unit)
+    except Exception:  # pint's errors share no base: AttributeError, TypeError, AssertionError, tokenize's own
+        return False
+    return True
+
+
+def _converted(text: str, number: str, given: str, unit: str) -> float:
+    up, down = _factors(given, unit)
+    # Dividing by a whole number is exact to the last digit where multiplying by its inverse is not: 0.3 mm = 0.0003 m.
+    value = float(number) * up if up >= 1.0 else float(number) / down
+    if not math.isfinite(value):
+        _fail(text, "too large a number", f"a unit of {unit}", f"120 {unit}")
+    return value
+
+
+@cache
+def _factors(given: str, unit: str) -> tuple[float, float]:
+    registry = _registry()
+    one, other = registry.parse_units(given), registry.parse_units(unit)
+    return float(registry.convert(1.0, one, other)), float(registry.convert(1.0, other, one))
+
+
+@cache
+def _dimension(unit: str) -> object:
+    return _registry().parse_units(unit).dimensionality
+
+
+def _described(given: str) -> str:
+    """The unit as written, and in full: the reader sees that "kn" is a knot."""
+    full = str(_registry().parse_units(given))
+    return f'"{given}"' if full == given else f'"{given}" ({full})'
+
+
+def _fail(text: object, problem: str, expected: str, example: str) -> NoReturn:
+    raise UnitError(f'Got {shown(text)}: {problem}; expected a number with {expected}, such as "{example}".')
+
+
+@cache
+def _registry() -> UnitRegistry[Any]:
+    import pint
+
+    registry: UnitRegistry[Any] = pint.UnitRegistry(on_redefinition="ignore")
+    # Pint has cycle = 2 pi rad and Hz = 1/s, each of which would silently put 2 pi into a road or a frequency.
+    registry.define("cycle = [cycle]")
+    registry.define("hertz = 2 * pi * radian / second = Hz")
+    return registry

@@ -1,0 +1,530 @@
+"""Study files: what a good one means, that it survives being written out, and what is said about a bad one."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inerter.errors import NetworkError, StudyError
+from inerter.networks.elements import Damper, Free, Friction, Gap, Inerter, Spring
+from inerter.signals.road import Road
+from inerter.study.file import StrutLayout, Study, Sweep, load_study, write_resolved
+from inerter.vehicle.cars import HalfCar, QuarterCar
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+
+GOOD = """
+title = "A quarter car"
+[vehicle]
+model = "quarter-car"
+sprung_mass = "181.75 kg"
+unsprung_mass = "25 kg"
+tyre_stiffness = "120 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "60 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+b = "300 kg"
+[layouts]
+S2 = "k | c | b"
+S1 = "k | c"
+[study]
+indices = ["J3", "J1"]
+optimise = "norm"
+"""
+
+HALF = """
+[vehicle]
+model = "half-car"
+sprung_mass = "363.5 kg"
+pitch_inertia = "200 kg m^2"
+unsprung_mass_front = "25 kg"
+unsprung_mass_rear = "20 kg"
+tyre_stiffness_front = "120 kN/m"
+tyre_stiffness_rear = "100 kN/m"
+distance_front = "0.775 m"
+distance_rear = "1.265 m"
+[road]
+speed = "90 km/h"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "120 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+c_r = "2 kN s/m"
+[layouts]
+alike = "k | c"
+unlike = { front = "k | c", rear = "k | c_r" }
+[study]
+indices = ["J5"]
+optimise = "norm"
+"""
+
+
+@pytest.fixture
+def load(tmp_path):
+    """Loads a study from text, with parts of the text replaced first; each part must be there."""
+
+    def load_text(text, *changes):
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new, 1)
+        path = tmp_path / "study.toml"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return load_study(path)
+
+    return load_text
+
+
+# --- what a good file means ---
+
+
+def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tmp_path):
+    assert load(GOOD) == Study(
+        title="A quarter car",
+        path=tmp_path / "study.toml",
+        model="quarter-car",
+        vehicle={"sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
+        road=Road(roughness=5e-7, speed=25.0),
+        elements={
+            "k": Spring(60e3, "k"),
+            "c": Damper(Free(100.0, 100e3, "c"), "c"),
+            "b": Inerter(300.0, "b"),
+        },
+        layouts={"S2": StrutLayout({"strut": "k | c | b"}), "S1": StrutLayout({"strut": "k | c"})},
+        indices=("J3", "J1"),
+        conventions="exact",
+        optimise="norm",
+        evaluate=("norm",),
+        baseline="S2",
+        sweep=None,
+        seed=0,
+        high_pass=None,
+    )
+
+
+def test_the_order_of_the_file_is_kept(load):
+    study = load(GOOD)
+    assert list(study.layouts) == ["S2", "S1"]
+    assert list(study.elements) == ["k", "c", "b"]
+
+
+def test_a_single_layout_has_no_baseline(load):
+    assert load(GOOD, ('S1 = "k | c"', "")).baseline is None
+
+
+def test_a_file_without_a_title_is_called_after_itself(load):
+    assert load(GOOD, ('title = "A quarter car"', "")).title == "study"
+
+
+def test_the_unit_tells_the_kind_of_element(load):
+    study = load(GOOD, ('b = "300 kg"', 'b = "300 kg"\nf = "0 N"\ngap = "0.1 mm"'))
+    assert study.elements["f"] == Friction(0.0, "f")
+    assert study.elements["gap"] == Gap(1e-4, "gap")
+
+
+@pytest.mark.parametrize(("text", "omega"), [("6.28 rad/s", 6.28), ("1 Hz", 2 * math.pi)])
+def test_high_pass_is_an_angular_frequency(load, text, omega):
+    assert load(GOOD, ("[study]", f'[study]\nhigh_pass = "{text}"')).high_pass == pytest.approx(omega, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("sweep", "values"),
+    [
+        ('{ from = "10 kN/m", to = "30 kN/m", points = 3 }', (10e3, 20e3, 30e3)),
+        ('{ from = "1 kN/m", to = "100 kN/m", points = 3, spacing = "log" }', (1e3, 10e3, 100e3)),
+        ('["20 kN/m", "10 N/mm"]', (20e3, 10e3)),
+    ],
+)
+def test_swept_values(load, sweep, values):
+    study = load(GOOD, ("[study]", f"[study]\nsweep = {{ k = {sweep} }}"))
+    assert study.sweep == Sweep("k", pytest.approx(values, rel=1e-14), "N/m")
+    assert study.sweep.values[0] == values[0]
+    assert study.sweep.values[-1] == values[-1]
+
+
+def test_a_design_of_a_quarter_car(load):
+    strut = Spring(60e3, "k") | Damper(Free(100.0, 100e3, "c"), "c")
+    assert load(GOOD).design("S1") == QuarterCar(181.75, 25.0, 120e3, strut)
+
+
+def test_a_swept_value_replaces_the_value_of_the_element(load):
+    study = load(GOOD, ("[study]", '[study]\nsweep = { k = ["20 kN/m", "10 kN/m"] }'))
+    strut = Spring(20e3, "k") | Damper(Free(100.0, 100e3, "c"), "c")
+    assert study.design("S1", 20e3) == QuarterCar(181.75, 25.0, 120e3, strut)
+    assert study.design("S1") == load(GOOD).design("S1")
+
+
+def test_a_design_of_a_half_car(load):
+    study = load(HALF)
+    k, c = Spring(120e3, "k"), Damper(Free(100.0, 100e3, "c"), "c")
+    car = HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, front=k | c, rear=k | Damper(2e3, "c_r"))
+    assert study.design("unlike") == car
+    assert study.design("alike") == replace(car, rear=k | c)
+    assert list(study.design("alike").free_values()) == ["c"]
+
+
+def test_a_design_says_what_it_cannot_be(load):
+    study = load(GOOD)
+    with pytest.raises(StudyError, match=r"'S22'; expected one of S2, S1\. Did you mean \"S2\""):
+        study.design("S22")
+    with pytest.raises(StudyError, match="no sweep"):
+        study.design("S1", 1e3)
+    swept = load(GOOD, ("[study]", '[study]\nsweep = { k = ["20 kN/m", "10 kN/m"] }'))
+    with pytest.raises(NetworkError, match="positive"):
+        swept.design("S1", -1.0)
+
+
+def test_an_element_may_be_unused_or_used_twice(load):
+    study = load(GOOD, ('S1 = "k | c"', 'S1 = "k | k - c"'), ('b = "300 kg"', 'b = "300 kg"\nidle = "1 N"'))
+    assert [element.name for element in study.design("S1").strut.elements()] == ["k", "k", "c"]
+
+
+def test_a_byte_order_mark_and_windows_lines_are_read(load):
+    assert load(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode()) == load(GOOD)
+
+
+# --- there and back ---
+
+
+def assert_survives(study, folder):
+    copy = folder / "copy.toml"
+    copy.write_text(write_resolved(study), encoding="utf-8")
+    again = load_study(copy)
+    assert again == study
+    assert again.resolved() == study.resolved()
+    assert (list(again.layouts), list(again.elements)) == (list(study.layouts), list(study.elements))
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_load_build_and_survive_being_written(path, tmp_path):
+    study = load_study(path)
+    assert {layout: bool(study.design(layout).free_values()) for layout in study.layouts} == dict.fromkeys(
+        study.layouts, True
+    )
+    assert_survives(study, tmp_path)
+
+
+def test_there_are_examples():
+    assert {path.stem for path in EXAMPLES} >= {"quarter-car", "half-car", "stiffness-sweep"}
+
+
+def test_every_setting_survives_being_written(load, tmp_path):
+    settings = """[study]
+high_pass = "1 Hz"
+seed = 7
+conventions = "paper2008"
+baseline = "S1"
+sweep = { k = { from = "1 N/m", to = "3 N/m", points = 11, spacing = "log" } }
+"""
+    names = ('S1 = "k | c"', 'S1 = "k | c"\n"S.3+" = "(k | c) - b"')
+    title = ('"A quarter car"', r'"\"Käfer\" \\ 🚗 \u007f\n\u0000"')
+    study = load(GOOD, ("[study]", settings), names, title)
+    assert study.title == '"Käfer" \\ 🚗 \x7f\n\0'
+    assert_survives(study, tmp_path)
+
+
+def test_a_study_is_the_same_study_in_other_units_and_another_place(load, tmp_path):
+    other = tmp_path / "elsewhere.toml"
+    other.write_text(GOOD.replace("60 kN/m", "60 N/mm").replace("25 m/s", "90 km/h"), encoding="utf-8")
+    assert load_study(other).resolved() == load(GOOD).resolved()
+
+
+@given(st.lists(st.floats(1e-300, 1e300), min_size=7, max_size=7), st.integers(0, 2**63 - 1))
+def test_any_values_survive_to_the_last_bit(tmp_path_factory, numbers, seed):
+    mass, wheel, tyre, speed, k, low, omega = numbers
+    study = Study(
+        title="t",
+        path=Path("t.toml"),
+        model="quarter-car",
+        vehicle={"sprung_mass": mass, "unsprung_mass": wheel, "tyre_stiffness": tyre},
+        road=Road(roughness=k, speed=speed),
+        elements={"k": Spring(k, "k"), "c": Damper(Free(low, 2 * low, "c"), "c"), "b": Inerter(mass, "b")},
+        layouts={"S": StrutLayout({"strut": "k | c | b"})},
+        indices=("J3",),
+        optimise="norm",
+        sweep=Sweep("k", (tyre, 2 * tyre), "N/m"),
+        seed=seed,
+        high_pass=omega,
+    )
+    assert_survives(study, tmp_path_factory.mktemp("study"))
+
+
+# --- what is said about a bad one: the file, the place, and the words that help ---
+
+C = 'c = { from = "100 N s/m", to = "100 kN s/m" }'
+INDICES = 'indices = ["J3", "J1"]'
+
+
+def sweep(text):
+    return (INDICES, f"{INDICES}\nsweep = {text}")
+
+
+BAD = {
+    # quantities
+    "no unit": ([('"300 kg"', '"3000"')], "elements.b", ['"3000"', "no unit", "N/m, N s/m, kg, N, m", '"3000 N s/m"']),
+    "number": ([('"300 kg"', "300")], "elements.b", ["300", "without a unit"]),
+    "true": ([('"300 kg"', "true")], "elements.b", ["true", "not a quantity"]),
+    "date": ([('"300 kg"', "2008-05-01")], "elements.b", ["2008-05-01", "not a quantity"]),
+    "huge number": ([('"300 kg"', "9" * 400)], "elements.b", ["without a unit"]),
+    "unknown unit": ([('"300 kg"', '"300 kq"')], "elements.b", ['"kq"', "not known"]),
+    "no element's unit": ([('"300 kg"', '"300 N m"')], "elements.b", ["no element", "inerter", "gap"]),
+    "wrong unit": ([('"181.75 kg"', '"181.75 N"')], "vehicle.sprung_mass", ["another kind", '"181.75 kg"']),
+    "speed in metres": ([('"25 m/s"', '"25 m"')], "road.speed", ["another kind", '"25 m/s"']),
+    "roughness per metre": ([("5e-7 m^3/cycle", "5e-7 m^3")], "road.roughness", ["another kind", "m^3/cycle"]),
+    "vehicle number": ([('"25 kg"', "25")], "vehicle.unsprung_mass", ["without a unit", '"25 kg"']),
+    "comma": ([('"300 kg"', '"300,5 kg"')], "elements.b", ["comma"]),
+    "nan": ([('"300 kg"', '"nan kg"')], "elements.b", ["not a finite number"]),
+    "infinite": ([('"181.75 kg"', '"inf kg"')], "vehicle.sprung_mass", ["not a finite number"]),
+    "bare nan": ([('"300 kg"', "nan")], "elements.b", ["without a unit"]),
+    "negative element": ([('"300 kg"', '"-300 kg"')], "elements.b", ["not positive", "leave the element out"]),
+    "zero element": ([('"60 kN/m"', '"0 kN/m"')], "elements.k", ["not positive", "more than 0 N/m"]),
+    "negative friction": ([('"300 kg"', '"-3 N"')], "elements.b", ["not positive"]),
+    "negative mass": ([('"181.75 kg"', '"-1 kg"')], "vehicle.sprung_mass", ["not positive", "more than 0 kg"]),
+    "zero speed": ([('"25 m/s"', '"0 m/s"')], "road.speed", ["not positive"]),
+    "underflow": ([('"300 kg"', '"1e-400 kg"')], "elements.b", ["not positive"]),
+    # free values
+    "reversed": ([(C, 'c = { from = "2 N s/m", to = "1 N s/m" }')], "elements.c", ["reversed", '"2 N s/m"', "less"]),
+    "equal": ([(C, 'c = { from = "2 N s/m", to = "2 N s/m" }')], "elements.c", ["equal", "single value"]),
+    "unlike": ([(C, 'c = { from = "2 N s/m", to = "9 N/m" }')], "elements.c", ["unlike units", "N s/m", "N/m"]),
+    "no upper": ([(C, 'c = { from = "2 N s/m" }')], "elements.c.to", ["missing", 'to = "100 kN s/m"']),
+    "zero lower": ([(C, 'c = { from = "0 N s/m", to = "1 N s/m" }')], "elements.c.from", ["not positive"]),
+    "lower word": ([(C, 'c = { frm = "1 kg", to = "2 kg" }')], "elements.c.frm", ["unknown key", '"from"']),
+    "list": ([(C, 'c = ["1 N s/m", "2 N s/m"]')], "elements.c", ["a list"]),
+    # names
+    "element name": ([('b = "300 kg"', '"2b" = "300 kg"')], "elements.2b", ["not a name", "letter"]),
+    "dash in name": ([('b = "300 kg"', 'b-1 = "300 kg"')], "elements.b-1", ["not a name"]),
+    "newline in name": ([('b = "300 kg"', '"b\\n" = "300 kg"')], 'elements."b\\n"', ["not a name"]),
+    "layout name": ([('S1 = "k | c"', '"../S1" = "k | c"')], 'layouts."../S1"', ["not a layout name"]),
+    # layouts
+    "undefined": ([('"k | c | b"', '"k | c | cs"')], "layouts.S2", ['"cs"', "not in [elements]", "k, c, b"]),
+    "syntax": ([('"k | c | b"', '"k | | b"')], "layouts.S2", ["column 5", "expected a name"]),
+    "character": ([('"k | c | b"', '"k + c"')], "layouts.S2", ["column 3", "'+'"]),
+    "bracket": ([('"k | c | b"', '"k | (c - b"')], "layouts.S2", ["column 11", "')'"]),
+    "empty": ([('"k | c | b"', '""')], "layouts.S2", ["empty", "k | c - b"]),
+    "number for layout": ([('"k | c | b"', "3")], "layouts.S2", ["got 3", "a network in quotes"]),
+    "deep": ([('"k | c | b"', f'"{"(" * 90}k{")" * 90}"')], "layouts.S2", ["90 brackets", "fewer"]),
+    "no layouts": ([('S2 = "k | c | b"\nS1 = "k | c"', "")], "layouts", ["none given", 'S1 = "k | c"']),
+    "two struts": ([('"k | c | b"', '{ front = "k", rear = "c" }')], "layouts.S2", ["a table", "one strut"]),
+    "one axle": ([('"k | c | b"', '{ front = "k" }')], "layouts.S2.rear", ["missing", 'rear = "k | c"']),
+    "axle name": ([('"k | c | b"', '{ fornt = "k", rear = "k" }')], "layouts.S2.fornt", ["unknown key", '"front"']),
+    # keys and sections
+    "top key": ([("title", "titel")], "titel", ["unknown key", 'Did you mean "title"?']),
+    "section": ([("[road]", "[raod]")], "raod", ["unknown key", 'Did you mean "road"?']),
+    "section missing": ([("[road]", "[raod]")], "road", ["missing", "[road]", "speed"]),
+    "vehicle key": ([("unsprung_mass", "unsprng_mass")], "vehicle.unsprng_mass", ['Did you mean "unsprung_mass"?']),
+    "key missing": ([('sprung_mass = "181.75 kg"\n', "")], "vehicle.sprung_mass", ["missing", '"181.75 kg"']),
+    "half car's key": ([('"25 kg"', '"25 kg"\npitch_inertia = "1 kg m^2"')], "vehicle.pitch_inertia", ['"half-car"']),
+    "misplaced": ([("[elements]", "seed = 3\n[elements]")], "road.seed", ["unknown key", "belongs in [study]"]),
+    "not a section": ([("[vehicle]", "road = 3\n[vehicle]"), ("[road]", "[r]")], "road", ["got 3", "not a table"]),
+    "model": ([('"quarter-car"', '"quarter_car"')], "vehicle.model", ['"half-car"', 'Did you mean "quarter-car"?']),
+    "no model": ([('model = "quarter-car"', "")], "vehicle.model", ["missing", 'model = "quarter-car"']),
+    "model number": ([('"quarter-car"', "4")], "vehicle.model", ["got 4", "available in this version"]),
+    "title": ([('"A quarter car"', '" "')], "title", ["expected text"]),
+    # settings
+    "index": ([('"J3", "J1"', '"J3", "J2"')], "study.indices", ['"J2"', '"J1", "J3", "J5"', "this version"]),
+    "index twice": ([('"J3", "J1"', '"J3", "J3"')], "study.indices", ['"J3"', "more than once"]),
+    "no index": ([('["J3", "J1"]', "[]")], "study.indices", ["empty list", '["J1"]']),
+    "index word": ([('["J3", "J1"]', '"J3"')], "study.indices", ['"J3"', "expected a list"]),
+    "indices missing": ([(INDICES, "")], "study.indices", ["missing", '["J1", "J3", "J5"]']),
+    "optimise": ([('optimise = "norm"', 'optimise = "nrom"')], "study.optimise", ['"nrom"', 'Did you mean "norm"?']),
+    "evaluate": (
+        [(INDICES, INDICES + '\nevaluate = ["norm", "expected-value"]')],
+        "study.evaluate",
+        ['"expected-value"', "available in this version", '"norm"'],
+    ),
+    "conventions": ([(INDICES, INDICES + '\nconventions = "paper"')], "study.conventions", ['"paper2008"']),
+    "seed": ([(INDICES, INDICES + "\nseed = -1")], "study.seed", ["got -1", "whole number"]),
+    "seed text": ([(INDICES, INDICES + '\nseed = "1"')], "study.seed", ['got "1"', "without quotes"]),
+    "high pass unit": ([(INDICES, INDICES + '\nhigh_pass = "1 s"')], "study.high_pass", ["another kind", "rad/s"]),
+    "idle high pass": (
+        [(INDICES, 'indices = ["J1"]\nhigh_pass = "1 Hz"')],
+        "study.high_pass",
+        ["filter of J3", "not in indices"],
+    ),
+    "baseline": ([(INDICES, INDICES + '\nbaseline = "S9"')], "study.baseline", ['"S9"', "S2, S1"]),
+    "nothing optimises": ([('optimise = "norm"', "")], "study.optimise", ["missing", "free values, c;", '"norm"']),
+    "nothing is free": ([(C, 'c = "3 kN s/m"')], "study.optimise", ['"norm"', "no layout has a free value"]),
+    "free but unused": (
+        [('"k | c | b"', '"k | b"'), ('"k | c"', '"k"')],
+        "study.optimise",
+        ["no layout has a free value"],
+    ),
+    # sweeps
+    "sweep unknown": ([sweep('{ q = ["1 N/m", "2 N/m"] }')], "study.sweep.q", ["not in [elements]", "k, c, b"]),
+    "sweep free": ([sweep('{ c = ["1 N s/m", "2 N s/m"] }')], "study.sweep.c", ["c is free", "fixed value"]),
+    "sweep unused": (
+        [sweep('{ f = ["1 N", "2 N"] }'), ('b = "300 kg"', 'b = "300 kg"\nf = "3 N"')],
+        "study.sweep.f",
+        ["in no layout"],
+    ),
+    "sweep unit": ([sweep('{ k = ["1 kg", "2 kg"] }')], "study.sweep.k", ["in kg", "k is in N/m"]),
+    "sweep units": ([sweep('{ k = ["1 N/m", "2 kg"] }')], "study.sweep.k", ["unlike units"]),
+    "sweep twice": ([sweep('{ k = ["1 N/m", "1 N/m"] }')], "study.sweep.k", ["same value"]),
+    "sweep of one": ([sweep('{ k = ["1 N/m"] }')], "study.sweep.k", ["list of 1", "expected 2 to 10000"]),
+    "sweep of zero": ([sweep('{ k = ["0 N/m", "1 N/m"] }')], "study.sweep.k", ["not positive"]),
+    "sweep word": ([sweep('{ k = "10 kN/m" }')], "study.sweep.k", ['"10 kN/m"', "points = 30"]),
+    "sweep text": ([sweep('"k"')], "study.sweep", ["not a table", "points = 30"]),
+    "no sweep": ([sweep("{}")], "study.sweep", ["0 swept elements", "exactly one"]),
+    "two sweeps": (
+        [sweep('{ k = ["1 N/m", "2 N/m"], b = ["1 kg", "2 kg"] }')],
+        "study.sweep",
+        ["2 swept elements", '"k", "b"', "exactly one"],
+    ),
+    "one point": (
+        [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 1 } }')],
+        "study.sweep.k.points",
+        ["got 1", "from 2 to 10000"],
+    ),
+    "too many points": (
+        [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 10001 } }')],
+        "study.sweep.k.points",
+        ["got 10001"],
+    ),
+    "half a point": (
+        [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 2.5 } }')],
+        "study.sweep.k.points",
+        ["got 2.5", "whole number"],
+    ),
+    "no points": ([sweep('{ k = { from = "1 N/m", to = "2 N/m" } }')], "study.sweep.k.points", ["missing"]),
+    "sweep reversed": (
+        [sweep('{ k = { from = "2 N/m", to = "1 N/m", points = 5 } }')],
+        "study.sweep.k",
+        ["reversed"],
+    ),
+    "spacing": (
+        [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 5, spacing = "lin" } }')],
+        "study.sweep.k.spacing",
+        ['"lin"', '"linear", "log"'],
+    ),
+    "log from zero": (
+        [
+            sweep('{ b = { from = "0 N", to = "2 N", points = 5, spacing = "log" } }'),
+            ('b = "300 kg"', 'b = "300 N"'),
+        ],
+        "study.sweep.b",
+        ["from zero", '"linear"'],
+    ),
+}
+
+
+@pytest.mark.parametrize(("changes", "place", "words"), BAD.values(), ids=BAD)
+def test_a_bad_file_is_refused_with_the_place_and_what_to_try(load, changes, place, words):
+    with pytest.raises(StudyError) as caught:
+        load(GOOD, *changes)
+    lines = str(caught.value).splitlines()
+    assert all(line.startswith("study.toml: ") for line in lines)
+    (line,) = [line for line in lines if line.startswith(f"study.toml: {place}: ")]
+    assert [word for word in words if word not in line] == []
+    assert line.endswith((".", "?"))
+    assert "Value error" not in line
+    assert "pydantic" not in line
+
+
+@pytest.mark.parametrize("name", sorted(BAD.keys() - {"section", "section missing", "not a section"}))
+def test_one_mistake_is_one_line_or_belongs_to_the_same_key(load, name):
+    changes, place, _ = BAD[name]
+    with pytest.raises(StudyError) as caught:
+        load(GOOD, *changes)
+    parent = place.rpartition(".")[0]
+    assert all(line.startswith(f"study.toml: {parent}") for line in str(caught.value).splitlines())
+
+
+def test_a_half_car_is_checked_as_one(load):
+    with pytest.raises(StudyError) as caught:
+        load(
+            HALF,
+            ("pitch_inertia", "pich_inertia"),
+            ('"0.775 m"', '"0.775 kg"'),
+            ("tyre_stiffness_rear", "tyre_stiffness"),
+        )
+    message = str(caught.value)
+    assert "vehicle.pich_inertia: unknown key" in message
+    assert 'Did you mean "pitch_inertia"?' in message
+    assert 'vehicle.pitch_inertia: missing; expected pitch_inertia = "200 kg m^2".' in message
+    assert "vehicle.distance_front: " in message
+    assert 'It is a key of model = "quarter-car".' in message
+
+
+def test_every_undefined_name_is_reported(load):
+    with pytest.raises(StudyError) as caught:
+        load(GOOD, ('"k | c | b"', '"k | cs | kk"'))
+    assert ['"cs" is not' in line or '"kk" is not' in line for line in str(caught.value).splitlines()] == [True, True]
+
+
+def test_a_mistake_at_one_axle_names_it_and_at_both_is_reported_once(load):
+    with pytest.raises(StudyError) as caught:
+        load(HALF, ('"k | c_r"', '"k | c_x"'), ('"k | c"', '"k | x"'))
+    first, second = str(caught.value).splitlines()
+    assert first.startswith("study.toml: layouts.alike: ")
+    assert second.startswith("study.toml: layouts.unlike.rear: ")
+    assert 'Did you mean "c_r"?' in second
+
+
+def test_all_problems_are_reported_together(load):
+    with pytest.raises(StudyError) as caught:
+        load(GOOD, ('"300 kg"', '"300"'), ('"25 m/s"', "25"), ("title", "titel"), ('"J3", "J1"', '"J9"'))
+    places = {line.split(": ")[1] for line in str(caught.value).splitlines()}
+    assert places == {"titel", "road.speed", "elements.b", "study.indices"}
+
+
+def test_problems_between_sections_are_reported_together(load):
+    with pytest.raises(StudyError) as caught:
+        load(GOOD, ('"k | c | b"', '"k | x"'), sweep('{ y = ["1 N", "2 N"] }'), (INDICES, INDICES + '\nbaseline = "z"'))
+    places = [line.split(": ")[1] for line in str(caught.value).splitlines()]
+    assert places == ["layouts.S2", "study.sweep.y", "study.baseline"]
+
+
+def test_values_all_fixed_need_no_optimiser(load):
+    assert load(GOOD, (C, 'c = "3 kN s/m"'), ('optimise = "norm"', "")).optimise is None
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("k = 120 kN/m\n", ["line 1, column 9", "quoted"]),
+        ('a = 1\n\nb = "x', ["line 3, column 7", "not valid TOML"]),
+        ("[vehicle\n", ["line 1", "not valid TOML"]),
+        ("[a]\nb = 1\nb = 2\n", ["line 3", "given twice"]),
+        ("[a]\n[b]\n[a]\n", ["line 3", "given twice"]),
+        ("a = { b = 1, b = 2 }\n", ["line 1", "given twice"]),
+        (b"[vehicle]\nmodel = '\xff'\n", ["line 2", "not UTF-8", "save"]),
+        ("a = " + "[" * 100_000, ["nested too deeply"]),
+        ("a = " + "9" * 5000, ["number too long"]),
+        ("#" * 1_000_001, ["larger than"]),
+        ("", ["vehicle: missing", "study: missing"]),
+    ],
+    ids=lambda value: None if isinstance(value, list) else repr(value[:12]),
+)
+def test_text_that_is_no_study_is_refused(load, text, words):
+    with pytest.raises(StudyError) as caught:
+        load(text)
+    assert all(line.startswith("study.toml: ") for line in str(caught.value).splitlines())
+    assert [word for word in words if word not in str(caught.value)] == []
+
+
+def test_a_missing_file_and_a_folder_are_refused_by_path(tmp_path):
+    with pytest.raises(StudyError, match=r"absent\.toml: there is no such file"):
+        load_study(tmp_path / "absent.toml")
+    with pytest.raises(StudyError, match="this is a folder"):
+        load_study(str(tmp_path))
+
+
+@given(st.dictionaries(st.text(max_size=5), st.text(max_size=12), max_size=4), st.sampled_from(["elements", "layouts"]))
+def test_any_names_and_texts_are_a_study_or_a_study_error(tmp_path_factory, entries, section):
+    lines = [f"{json.dumps(key)} = {json.dumps(value)}" for key, value in entries.items()]
+    path = tmp_path_factory.mktemp("study") / "study.toml"
+    path.write_text(GOOD.replace(f"[{section}]\n", "\n".join([f"[{section}]", *lines, ""])), encoding="utf-8")
+    try:
+        study = load_study(path)
+    except StudyError as error:
+        lines = str(error).splitlines()
+    else:
+        lines = []
+        assert [study.design(layout).strut for layout in study.layouts]
+    assert [line for line in lines if not line.startswith("study.toml: ")] == []

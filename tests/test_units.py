@@ -1,0 +1,189 @@
+"""Quantities as text: what they are worth, what is refused, and that they survive the way there and back."""
+
+import math
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inerter.errors import UnitError
+from inerter.units import ELEMENT_UNITS, format_quantity, parse_element, parse_quantity, shown
+
+UNITS = (*ELEMENT_UNITS, "kg m^2", "m/s", "m^3/cycle", "rad/s")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("120 kN/m", "N/m", 120e3),
+        ("120kN/m", "N/m", 120e3),
+        (" 120  kN / m ", "N/m", 120e3),
+        ("120 N/mm", "N/m", 120e3),
+        ("1.2e5 N m^-1", "N/m", 120e3),
+        ("3000 N s/m", "N s/m", 3000.0),
+        ("3000 N*s/m", "N s/m", 3000.0),
+        ("3 kN·s/m", "N s/m", 3000.0),
+        ("3000 kg/s", "N s/m", 3000.0),
+        ("0.3 t", "kg", 300.0),
+        ("250 g", "kg", 0.25),
+        ("0.3 mm", "m", 0.0003),
+        ("90 km/h", "m/s", 25.0),
+        ("200 kg m^2", "kg m^2", 200.0),
+        ("200 kg m²", "kg m^2", 200.0),
+        ("5e-7 m^3/cycle", "m^3/cycle", 5e-7),
+        ("6.28 rad/s", "rad/s", 6.28),
+        ("-10 N", "N", -10.0),
+        ("+.5 N", "N", 0.5),
+    ],
+)
+def test_quantity(text, unit, value):
+    assert parse_quantity(text, unit) == value
+
+
+def test_imperial_units_by_their_definitions():
+    pound_force = 0.45359237 * 9.80665  # exact: international pound and standard gravity
+    assert parse_quantity("10 lbf/in", "N/m") == pytest.approx(10 * pound_force / 0.0254, rel=1e-12)
+
+
+def test_powers_of_prefixes():
+    assert parse_quantity("500 mm^3/cycle", "m^3/cycle") == pytest.approx(5e-7, rel=1e-14)
+
+
+def test_a_hertz_is_two_pi_radians_per_second():
+    assert parse_quantity("1 Hz", "rad/s") == pytest.approx(2 * math.pi, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("120 kN/m", "N/m", 120e3),
+        ("3.2 kN s/m", "N s/m", 3200.0),
+        ("0.3 t", "kg", 300.0),
+        ("1 kgf", "N", 9.80665),
+        ("0.1 mm", "m", 1e-4),
+    ],
+)
+def test_the_unit_tells_the_element(text, unit, value):
+    assert parse_element(text) == (unit, value)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("120", ("no unit", '"120 N/m"')),
+        ("120 kN", ("another kind", "kilonewton", '"120 kN/m"')),
+        ("10 kn/m", ("knot", "N/m")),
+        ("10 KN/m", ("not known", "capitals")),
+        ("10 foo", ("not known", '"foo"')),
+        ("5 kNs/m", ("not known", "space")),
+        ("N/m", ("begin with a number",)),
+        ("", ("begin with a number",)),
+        ("stiff", ("begin with a number",)),
+        ("1,5 N/m", ("comma", "point")),
+        ("1_000 N/m", ("not known",)),
+        ("nan N/m", ("not a finite number",)),
+        ("-inf N/m", ("not a finite number",)),
+        ("Infinity N/m", ("not a finite number",)),
+        ("1e400 N/m", ("too large",)),
+        ("1e308 GN/m", ("too large",)),
+        ("5 degC", ("another kind",)),
+        ("5 dBm", ("another kind",)),
+        ("5 N/m)", ("not known",)),
+        ("5 N/m*", ("not known",)),
+        ("5 m^9^9^9^9", ("not known",)),
+        ("5 __import__('os')", ("not known",)),
+        ("5 " + "(" * 5000, ("not known",)),
+        ("5\nN\n/m\nx", ("not known", r"\n")),
+        (120, ("number without a unit", '"120 N/m"')),
+        (10**400, ("number without a unit",)),
+        (True, ("not a quantity", "true")),
+        (None, ("not a quantity",)),
+        (["120 N/m"], ("not a quantity", "a list")),
+        ({"from": "1 N/m"}, ("not a quantity", "a table")),
+    ],
+)
+def test_what_is_not_a_stiffness_is_refused_in_one_sentence(text, words):
+    with pytest.raises(UnitError) as caught:
+        parse_quantity(text, "N/m")
+    message = str(caught.value)
+    assert all(word in message for word in (*words, "expected", "such as"))
+    assert "\n" not in message
+    assert len(message) < 300
+
+
+@pytest.mark.parametrize("text", ["5e-7 m^3", "5e-7 m^3/rad"])
+def test_a_roughness_counts_cycles(text):
+    with pytest.raises(UnitError, match="another kind"):
+        parse_quantity(text, "m^3/cycle")
+
+
+def test_an_angular_frequency_in_cycles_is_not_taken_for_radians():
+    with pytest.raises(UnitError, match="another kind"):
+        parse_quantity("1 cycle/s", "rad/s")
+
+
+@pytest.mark.parametrize("text", ["1 m/s", "1 N m", "1 kg m^2", "1 rad", "1 percent"])
+def test_the_unit_of_no_element_is_refused_with_all_five(text):
+    with pytest.raises(UnitError) as caught:
+        parse_element(text)
+    assert all(f"{unit} ({name}" in str(caught.value) for unit, name in ELEMENT_UNITS.items())
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False), st.sampled_from(UNITS))
+def test_si_text_reads_back_to_the_last_bit(value, unit):
+    assert parse_quantity(f"{value!r} {unit}", unit) == value
+
+
+@given(
+    st.floats(-1e15, 1e15).filter(lambda value: value == 0.0 or abs(value) > 1e-15),
+    st.sampled_from(UNITS),
+    st.integers(2, 9),
+)
+def test_formatted_text_reads_back_to_its_digits(value, unit, digits):
+    read = parse_quantity(format_quantity(value, unit, digits), unit)
+    assert read == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits), abs=0.0)
+
+
+@given(st.text(max_size=30), st.sampled_from(UNITS))
+def test_any_text_is_a_number_or_a_unit_error(text, unit):
+    for candidate in (text, "1 " + text):
+        try:
+            value = parse_quantity(candidate, unit)
+        except UnitError:
+            continue
+        assert math.isfinite(value)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (120e3, "N/m", "120 kN/m"),
+        (7544.2, "N s/m", "7.544 kN s/m"),
+        (366.54, "kg", "366.5 kg"),
+        (12345.6, "kg", "12350 kg"),
+        (999.96, "N", "1 kN"),
+        (0.5, "N", "0.5 N"),
+        (0.0, "N", "0 N"),
+        (1e-4, "m", "0.1 mm"),
+        (1.265, "m", "1.265 m"),
+        (2.5e6, "N/m", "2.5 MN/m"),
+        (5e-7, "m^3/cycle", "5e-07 m^3/cycle"),
+        (-3200.0, "N s/m", "-3.2 kN s/m"),
+    ],
+)
+def test_format_chooses_prefix_and_digits(value, unit, text):
+    assert format_quantity(value, unit) == text
+
+
+@pytest.mark.parametrize("value", ["x" * 500, 10**400, "a\nb\x7f\x85\u2028", '"' * 500])
+def test_shown_is_one_short_line(value):
+    assert len(shown(value)) < 70
+    assert len(shown(value).splitlines()) == 1
+
+
+def test_pint_is_loaded_by_the_first_quantity_only():
+    before, after = (f"assert 'pint' {state} sys.modules" for state in ("not in", "in"))
+    code = f"import sys, inerter.units as u; {before}; u.parse_quantity('1 N', 'N'); {after}"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -127,17 +127,21 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
                     count += 1
             grid[count] = abs(poles[k])
             count += 1
-    grid = np.sort(grid[:count])
+    ordered = np.sort(grid[:count])
     values = np.empty(count)
-    for k in range(count):
-        values[k] = modal_gain(poles, residues, D[0, 0], grid[k])
+    count = 0
+    for omega in ordered:  # points of equal gain count once, or the top of a peak between two of them would be lost
+        value = modal_gain(poles, residues, D[0, 0], omega)
+        if count == 0 or abs(value - values[count - 1]) > 1e-11 * value:
+            grid[count], values[count] = omega, value
+            count += 1
     omegas, found = np.empty(count), np.empty(count)
     number = 0
-    if values[0] >= values[1] * (1.0 - 1e-12):
+    if count == 1 or values[0] > values[1]:
         omegas[0], found[0] = 0.0, gain_at(A, B, C, D, 0.0)
         number = 1
     for k in range(1, count - 1):
-        if values[k] > values[k - 1] * (1.0 + 1e-11) and values[k] >= values[k + 1]:
+        if values[k] > values[k - 1] and values[k] > values[k + 1]:
             low, high = grid[k - 1], grid[k + 1]
             a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
             ga, gb = modal_gain(poles, residues, D[0, 0], a), modal_gain(poles, residues, D[0, 0], b)

@@ -17,7 +17,7 @@ from inerter.systems.linear import LinearSystem
 
 Matrix = NDArray[np.float64]
 Gain = Callable[[Matrix], Matrix]
-_RISE = 1e-11  # a smaller relative rise of the gain is rounding, not a peak
+_RISE = 1e-11  # a smaller relative change of the gain is rounding
 
 
 @dataclass(frozen=True)
@@ -107,20 +107,25 @@ def _grid(poles: NDArray[np.complex128]) -> Matrix:
 
 
 def _peaks(gain: Gain, grid: Matrix, D: Matrix) -> list[Peak]:
-    values = gain(grid)
-    inner = np.flatnonzero(
-        (values[1:-1] >= values[:-2])
-        & (values[1:-1] >= values[2:])
-        & (values[1:-1] > np.minimum(values[:-2], values[2:]) * (1.0 + _RISE))
-    )
+    grid, values = _without_level_steps(grid, gain(grid))
+    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] > values[2:]))
     found = [_refine(gain, grid[i], grid[i + 1], grid[i + 2]) for i in inner]
-    if values[0] > values[1] * (1.0 + _RISE) or np.all(np.abs(values - values[0]) <= _RISE * values[0]):
+    if values.size == 1 or values[0] > values[1]:
         found.append(Peak(0.0, float(values[0])))
     at_infinity = float(np.linalg.norm(D, 2)) if D.size else 0.0
     if at_infinity > values[-1]:
         found.append(Peak(np.inf, at_infinity))
     found = [peak for peak in found if peak.gain > 0.0]
     return _distinct(sorted(found, key=lambda peak: -peak.gain))
+
+
+def _without_level_steps(grid: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
+    """Points of equal gain count once, or the top of a peak between two of them would be lost."""
+    kept = [0]
+    for i, value in enumerate(values.tolist()):
+        if abs(value - values[kept[-1]]) > _RISE * value:
+            kept.append(i)
+    return grid[kept], values[kept]
 
 
 def _refine(gain: Gain, left: float, middle: float, right: float) -> Peak:

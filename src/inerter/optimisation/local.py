@@ -7,6 +7,7 @@ two or more are equally large: there the level that all of them stay below is mi
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.optimize
@@ -102,13 +103,14 @@ def _lowest_level(objective: Objective, x: Array, known: Array, low: Array, high
     direction[-1] = 1.0
     first = np.append(x, 0.0)
     first[-1] = float(components(first)[0].max())
-    result = scipy.optimize.minimize(
+    minimize: Any = scipy.optimize.minimize  # the stubs do not know this form of constraints
+    result = minimize(
         lambda z: z[-1],
         first,
         jac=lambda z: direction,
         method="SLSQP",
         bounds=scipy.optimize.Bounds(np.append(low, -np.inf), np.append(high, np.inf)),
-        constraints=[{"type": "ineq", "fun": slack, "jac": slack_jacobian}],
+        constraints={"type": "ineq", "fun": slack, "jac": slack_jacobian},
         options={"maxiter": 100, "ftol": 1e-13},
     )
     found = np.clip(result.x[:-1], low, high)

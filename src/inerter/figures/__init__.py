@@ -1,0 +1,1 @@
+"""Figures of results: every function takes results and axes, computes nothing, and returns the axes."""

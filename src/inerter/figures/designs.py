@@ -1,0 +1,104 @@
+"""Figures of the best designs of a study without a sweep: improvements, and frequency responses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from inerter.figures.labels import axis_label, capital, compared, index_title, indices, layouts, one_method, typeset
+from inerter.figures.style import LayoutStyle, layout_styles, log_axis
+
+Array = NDArray[np.float64]
+
+IMPROVEMENT = "Improvement over the baseline [%]"
+WORST = -100.0  # per cent; what is worse still is cut here, so that the others can be read
+_WINDOW = 50.0  # how far below the least of the highest gains a frequency response is shown
+_MOST_LEVEL_NUMBERS = 15  # above more bars than these the numbers stand upright
+_WIDEST_BAR = 0.28  # of the distance between two groups
+
+
+def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
+    """The improvement of every layout over the baseline, in groups by index. For a study without a sweep."""
+    results = one_method(results)
+    names, styles = compared(results), layout_styles(layouts(results), results.attrs["baseline"])
+    groups = np.arange(results.sizes["index"])
+    width = min(0.84 / max(len(names), 1), _WIDEST_BAR)
+    upright = len(names) * groups.size > _MOST_LEVEL_NUMBERS
+    for i, name in enumerate(names):
+        _bars(ax, results.sel(layout=name), groups + (i - (len(names) - 1) / 2) * width, width, styles[name], upright)
+    if names:
+        ax.axhline(0.0, **styles[results.attrs["baseline"]].curve() | {"linewidth": 1.0})
+    low, high = ax.dataLim.intervaly if names else (0.0, 0.0)
+    span = max(high - low, 1.0)
+    room = (0.26 if upright else 0.12) * span
+    ax.set_ylim(low - (room if low < 0.0 else 0.03 * span), high + room)
+    ax.set_xlim(-0.5, groups.size - 0.5)
+    ax.set_xticks(groups, [f"{index}\n{index_title(results, index)}" for index in indices(results)])
+    ax.tick_params(axis="x", length=0)
+    ax.grid(visible=False, axis="x")
+    ax.set_ylabel(IMPROVEMENT)
+    return ax
+
+
+def frequency_responses(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
+    """The gain over frequency of each layout's best design for `index`, one of `axes` for each output."""
+    dimension, styles = f"output_{index}", layout_styles(layouts(results), results.attrs["baseline"])
+    gain = results[f"gain_{index}"].transpose(dimension, "layout", "omega").sel(layout=layouts(results))
+    frequency = gain["omega"].values / (2.0 * np.pi)
+    for ax, panel in zip(axes, gain, strict=True):
+        curves = np.where(np.isfinite(panel.values) & (panel.values > 0.0), panel.values, np.nan)
+        for name, curve in zip(layouts(results), curves, strict=True):
+            ax.plot(frequency, curve, **styles[name].curve())
+        _show_peaks(ax, frequency, curves)
+        ax.set_xlabel("Frequency [Hz]")
+        ax.set_ylabel(axis_label(capital(gain.attrs["long_name"]), gain.attrs["units"]))
+        if len(axes) > 1:
+            ax.set_title(str(panel[dimension].item()).replace("_", " ").capitalize())
+    return axes
+
+
+def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutStyle, upright: bool) -> None:
+    """The bars of one layout, each with its number."""
+    values = row["improvement"].values
+    heights = np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), WORST, None)
+    look = {"color": style.colour, "hatch": style.hatch, "edgecolor": "white", "linewidth": 0.4}
+    ax.bar(places, heights, 0.92 * width, label=style.label, **look)
+    for place, height, text in zip(places, heights, _numbers(values, row["value"].values), strict=True):
+        ax.annotate(
+            text,
+            (place, height),
+            xytext=(0, 2 if height >= 0.0 else -2),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if height >= 0.0 else "top",
+            rotation=90 if upright else 0,
+            fontsize=6.5,
+        )
+
+
+def _numbers(improvements: Array, values: Array) -> Iterator[str]:
+    for improvement, value in zip(improvements.tolist(), values.tolist(), strict=True):
+        if np.isinf(value):
+            yield "inf"
+        elif not np.isfinite(improvement):
+            yield "n/a"
+        else:
+            number = typeset(f"{improvement:.1f}".replace("-0.0", "0.0"))
+            yield f"{number} ↓" if improvement < WORST else number
+
+
+def _show_peaks(ax: Axes, frequency: Array, curves: Array) -> None:
+    """Logarithmic axes around the peaks of all curves; the long tails are left out."""
+    highest = [np.nanmax(curve) for curve in curves if np.any(np.isfinite(curve))]
+    if not highest:
+        return
+    floor = min(highest) / _WINDOW
+    inside = frequency[np.any(curves > floor, axis=0)]
+    ax.set_xlim(inside.min(), inside.max())
+    ax.set_ylim(floor, 1.5 * max(highest))
+    log_axis(ax, "x")
+    log_axis(ax, "y")

@@ -1,0 +1,112 @@
+"""What a results dataset says of itself, in words and numbers for people."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from inerter.units import format_quantity, parse_quantity
+
+_POWER = re.compile(r"\^(-?\d)")
+_EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A unit that suits the size of some values; a value in SI units times `factor` is in it."""
+
+    factor: float
+    unit: str
+
+
+def one_method(results: xr.Dataset) -> xr.Dataset:
+    """The results by the first of the methods, which is the one that figures and tables are about."""
+    return results.isel(method=0, drop=True) if "method" in results.dims else results
+
+
+def swept_element(results: xr.Dataset) -> str | None:
+    """The element that the study sweeps; its name is also that of the dimension."""
+    return next((str(name) for name in results["status"].dims if name not in ("layout", "index")), None)
+
+
+def layouts(results: xr.Dataset) -> list[str]:
+    """Names of all layouts, the baseline (if there is one) first, the others in the order of the study."""
+    names: list[str] = results["layout"].values.tolist()
+    return sorted(names, key=lambda name: name != results.attrs["baseline"])
+
+
+def compared(results: xr.Dataset) -> list[str]:
+    """The layouts that are compared with the baseline."""
+    return layouts(results)[1:] if results.attrs["baseline"] else []
+
+
+def indices(results: xr.Dataset) -> list[str]:
+    """Symbols of the indices, in the order of the study."""
+    names: list[str] = results["index"].values.tolist()
+    return names
+
+
+def index_title(results: xr.Dataset, index: str) -> str:
+    """The name of an index in words, such as "ride comfort"."""
+    return str(results["index_title"].sel(index=index).item())
+
+
+def index_unit(results: xr.Dataset, index: str) -> str:
+    """The unit of an index."""
+    return str(results["index_unit"].sel(index=index).item())
+
+
+def capital(text: str) -> str:
+    """The text as the beginning of a sentence."""
+    return text[:1].upper() + text[1:]
+
+
+def quantity(value: float, unit: str) -> str:
+    """A value for people: four digits and a prefix, "inf", or "n/a" where there is none."""
+    if np.isnan(value):
+        return "n/a"
+    return "inf" if np.isinf(value) else format_quantity(value, unit)
+
+
+def percent(value: float) -> str:
+    """An improvement with its sign, "-inf %", or "n/a" where there is none."""
+    if np.isnan(value):
+        return "n/a"
+    text = f"{value:+.1f} %"
+    return "0.0 %" if text in ("+0.0 %", "-0.0 %") else text
+
+
+def typeset(text: str) -> str:
+    """Plain units and numbers as they are printed: superscripts, powers of ten, and a minus that is one.
+
+    >>> typeset("5e-07 m^3/cycle")
+    '5 × 10⁻⁷ m³/cycle'
+    """
+    text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
+    text = _EXPONENT.sub(
+        lambda exponent: f" × 10{(exponent[1].strip('+') + exponent[2]).translate(_SUPERSCRIPT)}", text
+    )
+    text = re.sub(r"^1 × (?=10)", "", text)
+    return re.sub(r"^-(?=[\d.i])", "−", text)
+
+
+def scale(values: ArrayLike, unit: str) -> Scale:
+    """The unit in which the largest of `values` [SI] is a number of handy size.
+
+    >>> scale([10e3, 300e3], "N/m")
+    Scale(factor=0.001, unit='kN/m')
+    """
+    sizes = np.abs(np.asarray(values, dtype=float))
+    largest = np.max(sizes, initial=0.0, where=np.isfinite(sizes))
+    _, _, prefixed = format_quantity(float(largest) or 1.0, unit).partition(" ")
+    return Scale(1.0, unit) if prefixed == unit else Scale(1.0 / parse_quantity(f"1 {prefixed}", unit), prefixed)
+
+
+def axis_label(what: str, unit: str) -> str:
+    """The label of an axis: what it is, and its unit in brackets."""
+    return f"{what} [{typeset(unit)}]"

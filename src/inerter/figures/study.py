@@ -1,0 +1,102 @@
+"""All figures of a study: which there are, their captions, and writing them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import ceil
+from pathlib import Path
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from inerter.figures.designs import frequency_responses, improvement_bars
+from inerter.figures.labels import compared, index_title, indices, one_method, swept_element
+from inerter.figures.style import add_legend, new_figure, save, styled
+from inerter.figures.sweeps import parameter_curves, sweep_curves
+
+
+@dataclass(frozen=True)
+class StudyFigure:
+    """A figure of a study: the name of its files, its caption, and how it is drawn."""
+
+    name: str
+    caption: str
+    draw: Callable[[], Figure]
+
+
+def study_figures(results: xr.Dataset) -> list[StudyFigure]:
+    """All figures of a study, in the order of a report. Nothing is drawn yet."""
+    results = one_method(results)
+    return list(_of_designs(results) if swept_element(results) is None else _of_sweep(results))
+
+
+def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:
+    """Write all figures of a study into `folder`, each as SVG and as PNG; returns the files."""
+    with styled():
+        return [path for figure in study_figures(results) for path in save(figure.draw(), folder, figure.name)]
+
+
+def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
+    baseline = results.attrs["baseline"]
+    if compared(results):
+        yield StudyFigure(
+            "improvement",
+            f"Improvement of every layout over {baseline}, each at its own best design for the index. "
+            "More is better.",
+            lambda: _improvement(results),
+        )
+    for index in indices(results):
+        if f"gain_{index}" in results:
+            yield StudyFigure(
+                f"response-{index}",
+                f"Frequency response of the designs that are best for {index_title(results, index)} ({index}).",
+                lambda index=index: _response(results, index),
+            )
+
+
+def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
+    element, baseline = swept_element(results), results.attrs["baseline"]
+    for index in indices(results):
+        title = f"{index_title(results, index)} ({index})"
+        versus = f", and improvement over the best {baseline} of the same {element}" if compared(results) else ""
+        yield StudyFigure(
+            f"sweep-{index}",
+            f"Best {title} for each value of {element}{versus}.",
+            lambda index=index: _sweep(results, index),
+        )
+        if results.sizes["parameter"]:
+            yield StudyFigure(
+                f"parameters-{index}",
+                f"Parameters that are best for {title} for each value of {element}. Open markers: at a bound.",
+                lambda index=index: _parameters(results, index),
+            )
+
+
+def _improvement(results: xr.Dataset) -> Figure:
+    figure, axes = new_figure(height=2.9)
+    improvement_bars(results, axes[0])
+    add_legend(figure, axes)
+    return figure
+
+
+def _response(results: xr.Dataset, index: str) -> Figure:
+    outputs = results.sizes[f"output_{index}"]
+    columns = min(outputs, 2)
+    rows = ceil(outputs / columns)
+    figure, axes = new_figure(rows, columns, height=0.6 + 2.6 * rows)
+    _drop(axes[outputs:])
+    frequency_responses(results, index, axes[:outputs])
+    add_legend(figure, axes)
+    return figure
+
+
+def _sweep(results: xr.Dataset, index: str) -> Figure:
+    figure, axes = new_figure(1, 2, height=2.9)
+    sweep_curves(results, index, axes)
+    add_legend(figure, axes)
+    return figure
+
+
+def _parameters(results: xr.Dataset, index: str) -> Figure:
+    ...

@@ -1,0 +1,152 @@
+"""How figures look: sizes, fonts, colours and lines, legends, and files that are the same in every run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from inerter.figures.labels import typeset
+
+NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
+_LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
+_LABELLED_RATIO = 60.0  # up to which ratio a log axis labels 2 and 5 too
+
+# Okabe and Ito (2008), distinct for all kinds of colour vision; without yellow, which is faint on white.
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+_LINES: tuple[Any, ...] = ("-", "-.", (0, (1, 1.2)), (0, (7, 1.5, 1, 1.5, 1, 1.5)), (0, (10, 2)))
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+_HATCHES = ("", "/////", ".....", "xxxxx")
+
+_SETTINGS: dict[str, Any] = {
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so that figures are the same everywhere
+    "font.size": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 8.0,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "legend.handlelength": 3.2,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.use_mathtext": True,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.5,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 1.3,
+    "hatch.linewidth": 0.5,
+    "svg.fonttype": "path",  # text as text depends on the fonts of the reader
+    "svg.hashsalt": "inerter",
+}
+
+
+@dataclass(frozen=True)
+class LayoutStyle:
+    """How one layout is drawn in all figures of a study."""
+
+    colour: str
+    line: Any
+    marker: str
+    hatch: str = ""
+    label: str = ""
+    zorder: float = 2.0
+
+    def curve(self) -> dict[str, Any]:
+        """Keywords for a curve."""
+        return {"color": self.colour, "linestyle": self.line, "label": self.label, "zorder": self.zorder}
+
+
+def layout_styles(names: Iterable[str], baseline: str) -> dict[str, LayoutStyle]:
+    """A style for each layout: the baseline black and dashed, the others by colour, line and marker."""
+    styles = {baseline: LayoutStyle("black", "--", "", label=f"{baseline} (baseline)", zorder=3.0)} if baseline else {}
+    for i, name in enumerate(name for name in names if name != baseline):
+        styles[name] = LayoutStyle(
+            colour=_COLOURS[i % len(_COLOURS)],
+            line=_LINES[i % len(_LINES)],
+            marker=_MARKERS[i % len(_MARKERS)],
+            hatch=_HATCHES[i // len(_COLOURS) % len(_HATCHES)],
+            label=name,
+        )
+    return styles
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """What is created inside has the style of the package; settings of the caller are back afterwards."""
+    with matplotlib.rc_context(_SETTINGS):
+        yield
+
+
+def new_figure(rows: int = 1, columns: int = 1, *, height: float, width: float = WIDE) -> tuple[Figure, list[Axes]]:
+    """A figure with a grid of axes, row by row; sizes in inches."""
+    with styled():
+        figure = Figure(figsize=(width, height), layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.subplots(rows, columns, squeeze=False)
+    return figure, list(axes.flat)
+
+
+def add_legend(figure: Figure, axes: Iterable[Axes]) -> Legend:
+    """One legend for all axes, below them, in as many columns as the figure has room for."""
+    entries: dict[str, Artist] = {}
+    for ax in axes:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    available = figure.get_figwidth() * figure.dpi
+    for columns in range(max(len(entries), 1), 0, -1):
+        legend = figure.legend(
+            list(entries.values()), list(entries), loc="outside lower center", ncols=columns, columnspacing=1.5
+        )
+        figure.draw_without_rendering()
+        if columns == 1 or legend.get_window_extent().width <= 0.98 * available:
+            break
+        legend.remove()
+    return legend
+
+
+def log_axis(ax: Axes, which: str, *, least_ratio: float = _LEAST_RATIO) -> None:
+    """Make the "x" or "y" axis logarithmic, with labels that can be read off; call it when the data are drawn."""
+    axis = ax.xaxis if which == "x" else ax.yaxis
+    ax.set(**{f"{which}scale": "log"})
+    low, high = axis.get_view_interval()
+    if high < least_ratio * low:
+        middle, half = (low * high) ** 0.5, least_ratio**0.5
+        low, high = middle / half, middle * half
+        ax.set(**{f"{which}lim": (low, high)})
+    few = high < _LABELLED_RATIO * low
+    plain = FuncFormatter(lambda value, _: typeset(f"{value:g}"))
+    axis.set_major_formatter(plain)
+    axis.set_minor_locator(LogLocator(subs=(2.0, 5.0) if few else tuple(range(2, 10))))
+    axis.set_minor_formatter(plain if few else NullFormatter())
+    axis.set_tick_params(which="minor", labelsize=7.0, width=0.4)
+
+
+def save(figure: Figure, folder: Path, name: str) -> list[Path]:
+    """Write the figure as SVG and as PNG (200 dpi) into `folder`; the same figure gives the same bytes.
+
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     [path.name for path in save(new_figure(height=2.0)[0], Path(folder), "empty")]
+    ['empty.svg', 'empty.png']
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    svg, png = folder / f"{name}.svg", folder / f"{name}.png"
+    with styled():
+        figure.savefig(svg, metadata={"Date": None})
+        figure.savefig(png, dpi=200)
+    return [svg, png]

@@ -1,0 +1,112 @@
+"""Figures over a swept value: how good the best designs are, and what they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from inerter.errors import StudyError
+from inerter.figures.designs import IMPROVEMENT, WORST
+from inerter.figures.labels import (
+    axis_label,
+    capital,
+    compared,
+    index_title,
+    index_unit,
+    layouts,
+    one_method,
+    scale,
+    swept_element,
+)
+from inerter.figures.style import LayoutStyle, layout_styles, log_axis
+
+Array = NDArray[np.float64]
+
+_MOST_MARKERS = 40
+_LOG_RATIO = 20.0  # swept values within this ratio are on a linear axis
+
+
+@dataclass(frozen=True, eq=False)
+class _Sweep:
+    """The results for one index in the order of the swept values."""
+
+    data: xr.Dataset  # (layout, swept element, ...)
+    values: Array  # swept, in the unit of the label
+    label: str
+    styles: dict[str, LayoutStyle]
+
+    def draw(self, ax: Axes, layout: str, numbers: Array, open_where: NDArray[np.bool_] | None = None) -> None:
+        """The curve of one layout, broken where a number is not finite."""
+        style, few = self.styles[layout], self.values.size <= _MOST_MARKERS
+        marker = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
+        finite = np.where(np.isfinite(numbers), numbers, np.nan)
+        ax.plot(self.values, finite, **style.curve(), **marker)
+        if open_where is not None:
+            look = {"color": style.colour, "linestyle": "", "markerfacecolor": "white", "zorder": style.zorder + 0.1}
+            ax.plot(self.values[open_where], finite[open_where], **marker, **look)
+
+    def finish(self, axes: Sequence[Axes]) -> None:
+        """The axes of the swept values: logarithmic if that spreads them more evenly."""
+        low, middle, high = np.quantile(self.values, (0.0, 0.5, 1.0))
+        logarithmic = low > 0.0 and high > _LOG_RATIO * low and middle**2 < (low + high) / 2.0 * np.sqrt(low * high)
+        for ax in axes:
+            ax.set_xlabel(self.label)
+            if logarithmic:
+                log_axis(ax, "x")
+
+
+def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
+    """Over the swept value: the best value of `index` on the first of `axes`, the improvement on the second.
+
+    Raises `StudyError` if nothing is swept.
+    """
+    sweep = _sweep(results, index)
+    unit = scale(sweep.data["value"].values, index_unit(results, index))
+    left, right = axes
+    for name in layouts(results):
+        row = sweep.data.sel(layout=name)
+        sweep.draw(left, name, row["value"].values * unit.factor)
+        if name in compared(results):
+            improvement = row["improvement"].values
+            sweep.draw(right, name, np.where(improvement < WORST, np.nan, improvement))
+    if compared(results):
+        right.axhline(0.0, **sweep.styles[results.attrs["baseline"]].curve())
+    left.set_ylabel(axis_label(f"{capital(index_title(results, index))} {index}", unit.unit))
+    right.set_ylabel(IMPROVEMENT)
+    sweep.finish(axes)
+    return axes
+
+
+def parameter_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
+    """The parameters that are best for `index` over the swept value, one of `axes` each; open markers: at a bound.
+
+    Raises `StudyError` if nothing is swept.
+    """
+    sweep = _sweep(results, index)
+    for ax, parameter in zip(axes, results["parameter"].values.tolist(), strict=True):
+        column = sweep.data.sel(parameter=parameter)
+        unit = scale(column["parameter_value"].values, str(column["parameter_unit"].item()))
+        for name in layouts(results):
+            row = column.sel(layout=name)
+            numbers = row["parameter_value"].values * unit.factor
+            if np.any(np.isfinite(numbers)):
+                sweep.draw(ax, name, numbers, open_where=row["at_bound"].values != "")
+        ax.set_ylabel(axis_label(f"Best {parameter}", unit.unit))
+        log_axis(ax, "y")
+    sweep.finish(axes)
+    return axes
+
+
+def _sweep(results: xr.Dataset, index: str) -> _Sweep:
+    element = swept_element(results)
+    if element is None:
+        raise StudyError("Got results of a study without a sweep; these figures are drawn over a swept value.")
+    data = one_method(results).sel(index=index).sortby(element).transpose("layout", element, ...)
+    unit = scale(data[element].values, data[element].attrs["units"])
+    styles = layout_styles(layouts(results), results.attrs["baseline"])
+    return _Sweep(data, data[element].values * unit.factor, axis_label(element, unit.unit), styles)

@@ -1,0 +1,105 @@
+"""The cases of a study: one layout, one index, one swept value each, and what running one gives."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from inerter.errors import InerterError, Status, StatusKind
+from inerter.methods.method import Estimate, evaluate
+from inerter.optimisation.optimise import optimise
+from inerter.study.registry import INDEX, METHOD
+from inerter.study.values import Study
+
+
+@dataclass(frozen=True)
+class Case:
+    """One design to find and to judge. `point` numbers the swept values, zero where nothing is swept."""
+
+    layout: str
+    index: str
+    point: int = 0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The design of a case and its values; all of it survives JSON."""
+
+    layout: str
+    index: str
+    point: int
+    parameters: dict[str, float]
+    active_bounds: dict[str, str]
+    ranges: dict[str, tuple[float, float]]
+    starts: int
+    agreed: int
+    evaluations: int
+    values: dict[str, dict[str, float]]  # method -> index -> value, at this design
+    standard_errors: dict[str, dict[str, float | None]]
+    status: dict[str, str]  # method -> kind of status of the case's own index
+    message: str = ""
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def case(self) -> Case:
+        """The case that it answers."""
+        return Case(self.layout, self.index, self.point)
+
+    def to_json(self) -> dict[str, Any]:
+        """A plain dictionary; `Outcome(**...)` undoes it."""
+        return asdict(self)
+
+
+def cases(study: Study) -> list[Case]:
+    """All cases in the order of the results: layouts, indices, swept values."""
+    points = range(len(study.sweep.values)) if study.sweep else range(1)
+    return [Case(layout, index, point) for layout in study.layouts for index in study.indices for point in points]
+
+
+def run_case(study: Study, case: Case) -> Outcome:
+    """Find the best design of a case and judge it by every method and index of the study.
+
+    A failure is an outcome with a status and a sentence, so that one case never ends a study.
+    """
+    try:
+        return _run(study, case)
+    except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
+        failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
+        return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, str(error))
+
+
+def _run(study: Study, case: Case) -> Outcome:
+    swept = study.sweep.values[case.point] if study.sweep else None
+    vehicle = study.design(case.layout, swept)
+    fields: dict[str, Any] = {
+        "parameters": {},
+        "active_bounds": {},
+        "ranges": {},
+        "starts": 0,
+        "agreed": 0,
+        "evaluations": 0,
+    }
+    found = Status()
+    if study.optimise is not None and vehicle.free_values():
+        best = optimise(vehicle, INDEX[case.index](study), METHOD[study.optimise](study), seed=study.seed)
+        vehicle, found = best.design, best.status  # type: ignore[assignment]
+        fields = {name: getattr(best, name) for name in fields}
+    estimates: dict[str, dict[str, Estimate]] = {
+        method: {index: evaluate(vehicle, INDEX[index](study), METHOD[method](study)) for index in study.indices}
+        for method in study.evaluate
+    }
+    own = {method: by_index[case.index] for method, by_index in estimates.items()}
+    worst = next((e.status for e in own.values() if not e.status.ok), found)
+    return Outcome(
+        case.layout,
+        case.index,
+        case.point,
+        **fields,
+        values={m: {i: e.value for i, e in by_index.items()} for m, by_index in estimates.items()},
+        standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
+        status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
+        message=worst.message,
+        notes=list(dict.fromkeys(note for e in own.values() for note in e.notes)),
+    )

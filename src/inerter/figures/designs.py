@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from inerter.figures.labels import axis_label, capital, compared, index_title, indices, layouts, one_method, typeset
+from inerter.figures.labels import (
+    axis_label,
+    capital,
+    compared,
+    index_title,
+    indices,
+    layouts,
+    one_method,
+    percent,
+    typeset,
+)
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis
 
 Array = NDArray[np.float64]
 
-IMPROVEMENT = "Improvement over the baseline [%]"
+IMPROVEMENT = "Improvement over baseline [%]"
 WORST = -100.0  # per cent; what is worse still is cut here, so that the others can be read
-_WINDOW = 50.0  # how far below the least of the highest gains a frequency response is shown
+_WINDOW = 20.0  # how far below the least of the highest gains a frequency response is shown
 _MOST_LEVEL_NUMBERS = 15  # above more bars than these the numbers stand upright
 _WIDEST_BAR = 0.28  # of the distance between two groups
 
@@ -25,17 +36,15 @@ def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
     """The improvement of every layout over the baseline, in groups by index. For a study without a sweep."""
     results = one_method(results)
     names, styles = compared(results), layout_styles(layouts(results), results.attrs["baseline"])
-    groups = np.arange(results.sizes["index"])
+    groups = np.arange(results.sizes["index"], dtype=float)
     width = min(0.84 / max(len(names), 1), _WIDEST_BAR)
     upright = len(names) * groups.size > _MOST_LEVEL_NUMBERS
     for i, name in enumerate(names):
-        _bars(ax, results.sel(layout=name), groups + (i - (len(names) - 1) / 2) * width, width, styles[name], upright)
+        places: Array = groups + (i - (len(names) - 1) / 2) * width
+        _bars(ax, results.sel(layout=name), places, width, styles[name], upright)
     if names:
         ax.axhline(0.0, **styles[results.attrs["baseline"]].curve() | {"linewidth": 1.0})
-    low, high = ax.dataLim.intervaly if names else (0.0, 0.0)
-    span = max(high - low, 1.0)
-    room = (0.26 if upright else 0.12) * span
-    ax.set_ylim(low - (room if low < 0.0 else 0.03 * span), high + room)
+    _leave_room(ax, 0.18 if upright else 0.1)
     ax.set_xlim(-0.5, groups.size - 0.5)
     ax.set_xticks(groups, [f"{index}\n{index_title(results, index)}" for index in indices(results)])
     ax.tick_params(axis="x", length=0)
@@ -65,7 +74,7 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
     """The bars of one layout, each with its number."""
     values = row["improvement"].values
     heights = np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), WORST, None)
-    look = {"color": style.colour, "hatch": style.hatch, "edgecolor": "white", "linewidth": 0.4}
+    look: dict[str, Any] = {"color": style.colour, "hatch": style.hatch, "edgecolor": "white", "linewidth": 0.4}
     ax.bar(places, heights, 0.92 * width, label=style.label, **look)
     for place, height, text in zip(places, heights, _numbers(values, row["value"].values), strict=True):
         ax.annotate(
@@ -78,6 +87,16 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
             rotation=90 if upright else 0,
             fontsize=6.5,
         )
+    cut = values < WORST
+    ax.plot(places[cut], heights[cut] * 0.95, linestyle="", marker="v", color="white", markersize=4.0)
+
+
+def _leave_room(ax: Axes, share: float) -> None:
+    """Limits that leave a share of the height for the numbers above the bars, and below if some point down."""
+    low, high = min(ax.dataLim.y0, 0.0), max(ax.dataLim.y1, 0.0)
+    below = share if low < 0.0 else 0.02
+    height = max(high - low, 1.0) / (1.0 - share - below)
+    ax.set_ylim(low - below * height, max(high, low + 1.0) + share * height)
 
 
 def _numbers(improvements: Array, values: Array) -> Iterator[str]:
@@ -87,8 +106,7 @@ def _numbers(improvements: Array, values: Array) -> Iterator[str]:
         elif not np.isfinite(improvement):
             yield "n/a"
         else:
-            number = typeset(f"{improvement:.1f}".replace("-0.0", "0.0"))
-            yield f"{number} ↓" if improvement < WORST else number
+            yield typeset(percent(improvement).removesuffix(" %").removeprefix("+"))
 
 
 def _show_peaks(ax: Axes, frequency: Array, curves: Array) -> None:

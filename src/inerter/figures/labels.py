@@ -13,6 +13,7 @@ from inerter.units import format_quantity, parse_quantity
 
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
+_LONGEST_LABEL = 32
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -92,21 +93,22 @@ def typeset(text: str) -> str:
         lambda exponent: f" × 10{(exponent[1].strip('+') + exponent[2]).translate(_SUPERSCRIPT)}", text
     )
     text = re.sub(r"^1 × (?=10)", "", text)
-    return re.sub(r"^-(?=[\d.i])", "−", text)
+    return re.sub(r"\bum\b", "µm", re.sub(r"^-(?=[\d.i])", "−", text))
 
 
 def scale(values: ArrayLike, unit: str) -> Scale:
-    """The unit in which the largest of `values` [SI] is a number of handy size.
+    """The unit in which the middle one of `values` [SI] is a number of handy size.
 
     >>> scale([10e3, 300e3], "N/m")
     Scale(factor=0.001, unit='kN/m')
     """
     sizes = np.abs(np.asarray(values, dtype=float))
-    largest = np.max(sizes, initial=0.0, where=np.isfinite(sizes))
-    _, _, prefixed = format_quantity(float(largest) or 1.0, unit).partition(" ")
+    sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
+    _, _, prefixed = format_quantity(float(np.median(sizes)) if sizes.size else 1.0, unit).partition(" ")
     return Scale(1.0, unit) if prefixed == unit else Scale(1.0 / parse_quantity(f"1 {prefixed}", unit), prefixed)
 
 
 def axis_label(what: str, unit: str) -> str:
-    """The label of an axis: what it is, and its unit in brackets."""
-    return f"{what} [{typeset(unit)}]"
+    """The label of an axis: what it is, and its unit in brackets, on a line of its own where both together are long."""
+    text = f"{what} [{typeset(unit)}]"
+    return text if len(text) <= _LONGEST_LABEL else f"{what}\n[{typeset(unit)}]"

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import ceil
+from functools import partial
 from pathlib import Path
 
 import xarray as xr
 from matplotlib.figure import Figure
 
-from inerter.figures.designs import frequency_responses, improvement_bars
+from inerter.figures.designs import WORST, frequency_responses, improvement_bars
 from inerter.figures.labels import compared, index_title, indices, one_method, swept_element
 from inerter.figures.style import add_legend, new_figure, save, styled
 from inerter.figures.sweeps import parameter_curves, sweep_curves
@@ -42,16 +42,16 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     if compared(results):
         yield StudyFigure(
             "improvement",
-            f"Improvement of every layout over {baseline}, each at its own best design for the index. "
-            "More is better.",
-            lambda: _improvement(results),
+            f"Improvement over {baseline}, each layout with its own best design for each index."
+            + (" Bars with a triangle are cut." if bool((results["improvement"] < WORST).any()) else ""),
+            partial(_improvement, results),
         )
     for index in indices(results):
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
                 f"Frequency response of the designs that are best for {index_title(results, index)} ({index}).",
-                lambda index=index: _response(results, index),
+                partial(_response, results, index),
             )
 
 
@@ -63,18 +63,18 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
         yield StudyFigure(
             f"sweep-{index}",
             f"Best {title} for each value of {element}{versus}.",
-            lambda index=index: _sweep(results, index),
+            partial(_sweep, results, index),
         )
         if results.sizes["parameter"]:
             yield StudyFigure(
                 f"parameters-{index}",
                 f"Parameters that are best for {title} for each value of {element}. Open markers: at a bound.",
-                lambda index=index: _parameters(results, index),
+                partial(_parameters, results, index),
             )
 
 
 def _improvement(results: xr.Dataset) -> Figure:
-    figure, axes = new_figure(height=2.9)
+    figure, axes = new_figure(height=2.9 if len(compared(results)) <= 5 else 3.6)
     improvement_bars(results, axes[0])
     add_legend(figure, axes)
     return figure
@@ -82,21 +82,23 @@ def _improvement(results: xr.Dataset) -> Figure:
 
 def _response(results: xr.Dataset, index: str) -> Figure:
     outputs = results.sizes[f"output_{index}"]
-    columns = min(outputs, 2)
-    rows = ceil(outputs / columns)
-    figure, axes = new_figure(rows, columns, height=0.6 + 2.6 * rows)
-    _drop(axes[outputs:])
-    frequency_responses(results, index, axes[:outputs])
+    figure, axes = new_figure(outputs, min(outputs, 2), height=3.0)
+    frequency_responses(results, index, axes)
     add_legend(figure, axes)
     return figure
 
 
 def _sweep(results: xr.Dataset, index: str) -> Figure:
-    figure, axes = new_figure(1, 2, height=2.9)
+    panels = 2 if compared(results) else 1
+    figure, axes = new_figure(panels, panels, height=2.9)
     sweep_curves(results, index, axes)
     add_legend(figure, axes)
     return figure
 
 
 def _parameters(results: xr.Dataset, index: str) -> Figure:
-    ...
+    panels = results.sizes["parameter"]
+    figure, axes = new_figure(panels, panels if panels <= 3 else 2, height=2.6)
+    parameter_curves(results, index, axes)
+    add_legend(figure, axes)
+    return figure

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from inerter.figures.labels import typeset
 
 NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
-_LABELLED_RATIO = 60.0  # up to which ratio a log axis labels 2 and 5 too
+_LABELLED_RATIO = 300.0  # up to which ratio a log axis labels 2 and 5 too
 
 # Okabe and Ito (2008), distinct for all kinds of colour vision; without yellow, which is faint on white.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -28,7 +29,7 @@ _LINES: tuple[Any, ...] = ("-", "-.", (0, (1, 1.2)), (0, (7, 1.5, 1, 1.5, 1, 1.5
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 _HATCHES = ("", "/////", ".....", "xxxxx")
 
-_SETTINGS: dict[str, Any] = {
+_SETTINGS: Any = {  # matplotlib's own type for this lists every key
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that figures are the same everywhere
     "font.size": 8.0,
     "axes.titlesize": 8.0,
@@ -87,18 +88,20 @@ def layout_styles(names: Iterable[str], baseline: str) -> dict[str, LayoutStyle]
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """What is created inside has the style of the package; settings of the caller are back afterwards."""
+    """What is created and drawn inside has the style of the package; settings of the caller are back afterwards."""
     with matplotlib.rc_context(_SETTINGS):
         yield
 
 
-def new_figure(rows: int = 1, columns: int = 1, *, height: float, width: float = WIDE) -> tuple[Figure, list[Axes]]:
-    """A figure with a grid of axes, row by row; sizes in inches."""
-    with styled():
-        figure = Figure(figsize=(width, height), layout="constrained")
-        FigureCanvasAgg(figure)
-        axes = figure.subplots(rows, columns, squeeze=False)
-    return figure, list(axes.flat)
+def new_figure(panels: int = 1, columns: int = 1, *, height: float, width: float = WIDE) -> tuple[Figure, list[Axes]]:
+    """A figure of the style with some panels, row by row; its width and the height of a row in inches."""
+    rows = ceil(panels / columns)
+    figure = Figure(figsize=(width, rows * height), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = list(figure.subplots(rows, columns, squeeze=False).flat)
+    for ax in axes[panels:]:
+        ax.remove()
+    return figure, axes[:panels]
 
 
 def add_legend(figure: Figure, axes: Iterable[Axes]) -> Legend:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -43,11 +44,16 @@ class _Sweep:
     def draw(self, ax: Axes, layout: str, numbers: Array, open_where: NDArray[np.bool_] | None = None) -> None:
         """The curve of one layout, broken where a number is not finite."""
         style, few = self.styles[layout], self.values.size <= _MOST_MARKERS
-        marker = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
+        marker: dict[str, Any] = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
         finite = np.where(np.isfinite(numbers), numbers, np.nan)
         ax.plot(self.values, finite, **style.curve(), **marker)
         if open_where is not None:
-            look = {"color": style.colour, "linestyle": "", "markerfacecolor": "white", "zorder": style.zorder + 0.1}
+            look: dict[str, Any] = {
+                "color": style.colour,
+                "linestyle": "",
+                "markerfacecolor": "white",
+                "zorder": style.zorder + 0.1,
+            }
             ax.plot(self.values[open_where], finite[open_where], **marker, **look)
 
     def finish(self, axes: Sequence[Axes]) -> None:
@@ -61,23 +67,23 @@ class _Sweep:
 
 
 def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
-    """Over the swept value: the best value of `index` on the first of `axes`, the improvement on the second.
+    """Over the swept value: the best value of `index` on the first of `axes`, the improvement on the second if any.
 
     Raises `StudyError` if nothing is swept.
     """
     sweep = _sweep(results, index)
     unit = scale(sweep.data["value"].values, index_unit(results, index))
-    left, right = axes
+    left, *right = axes
     for name in layouts(results):
-        row = sweep.data.sel(layout=name)
-        sweep.draw(left, name, row["value"].values * unit.factor)
-        if name in compared(results):
-            improvement = row["improvement"].values
-            sweep.draw(right, name, np.where(improvement < WORST, np.nan, improvement))
-    if compared(results):
-        right.axhline(0.0, **sweep.styles[results.attrs["baseline"]].curve())
+        sweep.draw(left, name, sweep.data["value"].sel(layout=name).values * unit.factor)
     left.set_ylabel(axis_label(f"{capital(index_title(results, index))} {index}", unit.unit))
-    right.set_ylabel(IMPROVEMENT)
+    for ax in right:
+        for name in compared(results):
+            sweep.draw(ax, name, sweep.data["improvement"].sel(layout=name).values)
+        if results.attrs["baseline"]:
+            ax.axhline(0.0, **sweep.styles[results.attrs["baseline"]].curve())
+        ax.set_ylim(bottom=max(ax.get_ylim()[0], WORST))
+        ax.set_ylabel(IMPROVEMENT)
     sweep.finish(axes)
     return axes
 

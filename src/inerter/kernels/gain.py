@@ -112,11 +112,12 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
         residues[k] *= weights[k]
         size = abs(poles[k])
         slowest, fastest = min(slowest, max(size, 1e-300)), max(fastest, size)
-    steps = 24 + int(24.0 * np.log10(max(fastest / slowest, 1.0)))
+    low, high = 0.01 * slowest, 10.0 * fastest  # a static maximum may rise to a peak close to zero first
+    steps = 1 + int(24.0 * np.log10(high / low))
     grid = np.empty(steps + 1 + 15 * n)
     grid[0] = 0.0
     for k in range(steps):
-        grid[1 + k] = slowest * 0.1 * (100.0 * fastest / slowest) ** (k / (steps - 1))
+        grid[1 + k] = low * (high / low) ** (k / (steps - 1))
     count = steps + 1
     for k in range(n):
         if poles[k].imag >= 0.0:

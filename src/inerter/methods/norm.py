@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -34,7 +35,7 @@ CONVENTIONS = {
     row.name: row
     for row in (
         Conventions("exact", pade_order=None, corner=None),
-        Conventions("paper2008", pade_order=5, corner=6.28),
+        Conventions("paper2008", pade_order=5, corner=2.0 * math.pi),
     )
 }
 
@@ -44,7 +45,7 @@ class Norm:
     """Exact norms of the linear design: H2 for indices that are r.m.s. values, H-infinity for peak gains.
 
     `conventions` is "exact", or "paper2008" for what the printed numbers of Wang and Su (2008) need: a fifth-order
-    Pade approximant of the wheelbase delay, and tyre loads over s + 6.28 rad/s where the road arrives at two axles.
+    Pade approximant of the wheelbase delay, and tyre loads over s + 2 pi rad/s where the road arrives at two axles.
 
     Raises `IndicatorError` for other conventions.
     """

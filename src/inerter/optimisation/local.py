@@ -1,11 +1,14 @@
 """From one starting point to a local optimum, in logarithms of the values and of the index.
 
 Smooth indices go downhill with their gradient. A peak gain is the largest of many smooth functions, and at its optimum
-two or more are equally large: there the level that all of them stay below is minimised instead.
+two or more are equally large: there the level that all of them stay below is minimised instead. `approach` does that
+with the peaks of the current point, which gets close in a few steps; `polish` with fixed frequencies, to which it adds
+the peaks that stand out, until none does.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,8 +19,10 @@ from numpy.typing import NDArray
 from inerter.methods.method import Objective
 
 Array = NDArray[np.float64]
+Components = Callable[[Array], tuple[Array, Array]]
 _LEVEL_TOLERANCE = 1e-9  # relative height of a peak above the level that ends the minimax search
-_MOST_COMPONENTS = 48
+_MOST_PEAKS = 8  # slots for peaks during the approach
+_HIDDEN = -700.0  # logarithm of a component that is not there
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,49 +35,62 @@ class LocalOptimum:
 
 
 def descend(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
-    """The local optimum that is reached from `start` within the bounds."""
-    if objective.active(start) is None:
-        return _smooth(objective, start, lower, upper)
-    return _minimax(objective, start, lower, upper)
+    """The local optimum of a smooth index that is reached from `start` within the bounds."""
 
-
-def _smooth(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     def logarithm(x: Array) -> tuple[float, Array]:
-        point = _inside(np.exp(x), lower, upper)
+        point = np.clip(np.exp(x), lower, upper)  # exp(log(bound)) may miss the bound by rounding
         value, gradient = objective.value_and_gradient(point)
         if not (np.isfinite(value) and value > 0.0 and np.all(np.isfinite(gradient))):
-            return 700.0, np.zeros_like(x)
+            return -_HIDDEN, np.zeros_like(x)
         return float(np.log(value)), gradient * point / value
 
-    bounds = scipy.optimize.Bounds(np.log(lower), np.log(upper))
     result = scipy.optimize.minimize(
         logarithm,
         np.log(start),
         jac=True,
         method="L-BFGS-B",
-        bounds=bounds,
+        bounds=scipy.optimize.Bounds(np.log(lower), np.log(upper)),
         options={"maxiter": 300, "ftol": 1e-15, "gtol": 1e-9},
     )
-    point = _inside(np.exp(result.x), lower, upper)
-    return LocalOptimum(point, float(np.exp(result.fun)), int(result.nfev))
+    return LocalOptimum(np.clip(np.exp(result.x), lower, upper), float(np.exp(result.fun)), int(result.nfev))
 
 
-def _minimax(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
-    """Exchange: minimise the level above the known components, add the peaks that then stand out, repeat."""
-    x, evaluations = np.log(start), 1
-    best, best_value = start, float(objective.values(start[None])[0])
-    known = _active(objective, start)
-    for _ in range(30):
-        x, level, count = _lowest_level(objective, x, known, np.log(lower), np.log(upper))
-        point = _inside(np.exp(x), lower, upper)
-        value = float(objective.values(point[None])[0])
-        evaluations += count + 1
-        if value < best_value:
-            best, best_value = point, value
+def approach(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
+    """Close to a minimax optimum: the level above the peaks, each followed as it moves."""
+
+    def peaks(point: Array) -> tuple[Array, Array]:
+        which = _active(objective, point)[:_MOST_PEAKS]
+        values, gradients = objective.components(point, which)
+        logs, slopes = np.full(_MOST_PEAKS, _HIDDEN), np.zeros((_MOST_PEAKS, point.size))
+        logs[: which.size], slopes[: which.size] = np.log(values), gradients * point / values[:, None]
+        return logs, slopes
+
+    point, count = _lowest_level(peaks, start, lower, upper, tolerance=1e-7, most_steps=60)
+    ends = np.vstack([start, point])
+    values = objective.values(ends)
+    best = int(np.argmin(values))
+    return LocalOptimum(ends[best], float(values[best]), count + 2)
+
+
+def polish(objective: Objective, start: LocalOptimum, lower: Array, upper: Array) -> LocalOptimum:
+    """The minimax optimum near `start`: the level above known frequencies, and the peaks that stand out added."""
+    best, known, evaluations = start, _active(objective, start.point), start.evaluations
+    point = start.point
+    for _ in range(20):
+
+        def fixed(point: Array, which: Array = known) -> tuple[Array, Array]:
+            values, gradients = objective.components(point, which)
+            return np.log(values), gradients * point / values[:, None]
+
+        point, count = _lowest_level(fixed, point, lower, upper, tolerance=1e-13, most_steps=100)
+        value, level = float(objective.values(point[None])[0]), float(np.exp(fixed(point)[0].max()))
+        evaluations += count + 2
+        if value < best.value:
+            best = LocalOptimum(point, value, evaluations)
         if not np.isfinite(value) or value <= level * (1.0 + _LEVEL_TOLERANCE):
             break
-        known = np.concatenate([known, _active(objective, point)])[-_MOST_COMPONENTS:]
-    return LocalOptimum(best, best_value, evaluations)
+        known = np.concatenate([known, _active(objective, point)])
+    return LocalOptimum(best.point, best.value, evaluations)
 
 
 def _active(objective: Objective, point: Array) -> Array:
@@ -81,43 +99,34 @@ def _active(objective: Objective, point: Array) -> Array:
     return components
 
 
-def _lowest_level(objective: Objective, x: Array, known: Array, low: Array, high: Array) -> tuple[Array, float, int]:
-    """Minimise t over (x, t) subject to log component_i(x) <= t for every known component."""
+def _lowest_level(
+    components: Components, start: Array, lower: Array, upper: Array, tolerance: float, most_steps: int
+) -> tuple[Array, int]:
+    """Minimise t over (log point, t) subject to log component_i(point) <= t; returns the point and evaluations."""
     memory: dict[bytes, tuple[Array, Array]] = {}
 
-    def components(z: Array) -> tuple[Array, Array]:
+    def at(z: Array) -> tuple[Array, Array]:
         key = z[:-1].tobytes()
         if key not in memory:
-            point = np.exp(np.clip(z[:-1], low, high))
-            values, gradients = objective.components(point, known)
-            memory[key] = np.log(values), gradients * point / values[:, None]
+            memory[key] = components(np.clip(np.exp(z[:-1]), lower, upper))
         return memory[key]
 
-    def slack(z: Array) -> Array:
-        return np.asarray(z[-1] - components(z)[0])
-
-    def slack_jacobian(z: Array) -> Array:
-        return np.column_stack([-components(z)[1], np.ones(known.size)])
-
-    direction = np.zeros(x.size + 1)
-    direction[-1] = 1.0
-    first = np.append(x, 0.0)
-    first[-1] = float(components(first)[0].max())
+    first = np.append(np.log(start), 0.0)
+    first[-1] = float(at(first)[0].max())
+    upwards = np.zeros(first.size)
+    upwards[-1] = 1.0
     minimize: Any = scipy.optimize.minimize  # the stubs do not know this form of constraints
     result = minimize(
         lambda z: z[-1],
         first,
-        jac=lambda z: direction,
+        jac=lambda z: upwards,
         method="SLSQP",
-        bounds=scipy.optimize.Bounds(np.append(low, -np.inf), np.append(high, np.inf)),
-        constraints={"type": "ineq", "fun": slack, "jac": slack_jacobian},
-        options={"maxiter": 100, "ftol": 1e-13},
+        bounds=scipy.optimize.Bounds(np.append(np.log(lower), -np.inf), np.append(np.log(upper), np.inf)),
+        constraints={
+            "type": "ineq",
+            "fun": lambda z: z[-1] - at(z)[0],
+            "jac": lambda z: np.hstack([-at(z)[1], np.ones((at(z)[1].shape[0], 1))]),
+        },
+        options={"maxiter": most_steps, "ftol": tolerance},
     )
-    found = np.clip(result.x[:-1], low, high)
-    level = float(components(np.append(found, 0.0))[0].max())
-    return found, float(np.exp(level)), len(memory)
-
-
-def _inside(point: Array, lower: Array, upper: Array) -> Array:
-    """exp(log(bound)) may miss the bound by rounding."""
-    return np.clip(point, lower, upper)
+    return np.clip(np.exp(result.x[:-1]), lower, upper), len(memory)

@@ -13,11 +13,13 @@ from inerter.errors import DesignError, Status, StatusKind
 from inerter.indices.index import Index
 from inerter.methods.method import Estimate, Method, Objective, check_request
 from inerter.networks.elements import Free
-from inerter.optimisation.local import LocalOptimum, descend
+from inerter.optimisation.local import LocalOptimum, approach, descend, polish
 from inerter.vehicle.cars import Vehicle
 
 Array = NDArray[np.float64]
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
+_PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is carried to the end
+_SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
 
@@ -56,25 +58,26 @@ class Optimum:
         return self.estimate.status
 
 
-def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, starts: int = 16) -> Optimum:
+def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, starts: int | None = None) -> Optimum:
     """The free values of `vehicle` that make `index` smallest, within their bounds.
 
     A scrambled Sobol sequence in the logarithms of the values is searched for local minima; the best `starts` of them
-    start a gradient method each (L-BFGS-B; for a peak gain a minimax search with SLSQP). The same seed gives the same
-    result.
+    (8 for each free value) start a gradient method each: L-BFGS-B, for a peak gain a minimax search with SLSQP. The
+    same seed gives the same result.
 
     Raises `DesignError` if nothing is free, if a free value has no effect in the method, or if `starts` is not a
     positive whole number; and what `evaluate` raises.
     """
     check_request(vehicle, index, method)
     variables = _variables(vehicle)
+    starts = 8 * len(variables) if starts is None else starts
     if not isinstance(starts, int) or starts < 1 or not isinstance(seed, int) or seed < 0:
         raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
     lower = np.array([free.lower for free in variables.values()])
     upper = np.array([free.upper for free in variables.values()])
     objective = method.objective(vehicle, index)
     first, evaluations = _starting_points(objective, lower, upper, starts, seed)
-    found = [descend(objective, start, lower, upper) for start in first]
+    found = _searches(objective, first, lower, upper)
     evaluations += sum(local.evaluations for local in found)
     best = min(found, key=lambda local: local.value, default=None)
     if best is None or not np.isfinite(best.value):
@@ -93,6 +96,27 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
         evaluations=evaluations,
         seed=seed,
     )
+
+
+def _searches(objective: Objective, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:
+    """A local search from each start; for a peak gain only those that come close to the best are carried to the end."""
+    if not first or objective.active(first[0]) is None:
+        return [descend(objective, start, lower, upper) for start in first]
+    near = [approach(objective, start, lower, upper) for start in first]
+    near.sort(key=lambda local: local.value)
+    ended: list[LocalOptimum] = []
+    for local in near:
+        if local.value > near[0].value * (1.0 + _PROMISING):
+            ended.append(local)
+            continue
+        here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < _SAME_PLACE)
+        same = next(here, None)
+        ended.append(
+            polish(objective, local, lower, upper)
+            if same is None
+            else LocalOptimum(same.point, same.value, local.evaluations)
+        )
+    return ended
 
 
 def _variables(vehicle: Vehicle) -> dict[str, Free]:

@@ -1,0 +1,93 @@
+"""What a study asks, in words and tables: the vehicle, its elements and layouts, and how the answer is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import pi
+
+import xarray as xr
+
+from inerter.figures.labels import capital, index_title, indices, quantity
+from inerter.networks.elements import Element, Free
+from inerter.study.schema import UNITS
+from inerter.study.values import Study
+from inerter.units import ELEMENT_UNITS
+
+_METHODS = {
+    "norm": "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
+}
+_CONVENTIONS = {
+    "exact": "The delay from one axle to the next is exact, and no filter is added to what the indices define.",
+    "paper2008": (
+        "As for the printed numbers of Wang and Su (2008), a fifth-order Padé approximant stands for the delay from "
+        "one axle to the next, and where the road arrives at two axles tyre loads are taken over s + 6.28 rad/s."
+    ),
+}
+
+
+@dataclass(frozen=True)
+class LayoutText:
+    """A layout: its name, whether it is the baseline, and the expression of each of its struts."""
+
+    name: str
+    baseline: bool
+    struts: dict[str, str]
+
+
+def vehicle_rows(study: Study) -> list[tuple[str, str]]:
+    """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
+    rows = [("Model", study.model.replace("-", " "))]
+    rows += [(capital(key.replace("_", " ")), quantity(value, UNITS[key])) for key, value in study.vehicle.items()]
+    speed, roughness = quantity(study.road.speed, "m/s"), quantity(study.road.roughness, UNITS["roughness"])
+    rows += [("Speed", f"{speed} ({3.6 * study.road.speed:.4g} km/h)"), ("Road roughness", roughness)]
+    if study.high_pass is not None:
+        corner = f"{quantity(study.high_pass, UNITS['high_pass'])} ({study.high_pass / (2.0 * pi):.3g} Hz)"
+        rows.append(("High-pass corner of the tyre load", corner))
+    return rows
+
+
+def element_rows(study: Study) -> list[tuple[str, str, str]]:
+    """The elements: name, kind, and value or bounds."""
+    return [
+        (name, ELEMENT_UNITS[element.unit], _value(study, name, element)) for name, element in study.elements.items()
+    ]
+
+
+def layout_rows(study: Study) -> list[LayoutText]:
+    """The layouts with the expressions of their struts; one without a mount where all struts are alike."""
+    rows = []
+    for name, layout in study.layouts.items():
+        texts = set(layout.struts.values())
+        rows.append(LayoutText(name, name == study.baseline, {"": texts.pop()} if len(texts) == 1 else layout.struts))
+    return rows
+
+
+def index_rows(study: Study, results: xr.Dataset) -> list[tuple[str, str]]:
+    """The indices: symbol and name."""
+    return [(index, index_title(results, index)) for index in indices(results)]
+
+
+def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
+    """How the numbers were computed, in sentences."""
+    methods = " and ".join(_METHODS.get(name, name) for name in study.evaluate)
+    yield f"Values are {methods}."
+    if study.optimise is None:
+        yield "Every layout was evaluated as it is given; nothing was optimised."
+    else:
+        again = f", and again for each value of {study.sweep.element}" if study.sweep else ""
+        yield (
+            f"The free values of each layout were chosen for each index on its own{again}, within their bounds, by "
+            f"local searches from many starting points of a sample with seed {study.seed}."
+        )
+    yield _CONVENTIONS.get(study.conventions, f"Conventions: {study.conventions}.")
+    yield f"Computed by inerter {results.attrs['inerter_version']}."
+
+
+def _value(study: Study, name: str, element: Element) -> str:
+    if study.sweep is not None and study.sweep.element == name:
+        ends = quantity(min(study.sweep.values), element.unit), quantity(max(study.sweep.values), element.unit)
+        return f"swept, {len(study.sweep.values)} values from {ends[0]} to {ends[1]}"
+    if isinstance(element.value, Free):
+        return f"free, {quantity(element.value.lower, element.unit)} to {quantity(element.value.upper, element.unit)}"
+    return quantity(element.value, element.unit)

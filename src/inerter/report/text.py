@@ -1,0 +1,130 @@
+"""Tables of results as plain text for a terminal of 80 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+
+import numpy as np
+import xarray as xr
+
+from inerter.figures.labels import (
+    compared,
+    index_title,
+    index_unit,
+    indices,
+    layouts,
+    one_method,
+    percent,
+    quantity,
+    swept_element,
+)
+from inerter.report.findings import extremes
+
+WIDTH = 80
+_LONGEST_NAME = 20  # a longer name of a layout has a line of its own
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A layout, what stands in the columns after it, what stands in the last one, and its status."""
+
+    name: str
+    cells: list[str]
+    items: list[str]
+    status: str
+
+
+def summary_table(results: xr.Dataset) -> str:
+    """The best designs, a block for each index: ASCII, at most 80 columns.
+
+    With a sweep, where each layout improves most and least on the baseline.
+    """
+    results = one_method(results)
+    block = _designs if swept_element(results) is None else _extremes
+    text = "\n\n".join("\n".join(block(results, index)) for index in indices(results))
+    return text.encode("ascii", "replace").decode()
+
+
+def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
+    unit, versus = index_unit(results, index), bool(compared(results))
+    yield _heading(results, index)
+    table = []
+    for name in layouts(results):
+        design = results.sel(layout=name, index=index)
+        improvement = "baseline" if name == results.attrs["baseline"] else percent(float(design["improvement"]))
+        cells = [quantity(float(design["value"]), unit), *([improvement] if versus else [])]
+        table.append(_Row(name, cells, _parameters(design), str(design["status"].item())))
+    yield from _lines(["layout", "value", *(["improvement"] if versus else [])], "parameters", table)
+
+
+def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
+    element, versus = str(swept_element(results)), bool(compared(results))
+    unit = results[element].attrs["units"]
+    rows = results["improvement" if versus else "value"].sel(index=index)
+    yield f"{_heading(results, index)}, over {element}"
+    table = []
+    for name in compared(results) or layouts(results):
+        ends = extremes(rows.sel(layout=name), element) or ((np.nan, np.nan),) * 2
+        texts = [
+            f"{percent(value) if versus else quantity(value, index_unit(results, index))} at {quantity(at, unit)}"
+            for value, at in ends
+        ]
+        texts = texts[::-1] if versus else texts
+        table.append(_Row(name, texts[:1], texts[1:], _first_failure(results, name, index)))
+    yield from _lines(["layout", "best"], "worst", table)
+
+
+def _heading(results: xr.Dataset, index: str) -> str:
+    baseline = f", compared with {results.attrs['baseline']}" if compared(results) else ""
+    return f"{index}: {index_title(results, index)}{baseline}"
+
+
+def _parameters(design: xr.Dataset) -> list[str]:
+    """The parameters of one design, each with its unit and the bound that it is at."""
+    found = []
+    for parameter in design["parameter"].values.tolist():
+        entry = design.sel(parameter=parameter)
+        value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
+        if np.isfinite(value):
+            text = f"{parameter} = {quantity(value, str(entry['parameter_unit'].item()))}"
+            found.append(f"{text} ({bound} bound)" if bound else text)
+    return found
+
+
+def _first_failure(results: xr.Dataset, layout: str, index: str) -> str:
+    """The first status over the sweep that is not ok, and how many there are."""
+    bad = [text for text in results["status"].sel(layout=layout, index=index).values.tolist() if text != "ok"]
+    if not bad:
+        return "ok"
+    return f"{bad[0]} ({len(bad)} of {results.sizes[str(swept_element(results))]} values are not ok)"
+
+
+def _lines(header: list[str], last: str, table: Sequence[_Row]) -> Iterator[str]:
+    """The rows below their header in columns; the items of the last column wrap."""
+    columns = [header, *([row.name if len(row.name) <= _LONGEST_NAME else "", *row.cells] for row in table)]
+    widths = [max(map(len, column)) for column in zip(*columns, strict=True)]
+    indent = 2 + sum(widths) + 2 * len(widths)
+    yield "  " + "".join(f"{text:<{width}}  " for text, width in zip(header, widths, strict=True)) + last
+    for row, cells in zip(table, columns[1:], strict=True):
+        if not cells[0]:
+            yield f"  {row.name}"
+        first = "  " + "".join(f"{text:<{width}}  " for text, width in zip(cells, widths, strict=True))
+        items = _packed(row.items, WIDTH - indent) or [""]
+        yield (first + items[0]).rstrip()
+        yield from (" " * indent + line for line in items[1:])
+        if row.status != "ok":
+            yield from wrap(row.status, WIDTH, initial_indent="    ! ", subsequent_indent="      ")
+
+
+def _packed(items: Sequence[str], width: int) -> list[str]:
+    """The items, separated by commas, on lines of `width`; a line ends between two items where it can."""
+    lines: list[str] = []
+    for i, item in enumerate(items):
+        text = item if i == len(items) - 1 else f"{item},"
+        if lines and len(lines[-1]) + 1 + len(text) <= width:
+            lines[-1] += f" {text}"
+        else:
+            lines += wrap(text, width)
+    return lines

@@ -29,7 +29,7 @@ def networks(depth: int = 4, most: int = 10) -> st.SearchStrategy[Network]:
         joined = st.one_of(
             elements(),
             st.builds(
-                lambda join, parts: reduce(join, parts),
+                reduce,
                 st.sampled_from([or_, sub]),
                 st.lists(joined, min_size=2, max_size=3),
             ),

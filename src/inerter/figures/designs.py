@@ -19,6 +19,7 @@ from inerter.figures.labels import (
     layouts,
     one_method,
     percent,
+    scale,
     typeset,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis
@@ -58,13 +59,14 @@ def frequency_responses(results: xr.Dataset, index: str, axes: Sequence[Axes]) -
     dimension, styles = f"output_{index}", layout_styles(layouts(results), results.attrs["baseline"])
     gain = results[f"gain_{index}"].transpose(dimension, "layout", "omega").sel(layout=layouts(results))
     frequency = gain["omega"].values / (2.0 * np.pi)
+    unit = scale(gain.max("omega").values, gain.attrs["units"])
     for ax, panel in zip(axes, gain, strict=True):
-        curves = np.where(np.isfinite(panel.values) & (panel.values > 0.0), panel.values, np.nan)
+        curves = np.where(np.isfinite(panel.values) & (panel.values > 0.0), panel.values * unit.factor, np.nan)
         for name, curve in zip(layouts(results), curves, strict=True):
             ax.plot(frequency, curve, **styles[name].curve())
         _show_peaks(ax, frequency, curves)
         ax.set_xlabel("Frequency [Hz]")
-        ax.set_ylabel(axis_label(capital(gain.attrs["long_name"]), gain.attrs["units"]))
+        ax.set_ylabel(axis_label(capital(gain.attrs["long_name"]), unit.unit))
         if len(axes) > 1:
             ax.set_title(str(panel[dimension].item()).replace("_", " ").capitalize())
     return axes

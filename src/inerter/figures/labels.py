@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from textwrap import fill
 
 import numpy as np
 import xarray as xr
@@ -14,6 +15,7 @@ from inerter.units import format_quantity, parse_quantity
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
+_NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -74,6 +76,11 @@ def quantity(value: float, unit: str) -> str:
     return "inf" if np.isinf(value) else format_quantity(value, unit)
 
 
+def printed(value: float, unit: str) -> str:
+    """A value as it is printed, on one line with its unit."""
+    return typeset(quantity(value, unit)).replace(" ", _NO_BREAK_SPACE)
+
+
 def percent(value: float) -> str:
     """An improvement with its sign, "-inf %", or "n/a" where there is none."""
     if np.isnan(value):
@@ -109,6 +116,6 @@ def scale(values: ArrayLike, unit: str) -> Scale:
 
 
 def axis_label(what: str, unit: str) -> str:
-    """The label of an axis: what it is, and its unit in brackets, on a line of its own where both together are long."""
-    text = f"{what} [{typeset(unit)}]"
-    return text if len(text) <= _LONGEST_LABEL else f"{what}\n[{typeset(unit)}]"
+    """The label of an axis: what it is, and its unit in brackets; on two lines where it is long."""
+    text = f"{what} [{typeset(unit).replace(' ', _NO_BREAK_SPACE)}]"
+    return text if len(text) <= _LONGEST_LABEL else fill(text, _LONGEST_LABEL, break_long_words=False)

@@ -115,7 +115,6 @@ def add_legend(figure: Figure, axes: Iterable[Axes]) -> Legend:
         legend = figure.legend(
             list(entries.values()), list(entries), loc="outside lower center", ncols=columns, columnspacing=1.5
         )
-        figure.draw_without_rendering()
         if columns == 1 or legend.get_window_extent().width <= 0.98 * available:
             break
         legend.remove()

@@ -18,65 +18,99 @@ Array = Any
 @compiled
 def contract(p: Array, stack: Array, out: Array) -> None:
     """Sum up a stack: out = stack[0] + sum p[i] stack[1 + i]."""
-    out[:, :] = stack[0]
-    for k in range(p.size):
-        value = p[k]
-        for i in range(out.shape[0]):
-            for j in range(out.shape[1]):
-                out[i, j] += value * stack[k + 1, i, j]
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            total = stack[0, i, j]
+            for k in range(p.size):
+                total += p[k] * stack[k + 1, i, j]
+            out[i, j] = total
+
+
+@compiled
+def even_out(S: Array, T: Array, size: Array) -> None:
+    """Divide each equation by its largest coefficient: inertia, damping and stiffness differ by their units."""
+    for i in range(S.shape[0]):
+        largest = 0.0
+        for j in range(S.shape[1]):
+            largest = max(largest, abs(S[i, j]))
+        size[i] = largest
+        if largest > 0.0:
+            for j in range(S.shape[1]):
+                S[i, j] /= largest
+            for j in range(T.shape[1]):
+                T[i, j] /= largest
+
+
+@compiled
+def closing_space(descriptor: Array) -> Any:
+    """Room for `close_in`: allocation would cost as much as the arithmetic."""
+    S, R, F, _, _, _, _, Y_x, _ = descriptor
+    e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
+    A, B, C, D = np.empty((n, n)), np.empty((n, m)), np.empty((o, n)), np.empty((o, m))
+    T, LU, pivots, size = np.empty((e, n + m)), np.empty((e, e)), np.empty(e, np.int64), np.empty(e)
+    return A, B, C, D, T, (LU, pivots, size), np.empty((o, e)), np.empty(e)
 
 
 @compiled
 def close(p: Array, descriptor: Array) -> Any:
     """A, B, C, D, the solution T = S^-1 [R F], the factors of S, and whether all went well."""
+    space = closing_space(descriptor)
+    good = close_in(space, p, descriptor)
+    A, B, C, D, T, factors, _, _ = space
+    return A, B, C, D, T, factors, good
+
+
+@compiled
+def close_in(space: Array, p: Array, descriptor: Array) -> bool:
+    """Fill `space` with what `close` returns; False if S is singular."""
     S, R, F, X_eta, X_x, X_u, Y_eta, Y_x, Y_u = descriptor
+    A, B, C, D, T, factors, Y, column = space
+    LU, pivots, size = factors
     e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
-    LU, pivots = np.empty((e, e)), np.empty(e, np.int64)
-    RF = np.empty((e, n + m))
     contract(p, S, LU)
-    contract(p, R, RF[:, :n])
-    contract(p, F, RF[:, n:])
-    good = factor(LU, pivots)
-    A, B, C, D = X_x.copy(), X_u.copy(), np.empty((o, n)), np.empty((o, m))
+    contract(p, R, T[:, :n])
+    contract(p, F, T[:, n:])
+    contract(p, Y_eta, Y)
     contract(p, Y_x, C)
     contract(p, Y_u, D)
-    if good:
-        column = np.empty(e)
-        for j in range(n + m):
-            for i in range(e):
-                column[i] = RF[i, j]
-            solve(LU, pivots, column)
-            for i in range(e):
-                RF[i, j] = column[i]
-        Y = np.empty((o, e))
-        contract(p, Y_eta, Y)
-        for k in range(e):
-            for i in range(n):
-                x = X_eta[i, k]
-                if x != 0.0:
-                    for j in range(n):
-                        A[i, j] += x * RF[k, j]
-                    for j in range(m):
-                        B[i, j] += x * RF[k, n + j]
-            for i in range(o):
-                y = Y[i, k]
-                if y != 0.0:
-                    for j in range(n):
-                        C[i, j] += y * RF[k, j]
-                    for j in range(m):
-                        D[i, j] += y * RF[k, n + j]
-    return A, B, C, D, RF, LU, pivots, good
+    A[:, :], B[:, :] = X_x, X_u
+    even_out(LU, T, size)
+    if not factor(LU, pivots):
+        return False
+    for j in range(n + m):
+        for i in range(e):
+            column[i] = T[i, j]
+        solve(LU, pivots, column)
+        for i in range(e):
+            T[i, j] = column[i]
+    for k in range(e):
+        for i in range(n):
+            x = X_eta[i, k]
+            if x != 0.0:
+                for j in range(n):
+                    A[i, j] += x * T[k, j]
+                for j in range(m):
+                    B[i, j] += x * T[k, n + j]
+        for i in range(o):
+            y = Y[i, k]
+            if y != 0.0:
+                for j in range(n):
+                    C[i, j] += y * T[k, j]
+                for j in range(m):
+                    D[i, j] += y * T[k, n + j]
+    return True
 
 
 @compiled
 def pull_back(
-    p: Array, descriptor: Array, T: Array, LU: Array, pivots: Array, G_A: Array, G_B: Array, G_C: Array, G_D: Array
+    p: Array, descriptor: Array, T: Array, factors: Array, G_A: Array, G_B: Array, G_C: Array, G_D: Array
 ) -> Array:
     """Gradient over the values p from the gradients over A, B, C and D.
 
     With T = S^-1 [R F]: dT = S^-1 (d[R F] - dS T), so one transposed solve serves every value.
     """
     S, R, F, X_eta, _, _, Y_eta, Y_x, Y_u = descriptor
+    LU, pivots, size = factors
     e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
     Y = np.empty((o, e))
     contract(p, Y_eta, Y)
@@ -98,6 +132,8 @@ def pull_back(
                     G_T[n + j, k] += y * G_D[i, j]
     for j in range(n + m):
         solve_transposed(LU, pivots, G_T[j])
+        for i in range(e):
+            G_T[j, i] /= size[i]
     gradient = np.zeros(p.size)
     for v in range(p.size):
         total = 0.0

@@ -16,36 +16,36 @@ _GOLDEN = 0.6180339887498949
 
 
 @compiled
-def resolve(A: Array, omega: float, M: Array, pivots: Array) -> bool:
-    """M becomes the factors of j omega - A."""
+def resolve(A: Array, scale: Array, omega: float, M: Array, pivots: Array) -> bool:
+    """M becomes the factors of j omega - A, with the states in units of `scale`."""
     n = A.shape[0]
     for i in range(n):
         for j in range(n):
-            M[i, j] = -A[i, j]
+            M[i, j] = -A[i, j] * scale[j] / scale[i]
         M[i, i] += 1j * omega
     return factor(M, pivots)
 
 
 @compiled
-def gain_at(A: Array, B: Array, C: Array, D: Array, omega: float) -> Any:
+def gain_at(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float) -> Any:
     """|G(j omega)|, infinite at a pole."""
     n = A.shape[0]
     M, pivots, r = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
     for i in range(n):
-        r[i] = B[i, 0]
-    if not resolve(A, omega, M, pivots):
+        r[i] = B[i, 0] / scale[i]
+    if not resolve(A, scale, omega, M, pivots):
         return np.inf
     solve(M, pivots, r)
     G = D[0, 0] + 0j
     for i in range(n):
-        G += C[0, i] * r[i]
+        G += C[0, i] * scale[i] * r[i]
     return abs(G)
 
 
 @compiled
 def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
     """|G(j omega)| and its gradient over the values p (frequencies, values) at each of `omegas`."""
-    A, B, C, D, T, LU, S_pivots, good = close(p, descriptor)
+    A, B, C, D, T, factors, good = close(p, descriptor)
     n, count = A.shape[0], omegas.size
     values, gradients = np.full(count, np.nan), np.full((count, p.size), np.nan)
     if not good:
@@ -53,16 +53,19 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
     M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
     r, left = np.empty(n, np.complex128), np.empty(n, np.complex128)
     G_A, G_B, G_C, G_D = np.empty((n, n)), np.empty((n, 1)), np.empty((1, n)), np.empty((1, 1))
+    scale = units(A)
     for k in range(count):
         for i in range(n):
-            r[i], left[i] = B[i, 0], C[0, i]
-        if not resolve(A, omegas[k], M, pivots):
+            r[i], left[i] = B[i, 0] / scale[i], C[0, i] * scale[i]
+        if not resolve(A, scale, omegas[k], M, pivots):
             values[k] = np.inf
             continue
         solve(M, pivots, r)
         solve_transposed(M, pivots, left)
         G = D[0, 0] + 0j
         for i in range(n):
+            r[i] *= scale[i]
+            left[i] /= scale[i]
             G += C[0, i] * r[i]
         values[k] = abs(G)
         h = np.conj(G) / values[k] if values[k] > 0.0 else 0j
@@ -71,7 +74,7 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
                 G_A[i, j] = (h * left[i] * r[j]).real
             G_B[i, 0], G_C[0, i] = (h * left[i]).real, (h * r[i]).real
         G_D[0, 0] = h.real
-        gradients[k] = pull_back(p, descriptor, T, LU, S_pivots, G_A, G_B, G_C, G_D)
+        gradients[k] = pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D)
     return values, gradients
 
 
@@ -139,7 +142,7 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
     omegas, found = np.empty(count), np.empty(count)
     number = 0
     if count == 1 or values[0] > values[1]:
-        omegas[0], found[0] = 0.0, gain_at(A, B, C, D, 0.0)
+        omegas[0], found[0] = 0.0, gain_at(A, B, C, D, scale, 0.0)
         number = 1
     for k in range(1, count - 1):
         if values[k] > values[k - 1] and values[k] > values[k + 1]:
@@ -157,7 +160,7 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
                     b = low + _GOLDEN * (high - low)
                     gb = modal_gain(poles, residues, D[0, 0], b)
             omegas[number] = 0.5 * (low + high)
-            found[number] = gain_at(A, B, C, D, omegas[number])
+            found[number] = gain_at(A, B, C, D, scale, omegas[number])
             number += 1
     return omegas[:number], found[:number]
 
@@ -165,7 +168,7 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
 @compiled
 def peaks_at(p: Array, descriptor: Array) -> Any:
     """`peaks` of the system at the values p."""
-    A, B, C, D, _, _, _, good = close(p, descriptor)
+    A, B, C, D, _, _, good = close(p, descriptor)
     if not good:
         return np.zeros(0), np.zeros(0)
     return peaks(A, B, C, D)
@@ -176,7 +179,7 @@ def largest_gains(points: Array, descriptor: Array) -> Array:
     """Largest gain at each row of `points`; nan where it could not be found."""
     result = np.full(points.shape[0], np.nan)
     for i in range(points.shape[0]):
-        A, B, C, D, _, _, _, good = close(points[i], descriptor)
+        A, B, C, D, _, _, good = close(points[i], descriptor)
         if good:
             _, found = peaks(A, B, C, D)
             largest = abs(D[0, 0])

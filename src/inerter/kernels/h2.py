@@ -12,42 +12,26 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels import compiled
-from inerter.kernels.closing import close, pull_back
-from inerter.kernels.linalg import exponential, factor, solve, solve_transposed
+from inerter.kernels.closing import close_in, closing_space, pull_back
+from inerter.kernels.linalg import exponential, factor, matmul, solve, solve_transposed
 
 Array = Any
 
 
 @compiled
-def lyapunov_factors(A: Array, A_scale: Array) -> Any:
-    """Factors of P -> A P + P A' over packed symmetric P; entries are balanced by `A_scale`."""
-    n = A.shape[0]
-    N = n * (n + 1) // 2
-    place = np.empty((n, n), np.int64)
-    count = 0
-    for i in range(n):
-        for j in range(i, n):
-            place[i, j] = count
-            place[j, i] = count
-            count += 1
-    K = np.zeros((N, N))
-    for i in range(n):
-        for j in range(i, n):
-            row = place[i, j]
-            for k in range(n):
-                K[row, place[k, j]] += A[i, k] * A_scale[k] / A_scale[i]
-                K[row, place[i, k]] += A[j, k] * A_scale[k] / A_scale[j]
-    pivots = np.empty(N, np.int64)
-    good = factor(K, pivots)
-    return K, pivots, place, good
+def units(A: Array) -> Array:
+    """Units of the states that even out rows and columns of A: a few sweeps of balancing."""
+    scale = np.empty(A.shape[0])
+    balance(A, scale)
+    return scale
 
 
 @compiled
-def units(A: Array) -> Array:
-    """Units of the states that even out rows and columns of A: a few sweeps of balancing."""
+def balance(A: Array, scale: Array) -> None:
+    """Fill `scale` with `units`. They depend on A alone, so that a result does not depend on what came before it."""
     n = A.shape[0]
-    scale = np.ones(n)
-    for _ in range(4):
+    scale[:] = 1.0
+    for _ in range(3):
         for i in range(n):
             row, column = 0.0, 0.0
             for j in range(n):
@@ -56,7 +40,45 @@ def units(A: Array) -> Array:
                     column += abs(A[j, i]) / scale[j]
             if row > 0.0 and column > 0.0:
                 scale[i] = np.sqrt(row / column)
-    return scale
+
+
+@compiled
+def places(n: int) -> Array:
+    """Where the entries of a symmetric matrix of order n stand when each is listed once."""
+    place = np.empty((n, n), np.int64)
+    count = 0
+    for i in range(n):
+        for j in range(i, n):
+            place[i, j] = count
+            place[j, i] = count
+            count += 1
+    return place
+
+
+@compiled
+def lyapunov_space(n: int) -> Any:
+    """Room for the Lyapunov equations of order n: factors, pivots, places, units, a right-hand side, A in its units."""
+    N = n * (n + 1) // 2
+    return np.zeros((N, N)), np.empty(N, np.int64), places(n), np.ones(n), np.empty(N), np.empty((n, n))
+
+
+@compiled
+def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
+    """Factors of P -> A P + P A' over symmetric P, in balanced units; False if singular."""
+    K, pivots, place, scale, _, scaled = lyapunov
+    n = A.shape[0]
+    balance(A, scale)
+    for i in range(n):
+        for j in range(n):
+            scaled[i, j] = A[i, j] * scale[j] / scale[i]
+    K[:, :] = 0.0
+    for i in range(n):
+        for j in range(i, n):
+            row = place[i, j]
+            for k in range(n):
+                K[row, place[k, j]] += scaled[i, k]
+                K[row, place[i, k]] += scaled[j, k]
+    return factor(K, pivots)
 
 
 @compiled
@@ -129,10 +151,10 @@ def high_passed(A: Array, B: Array, C: Array, D: Array, corner: float) -> Any:
 
 
 @compiled
-def solve_symmetric(K: Array, pivots: Array, place: Array, scale: Array, W: Array, adjoint: bool, b: Array) -> Array:
-    """P of A P + P A' + W = 0, or Q of A' Q + Q A + W = 0, from the factors of the former."""
+def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
+    """P of A P + P A' + W = 0, or of A' P + P A + W = 0, from the factors of the former."""
+    K, pivots, place, scale, b, _ = lyapunov
     n = W.shape[0]
-    P = np.empty((n, n))
     for i in range(n):
         for j in range(i, n):
             weight = 2.0 if adjoint and i != j else 1.0
@@ -148,54 +170,78 @@ def solve_symmetric(K: Array, pivots: Array, place: Array, scale: Array, W: Arra
             unit = 1.0 / (scale[i] * scale[j]) if adjoint else scale[i] * scale[j]
             P[i, j] = b[place[i, j]] * weight * unit
             P[j, i] = P[i, j]
-    return P
 
 
 @compiled
-def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array, want_gradient: bool) -> Any:
-    """Norm of each output, gradient of their weighted sum over p, and whether all went well.
+def norms_space(descriptor: Array, corner: float) -> Any:
+    """Room for `norms_in`."""
+    n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
+    order = n + o if corner > 0.0 else n
+    return (
+        closing_space(descriptor),
+        lyapunov_space(order),
+        np.zeros((m, order)),
+        np.empty((order, order)),
+        np.empty((order, order)),
+        np.empty((o, order)),
+    )
 
-    `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the next, and the Pade
-    approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
-    """
+
+@compiled
+def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, result: Array) -> bool:
+    """Fill `result` with the norm of each output; False if that did not go well. See `norms` for the arguments."""
+    closing, lyapunov, met, W, P, CP = space
     gaps, poles, residues, direct = arrivals
-    A0, B0, C0, D0, T, LU, S_pivots, good = close(p, descriptor)
-    o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
-    result, gradient = np.full(o, np.nan), np.full(p.size, np.nan)
-    if not good:
-        return result, gradient, False
-    A, B, C = A0, B0, C0
+    if not close_in(closing, p, descriptor):
+        return False
+    A, B, C = closing[0], closing[1], closing[2]
     if corner > 0.0:
-        A, B, C = high_passed(A0, B0, C0, D0, corner)
-    n = A.shape[0]
-    scale = units(A)
-    K, pivots, place, good = lyapunov_factors(A, scale)
-    if not good:
-        return result, gradient, False
-    met = np.zeros((m, n))
+        A, B, C = high_passed(A, B, C, closing[3], corner)
+    n, m, o = A.shape[0], B.shape[1], C.shape[0]
+    if not lyapunov_factors(A, lyapunov):
+        return False
     for j in range(1, m):
         met[j] = propagated(A, gaps[j - 1], met[j - 1] + B[:, j - 1], poles, residues, direct)
-    W = np.zeros((n, n))
-    for c in range(m):
-        for i in range(n):
-            for j in range(n):
+    for i in range(n):
+        for j in range(n):
+            W[i, j] = 0.0
+            for c in range(m):
                 W[i, j] += B[i, c] * B[j, c] + met[c, i] * B[j, c] + B[i, c] * met[c, j]
-    work = np.empty(K.shape[0])
-    P = solve_symmetric(K, pivots, place, scale, W, False, work)
-    CP = np.zeros((o, n))
+    solve_symmetric(lyapunov, W, False, P)
     for k in range(o):
         total = 0.0
         for i in range(n):
+            CP[k, i] = 0.0
             for j in range(n):
                 CP[k, i] += P[i, j] * C[k, j]
             total += CP[k, i] * C[k, i]
         result[k] = np.sqrt(total)
     for i in range(n):
         if not P[i, i] >= 0.0:
-            good = False
-    if not want_gradient or not good:
-        return result, gradient, good
-    CC = np.zeros((n, n))
+            return False
+    return True
+
+
+@compiled
+def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array) -> Any:
+    """Norm of each output, gradient of their weighted sum over p, and whether all went well.
+
+    `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the next, and the Pade
+    approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
+    """
+    space = norms_space(descriptor, corner)
+    closing, lyapunov, met, CC, P, CP = space
+    A0, B0, C0, D0, T, factors, _, _ = closing
+    gaps, poles, residues, direct = arrivals
+    o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
+    result, gradient = np.full(o, np.nan), np.full(p.size, np.nan)
+    if not norms_in(space, p, descriptor, arrivals, corner, result):
+        return result, gradient, False
+    A, B, C = A0, B0, C0
+    if corner > 0.0:
+        A, B, C = high_passed(A0, B0, C0, D0, corner)
+    n = A.shape[0]
+    CC[:, :] = 0.0
     G_C = np.zeros((o, n))
     for k in range(o):
         share = weights[k] / (2.0 * result[k]) if result[k] > 0.0 else 0.0
@@ -203,9 +249,12 @@ def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: 
             G_C[k, i] = 2.0 * share * CP[k, i]
             for j in range(n):
                 CC[i, j] += share * C[k, i] * C[k, j]
-    Q = solve_symmetric(K, pivots, place, scale, CC, True, work)
-    G_A, G_B = 2.0 * (Q @ P), np.zeros((n, m))
-    carry = np.zeros(n)
+    Q = np.empty((n, n))
+    solve_symmetric(lyapunov, CC, True, Q)
+    G_A, G_B = np.empty((n, n)), np.zeros((n, m))
+    matmul(Q, P, G_A)
+    G_A *= 2.0
+    carry = np.zeros(n)  # what later arrivals make of the state that this one leaves
     for c in range(m - 1, -1, -1):
         QB, Qmet = np.zeros(n), np.zeros(n)
         for i in range(n):
@@ -215,28 +264,25 @@ def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: 
         for i in range(n):
             G_B[i, c] += 2.0 * (QB[i] + Qmet[i]) + carry[i]
         if c > 0:
-            # carry reaches met[c] from the arrival after this one, as well as B[:, c]
             bar = 2.0 * QB + carry
             u = met[c - 1] + B[:, c - 1]
             carry = propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A)
     G_D = np.zeros((o, m))
-    if corner > 0.0:
-        G_C0 = G_C[:, :n0] + G_A[n0:, :n0]
+    if corner > 0.0:  # the filter's states repeat C and D in its A and B
         for i in range(o):
             for j in range(m):
                 G_D[i, j] = G_B[n0 + i, j]
-        gradient = pull_back(p, descriptor, T, LU, S_pivots, G_A[:n0, :n0].copy(), G_B[:n0].copy(), G_C0, G_D)
-    else:
-        gradient = pull_back(p, descriptor, T, LU, S_pivots, G_A, G_B, G_C, G_D)
-    return result, gradient, good
+        G_C = G_C[:, :n0] + G_A[n0:, :n0]
+        G_A, G_B = G_A[:n0, :n0].copy(), G_B[:n0].copy()
+    return result, pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D), True
 
 
 @compiled
 def norms_of_many(points: Array, descriptor: Array, arrivals: Array, corner: float) -> Any:
     """Norms (designs, outputs) at each row of `points`, and whether each went well."""
-    outputs = descriptor[7].shape[1]
-    result, good = np.empty((points.shape[0], outputs)), np.empty(points.shape[0], np.bool_)
-    weights = np.ones(outputs)
+    space = norms_space(descriptor, corner)
+    result = np.full((points.shape[0], descriptor[7].shape[1]), np.nan)
+    good = np.empty(points.shape[0], np.bool_)
     for i in range(points.shape[0]):
-        result[i], _, good[i] = norms(points[i], descriptor, arrivals, corner, weights, False)
+        good[i] = norms_in(space, points[i], descriptor, arrivals, corner, result[i])
     return result, good

@@ -13,34 +13,25 @@ Array = Any  # compiled code is typed when it is compiled
 
 @compiled
 def factor(A: Array, pivots: Array) -> bool:
-    """LU factors of A in its place, with scaled partial pivoting; False if A is singular."""
+    """LU factors of A in its place, with partial pivoting; False if A is singular. Rows should be of like size."""
     n = A.shape[0]
-    size = np.empty(n)
-    for i in range(n):
-        largest = 0.0
-        for j in range(n):
-            largest = max(largest, abs(A[i, j]))
-        if largest == 0.0 or not np.isfinite(largest):
-            return False
-        size[i] = 1.0 / largest
     for k in range(n):
-        best, row = -1.0, k
-        for i in range(k, n):
-            here = abs(A[i, k]) * size[i]
+        best, row = abs(A[k, k]), k
+        for i in range(k + 1, n):
+            here = abs(A[i, k])
             if here > best:
                 best, row = here, i
-        if best == 0.0:
+        if not (best > 0.0 and best < np.inf):
             return False
         pivots[k] = row
         if row != k:
             for j in range(n):
                 A[k, j], A[row, j] = A[row, j], A[k, j]
-            size[row] = size[k]
         inverse = 1.0 / A[k, k]
         for i in range(k + 1, n):
             if A[i, k] != 0.0:
-                A[i, k] *= inverse
-                ratio = A[i, k]
+                ratio = A[i, k] * inverse
+                A[i, k] = ratio
                 for j in range(k + 1, n):
                     A[i, j] -= ratio * A[k, j]
     return True

@@ -107,7 +107,7 @@ class CompiledQuestion:
             return float(gains[highest]), gradients[highest]
         if self.serves:
             norms, gradient, good = h2_kernels.norms(
-                point, self.descriptor, self.arrivals, self.corner, self.problem.weights, True
+                point, self.descriptor, self.arrivals, self.corner, self.problem.weights
             )
             if good:
                 return float(norms @ self.problem.weights), gradient

@@ -31,7 +31,7 @@ KEY = "wang-su-2008"
 STUDIES = ("table1", "table2", "figure11")
 _DATA = files("inerter.papers") / "data" / KEY
 _LAYOUT_OF = {"none": "", "ideal": "", "elastic": "-soft", "elastic soft": "-soft", "elastic hard": "-hard"}
-_WORSE = 1e-6  # relative difference of two optima below which they are equally good
+_WORSE = 1e-4  # two optima that differ by less, relatively, are equally good: no figure shows it
 _DESIGN_COLUMNS = ("c", "b", "c_f", "c_r", "b_f", "b_r")
 
 
@@ -198,7 +198,8 @@ def _optimal(source: Study, layout: str, index: str, k: float) -> float:
 def crossings(result: StudyResult, index: str, one: str, other: str) -> list[float]:
     """Stiffnesses k [N/m] between the swept values at which `one` becomes worse than `other`, or no longer is.
 
-    Worse means by more than one part in a million: where the static compliance decides J5, layouts are equally good.
+    Worse means by more than a hundredth of a per cent: where the static compliance decides J5, layouts are equally
+    good.
     """
     source, k = result.study, result.data["k"].values
     excess = _excess(result, index, one, other)
@@ -267,13 +268,13 @@ def _claim_3(result: StudyResult) -> Claim:
     for kind in ("soft", "hard"):
         excess = _excess(result, "J5", f"S3-{kind}", "S1")
         found = crossings(result, "J5", f"S3-{kind}", "S1")
-        near |= len(found) == 2 and found[0] <= 55e3 <= found[1]
+        there = _optimal(result.study, f"S3-{kind}", "J5", 55e3) / _optimal(result.study, "S1", "J5", 55e3) - 1.0
+        near |= there > _WORSE
         worst = int(np.argmax(excess))
         evidence.append(
-            f"S3 {kind} is worse than S1 from k = {_kilo(found, ' to ')} kN/m, by {100.0 * excess[worst]:.2f} % "
-            f"at {result.data['k'].values[worst] / 1e3:.0f} kN/m"
-            if found
-            else f"S3 {kind} is nowhere worse than S1"
+            f"at 55 kN/m S3 {kind} is {abs(100.0 * there):.2f} % {'worse' if there > 0.0 else 'better'} than S1"
+            + (f"; the order changes at k = {_kilo(found)} kN/m" if found else "")
+            + f", at worst it is {100.0 * excess[worst]:.2f} % above, at {result.data['k'].values[worst] / 1e3:.0f} kN/m"
         )
     return Claim(
         3,
@@ -288,8 +289,8 @@ def _verdict(holds: bool, as_printed: bool = True) -> str:
     return ("holds" if as_printed else "holds with another number") if holds else "does not hold"
 
 
-def _kilo(values: list[float], between: str = " and ") -> str:
-    return between.join(f"{value / 1e3:.1f}" for value in values) or "(no crossing)"
+def _kilo(values: list[float]) -> str:
+    return " and ".join(f"{value / 1e3:.1f}" for value in values) or "(no crossing)"
 
 
 def tables(reproduction: LinearReproduction) -> dict[str, list[dict[str, Any]]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 
@@ -16,14 +18,19 @@ from inerter.figures.labels import (
     swept_element,
 )
 
+Writer = Callable[[float, str], str]
+
 _NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 
 
-def headlines(results: xr.Dataset) -> list[str]:
-    """One sentence for each index: which layout is best, how good it is, and how much better than the baseline."""
+def headlines(results: xr.Dataset, write: Writer = quantity) -> list[str]:
+    """One sentence for each index: which layout is best, how good it is, and how much better than the baseline.
+
+    `write` turns a number and its unit into text.
+    """
     results = one_method(results)
     sentence = _of_designs if swept_element(results) is None else _of_sweep
-    return [sentence(results, index) for index in indices(results)]
+    return [sentence(results, index, write) for index in indices(results)]
 
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
@@ -43,24 +50,24 @@ def extremes(row: xr.DataArray, element: str) -> tuple[tuple[float, float], tupl
     return (float(numbers[least]), float(swept[least])), (float(numbers[largest]), float(swept[largest]))
 
 
-def _of_designs(results: xr.Dataset, index: str) -> str:
+def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
     title, baseline = index_title(results, index), results.attrs["baseline"]
     best = best_layout(results, index)
     if best is None:
         return f"Best {title}: no layout has a finite value."
     design = results.sel(layout=best, index=index)
-    answer = f"Best {title}: {best}, {quantity(float(design['value']), index_unit(results, index))}"
+    answer = f"Best {title}: {best}, {write(float(design['value']), index_unit(results, index))}"
     if best == baseline:
         return f"{answer}; no other layout is better than this baseline."
     improvement = float(design["improvement"])
     if not np.isfinite(improvement):
-        return f"{answer}."
+        return f"{answer}; {baseline} has no finite value." if baseline else f"{answer}."
     if improvement < _NOTICEABLE:
         return f"{answer}, no better than {baseline}."
     return f"{answer}, {improvement:.1f} % better than {baseline}."
 
 
-def _of_sweep(results: xr.Dataset, index: str) -> str:
+def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
     element, title, baseline = str(swept_element(results)), index_title(results, index), results.attrs["baseline"]
     unit = results[element].attrs["units"]
     names = compared(results) or results["layout"].values.tolist()
@@ -71,18 +78,16 @@ def _of_sweep(results: xr.Dataset, index: str) -> str:
     if not compared(results):
         name = min(found, key=lambda name: found[name][0][0])
         value, at = found[name][0]
-        return (
-            f"Best {title}: {name}, {quantity(value, index_unit(results, index))} at {element} = {quantity(at, unit)}."
-        )
+        return f"Best {title}: {name}, {write(value, index_unit(results, index))} at {element} = {write(at, unit)}."
     name = max(found, key=lambda name: found[name][1][0])
     (least, _), (largest, at) = found[name]
     if largest < _NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {element}."
     return (
         f"Best {title} compared with {baseline} of the same {element}: {name}, {largest:.1f} % better at "
-        f"{element} = {quantity(at, unit)}; its improvement over the sweep is {_range(least, largest)}."
+        f"{element} = {write(at, unit)}; its improvement over the sweep lies {_range(least, largest)}."
     )
 
 
 def _range(least: float, largest: float) -> str:
-    return " to ".join(percent(value).removeprefix("+") for value in (least, largest))
+    return "between " + " and ".join(percent(value).removeprefix("+") for value in (least, largest))

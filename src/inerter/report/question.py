@@ -8,11 +8,11 @@ from math import pi
 
 import xarray as xr
 
-from inerter.figures.labels import capital, index_title, indices, quantity
+from inerter.figures.labels import capital, index_title, indices
 from inerter.networks.elements import Element, Free
 from inerter.study.schema import UNITS
 from inerter.study.values import Study
-from inerter.units import ELEMENT_UNITS
+from inerter.units import ELEMENT_UNITS, format_quantity
 
 _METHODS = {
     "norm": "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
@@ -38,11 +38,11 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    rows += [(capital(key.replace("_", " ")), quantity(value, UNITS[key])) for key, value in study.vehicle.items()]
-    speed, roughness = quantity(study.road.speed, "m/s"), quantity(study.road.roughness, UNITS["roughness"])
+    rows += [(capital(key.replace("_", " ")), _given(value, UNITS[key])) for key, value in study.vehicle.items()]
+    speed, roughness = _given(study.road.speed, "m/s"), _given(study.road.roughness, UNITS["roughness"])
     rows += [("Speed", f"{speed} ({3.6 * study.road.speed:.4g} km/h)"), ("Road roughness", roughness)]
     if study.high_pass is not None:
-        corner = f"{quantity(study.high_pass, UNITS['high_pass'])} ({study.high_pass / (2.0 * pi):.3g} Hz)"
+        corner = f"{_given(study.high_pass, UNITS['high_pass'])} ({study.high_pass / (2.0 * pi):.3g} Hz)"
         rows.append(("High-pass corner of the tyre load", corner))
     return rows
 
@@ -78,7 +78,8 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         again = f", and again for each value of {study.sweep.element}" if study.sweep else ""
         yield (
             f"The free values of each layout were chosen for each index on its own{again}, within their bounds, by "
-            f"local searches from many starting points of a sample with seed {study.seed}."
+            f"local searches from many starting points of a sample with seed {study.seed}. Agreement is the number of "
+            "searches that ended at the best value found."
         )
     yield _CONVENTIONS.get(study.conventions, f"Conventions: {study.conventions}.")
     yield f"Computed by inerter {results.attrs['inerter_version']}."
@@ -86,8 +87,13 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
 
 def _value(study: Study, name: str, element: Element) -> str:
     if study.sweep is not None and study.sweep.element == name:
-        ends = quantity(min(study.sweep.values), element.unit), quantity(max(study.sweep.values), element.unit)
+        ends = _given(min(study.sweep.values), element.unit), _given(max(study.sweep.values), element.unit)
         return f"swept, {len(study.sweep.values)} values from {ends[0]} to {ends[1]}"
     if isinstance(element.value, Free):
-        return f"free, {quantity(element.value.lower, element.unit)} to {quantity(element.value.upper, element.unit)}"
-    return quantity(element.value, element.unit)
+        return f"free, {_given(element.value.lower, element.unit)} to {_given(element.value.upper, element.unit)}"
+    return _given(element.value, element.unit)
+
+
+def _given(value: float, unit: str) -> str:
+    """A value with all digits that the study file gives it, on the line of its unit."""
+    return format_quantity(value, unit, digits=12).replace(" ", "\N{NO-BREAK SPACE}")

@@ -1,0 +1,111 @@
+"""What each command does, in calls of the library."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from inerter.cli.progress import progress
+from inerter.errors import StudyError
+from inerter.figures.study import draw_study
+from inerter.papers import wang_su_2008
+from inerter.report.page import write_report
+from inerter.report.text import summary_table
+from inerter.study.file import load_study
+from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study
+
+
+def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool) -> int:
+    """Run a study file into a folder; returns the exit code."""
+    loaded = load_study(study)
+    folder = output or Path(f"{study.stem}-results")
+    _check_jobs(jobs)
+    try:
+        with progress(study.stem) as callback:
+            result = run_study(loaded, folder, jobs=jobs, resume=resume, force=force, progress=callback)
+    except KeyboardInterrupt:
+        _say(f"interrupted; what was computed is kept. Continue with: inerter run {study} -o {folder} --resume")
+        return 1
+    draw_study(result.data, folder / FIGURES)
+    write_report(result.data, loaded, folder / FIGURES, folder / REPORT)
+    print(_as_json(result) if as_json else f"{loaded.title}\n\n{summary_table(result.data)}")
+    _say(f"report: {folder / REPORT}")
+    return _judge(result)
+
+
+def check(study: Path) -> int:
+    """Check a study file; returns the exit code."""
+    loaded = load_study(study)
+    check_study(loaded)
+    points = len(loaded.sweep.values) if loaded.sweep else 1
+    count = len(loaded.layouts) * len(loaded.indices) * points
+    swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
+    print(
+        f"{study}: ok. {loaded.model}; layouts {', '.join(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}: "
+        f"{count} designs to {'find' if loaded.optimise else 'judge'}."
+    )
+    return 0
+
+
+def reproduce(output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool) -> int:
+    """Reproduce the linear part of Wang and Su (2008); returns the exit code."""
+    from inerter.report import reproduction as pages
+
+    folder = output or Path(f"{wang_su_2008.KEY}-results")
+    _check_jobs(jobs)
+    try:
+        with progress(wang_su_2008.KEY) as callback:
+            found = wang_su_2008.reproduce_linear(folder, jobs=jobs, resume=resume, force=force, progress=callback)
+    except KeyboardInterrupt:
+        _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")
+        return 1
+    pages.write_reproduction(found, folder)
+    print(json.dumps(wang_su_2008.tables(found), indent=2) if as_json else pages.reproduction_text(found))
+    _say(f"report: {folder / REPORT}")
+    return max(_judge(result) for result in found.studies.values())
+
+
+def _check_jobs(jobs: int | None) -> None:
+    if jobs is not None and jobs < 1:
+        raise StudyError(f"--jobs must be 1 or more processes, got {jobs}. Leave it out to use all cores.")
+
+
+def _judge(result: StudyResult) -> int:
+    """Say what is not an ordinary number; the work has failed if a case has no number at all."""
+    for line in result.failures:
+        _say(line)
+    return 1 if bool(result.data.status.str.startswith("failed").any()) else 0
+
+
+def _as_json(result: StudyResult) -> str:
+    data = result.data
+    rows: list[dict[str, Any]] = []
+    stacked = data[["value", "improvement", "status"]].stack(case=[d for d in data.value.dims])
+    for i, place in enumerate(stacked.case.values.tolist()):
+        labels = dict(zip(data.value.dims, place, strict=True))
+        design = data.sel({name: labels[name] for name in labels if name != "method"})
+        values = zip(data.parameter.values.tolist(), design.parameter_value.values.tolist(), strict=True)
+        rows.append(
+            {
+                **labels,
+                "value": _finite(stacked.value.values[i]),
+                "unit": str(design.index_unit.item()),
+                "improvement_percent": _finite(stacked.improvement.values[i]),
+                "status": str(stacked.status.values[i]),
+                "parameters": {name: value for name, value in values if np.isfinite(value)},
+            }
+        )
+    return json.dumps({**data.attrs, "designs": rows}, indent=2)
+
+
+def _finite(value: float) -> float | str | None:
+    """JSON has no infinity: it is the text "inf"; what there is not is null."""
+    return None if np.isnan(value) else float(value) if np.isfinite(value) else "inf"
+
+
+def _say(message: str) -> None:
+    print(f"inerter: {message}", file=sys.stderr, flush=True)

@@ -1,0 +1,133 @@
+"""The command `inerter`. Results go to stdout, progress and problems to stderr.
+
+Exit codes: 0 done; 1 the work failed or was interrupted; 2 the request was wrong.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import App, CycloptsError, Parameter
+
+from inerter import __version__
+from inerter.errors import InerterError
+
+EXAMPLES = """Examples:
+  inerter run examples/quarter-car.toml
+  inerter run examples/stiffness-sweep.toml -o sweep -j 2
+  inerter check my-study.toml
+  inerter reproduce wang-su-2008 --only linear -o paper
+
+Exit codes: 0 done, 1 the work failed or was interrupted, 2 the request was wrong."""
+
+app = App(
+    name="inerter",
+    version=f"inerter {__version__}",
+    help="What an inerter does for a vehicle, and which design is best.",
+    help_epilogue=EXAMPLES,
+    help_format="plaintext",
+)
+
+Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
+Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Processes to use; all cores if left out.")]
+Resume = Annotated[bool, Parameter(negative="", show_default=False, help="Continue an interrupted run; finished cases are kept.")]
+Force = Annotated[bool, Parameter(negative="", show_default=False, help="Replace the results that the folder holds.")]
+Json = Annotated[
+    bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
+]
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter run examples/quarter-car.toml
+  inerter run sweep.toml -o sweep -j 2        into the folder sweep, over two processes
+  inerter run sweep.toml -o sweep --resume    after an interruption"""
+)
+def run(
+    study: Path, /, *, output: Output = None, jobs: Jobs = None, resume: Resume = False, force: Force = False,
+    json: Json = False,
+) -> int:
+    """Find the best designs of a study file, and write tables, figures and a report.
+
+    The folder (by default STUDY-results) then holds report.html, summary.csv, results.nc, figures/ and the resolved
+    study. An interrupted run keeps what was computed; continue it with --resume.
+
+    Parameters
+    ----------
+    study
+        The study file (TOML). examples/quarter-car.toml shows all there is.
+    """
+    from inerter.cli.commands import run as command
+
+    return command(study, output, jobs, resume=resume, force=force, as_json=json)
+
+
+@app.command(help_epilogue="Example: inerter check examples/half-car.toml")
+def check(study: Path, /) -> int:
+    """Check a study file: keys, units, bounds, networks, and whether every layout can be analysed.
+
+    Parameters
+    ----------
+    study
+        The study file (TOML).
+    """
+    from inerter.cli.commands import check as command
+
+    return command(study)
+
+
+@app.command(help_epilogue="Example: inerter reproduce wang-su-2008 --only linear -o paper")
+def reproduce(
+    paper: Literal["wang-su-2008"],
+    /,
+    *,
+    only: Annotated[Literal["linear"], Parameter(help="The part to reproduce.")] = "linear",
+    output: Output = None,
+    jobs: Jobs = None,
+    resume: Resume = False,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Recompute the numbers, designs, figures and claims of a paper beside the printed ones.
+
+    Parameters
+    ----------
+    paper
+        The paper: wang-su-2008, Impact of inerter nonlinearities on vehicle suspension control.
+    """
+    from inerter.cli.commands import reproduce as command
+
+    assert paper == "wang-su-2008"
+    assert only == "linear"
+    return command(output, jobs, resume=resume, force=force, as_json=json)
+
+
+def main() -> None:
+    """Entry point: run the command, and turn errors into a sentence and an exit code."""
+    sys.exit(call(sys.argv[1:]))
+
+
+def call(arguments: list[str]) -> int:
+    """Run the command line with `arguments`; returns the exit code."""
+    try:
+        code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        sys.stdout.flush()
+        return code if isinstance(code, int) else 0
+    except CycloptsError as error:
+        return _fail(f"{error}\nTry: inerter --help", 2)
+    except InerterError as error:
+        return _fail(str(error), 2)
+    except KeyboardInterrupt:
+        return _fail("interrupted.", 1)
+    except BrokenPipeError:  # the reader of stdout went away
+        sys.stderr.close()
+        return 1
+    except OSError as error:
+        return _fail(f"{error.filename or 'system'}: {error.strerror or error}", 1)
+
+
+def _fail(message: str, code: int) -> int:
+    print(f"inerter: {message}", file=sys.stderr, flush=True)
+    return code

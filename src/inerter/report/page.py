@@ -1,0 +1,100 @@
+"""The report of a study as one HTML page that needs no other file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import xarray as xr
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from inerter.figures.labels import printed, swept_element, typeset
+from inerter.figures.study import study_figures
+from inerter.report.findings import headlines
+from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
+from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
+from inerter.study.values import Study, write_resolved
+
+_METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
+_SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
+_REFERENCE = re.compile(r'(\bid="|href="#|url\(#)')
+
+
+@dataclass(frozen=True)
+class PageFigure:
+    """A drawing to stand in the page, and its caption."""
+
+    drawing: Markup
+    caption: str
+
+
+def write_report(results: xr.Dataset, study: Study, figures: Path, path: Path) -> Path:
+    """Write the report of `study` to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
+    path.write_text(report(results, study, figures), encoding="utf-8", newline="\n")
+    return path
+
+
+def report(results: xr.Dataset, study: Study, figures: Path) -> str:
+    """The page as text."""
+    swept = swept_element(results)
+    return (
+        environment()
+        .get_template("report.html")
+        .render(
+            title=results.attrs["title"],
+            swept=swept is not None,
+            searched=study.optimise is not None,
+            headlines=[_printed_sentence(sentence) for sentence in headlines(results, printed)],
+            vehicle=vehicle_rows(study),
+            elements=element_rows(study),
+            layouts=layout_rows(study),
+            indices=index_rows(study, results),
+            tables=design_tables(results) if swept is None else sweep_tables(results),
+            trade_offs=trade_off_tables(results) if swept is None else [],
+            figures=list(_drawings(results, figures)),
+            notes=results.attrs.get("notes", "").splitlines(),
+            computation=list(computation(study, results)),
+            study_file=write_resolved(study),
+        )
+    )
+
+
+def environment() -> Environment:
+    """Where the templates of all pages are, and the filters that they use. What is filled in is escaped."""
+    templates = Environment(
+        loader=PackageLoader("inerter.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters |= {"typeset": typeset, "breakable": breakable}
+    return templates
+
+
+def _printed_sentence(sentence: str) -> str:
+    """A sentence with a minus where there is one, and per cent on the line of their number."""
+    return sentence.replace(" -", " −").replace(" %", "\N{NO-BREAK SPACE}%")
+
+
+def _drawings(results: xr.Dataset, folder: Path) -> Iterator[PageFigure]:
+    for figure in study_figures(results):
+        path = folder / f"{figure.name}.svg"
+        if path.exists():
+            yield PageFigure(inline(path.read_text(encoding="utf-8"), figure.name, figure.caption), figure.caption)
+
+
+def breakable(name: str) -> Markup:
+    """A name that may go on in the next line after each of its separators."""
+    return Markup("<wbr>").join(re.split(r"(?<=[-_.+])(?=.)", name))
+
+
+def inline(svg: str, name: str, caption: str) -> Markup:
+    """An SVG file as an element of a page: names are made unique by `name`, and the page decides on the size."""
+    body = _METADATA.sub("", svg[svg.index("<svg") :])
+    opening, _, rest = body.partition(">")
+    rest = _REFERENCE.sub(rf"\g<1>{name}-", rest)
+    return Markup(f'{_SIZE.sub("", opening)} role="img" aria-label="{escape(caption)}">{rest}')

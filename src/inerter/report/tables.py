@@ -1,0 +1,169 @@
+"""The tables of a report as rows of text: best designs, trade-offs, and values over a sweep."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from inerter.figures.labels import (
+    compared,
+    index_title,
+    index_unit,
+    indices,
+    layouts,
+    one_method,
+    percent,
+    printed,
+    quantity,
+    scale,
+    swept_element,
+    typeset,
+)
+from inerter.report.findings import best_layout
+
+_MOST_SWEPT = 16  # rows of a table over a sweep
+_MOST_FAILURES = 20
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A value, and a remark below it."""
+
+    text: str
+    remark: str = ""
+    strong: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a table; `status` is empty or what is wrong with its numbers."""
+
+    label: str
+    cells: list[Cell]
+    strong: bool = False
+    status: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with its caption; the first column holds the labels of the rows."""
+
+    caption: str
+    header: list[str]
+    rows: list[Row]
+    swept: bool = False
+    failures: tuple[str, ...] = ()
+
+
+def design_tables(results: xr.Dataset) -> list[Table]:
+    """For each index, the best design of every layout."""
+    results = one_method(results)
+    return [_design_table(results, index) for index in indices(results)]
+
+
+def trade_off_tables(results: xr.Dataset) -> list[Table]:
+    """For each index, the values of all indices at the designs that are best for it."""
+    results = one_method(results)
+    return [_trade_off_table(results, index) for index in indices(results)] if len(indices(results)) > 1 else []
+
+
+def sweep_tables(results: xr.Dataset) -> list[Table]:
+    """For each index, value and improvement of every layout at some of the swept values."""
+    results = one_method(results)
+    return [_sweep_table(results, index) for index in indices(results)]
+
+
+def _title(results: xr.Dataset, index: str) -> str:
+    return f"{index_title(results, index)} ({index})"
+
+
+def _improvement(design: xr.Dataset, baseline: str) -> str:
+    return "baseline" if design["layout"].item() == baseline else typeset(percent(float(design["improvement"])))
+
+
+def _design_table(results: xr.Dataset, index: str) -> Table:
+    at_index, baseline = results.sel(index=index), results.attrs["baseline"]
+    parameters = at_index["parameter_value"].dropna("parameter", how="all")["parameter"].values.tolist()
+    searched = bool((at_index["starts"] > 0).any())
+    best = best_layout(results, index)
+    rows = []
+    for name in layouts(results):
+        design = at_index.sel(layout=name)
+        cells = [Cell(printed(float(design["value"]), index_unit(results, index)))]
+        cells += [Cell(_improvement(design, baseline))] if compared(results) else []
+        cells += [_parameter(design.sel(parameter=parameter)) for parameter in parameters]
+        cells += [Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []
+        rows.append(Row(name, cells, name == best, _problem(design)))
+    header = ["Layout", index, *(["Improvement"] if compared(results) else []), *parameters]
+    return Table(f"Best for {_title(results, index)}", header + (["Agreement"] if searched else []), rows)
+
+
+def _parameter(entry: xr.Dataset) -> Cell:
+    value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
+    if np.isnan(value):
+        return Cell("–")
+    return Cell(printed(value, str(entry["parameter_unit"].item())), f"at its {bound} bound" if bound else "")
+
+
+def _problem(design: xr.Dataset) -> str:
+    status = str(design["status"].item())
+    return "" if status == "ok" else status
+
+
+def _trade_off_table(results: xr.Dataset, index: str) -> Table:
+    others = results["other"].values.tolist()
+    rows = []
+    for name in layouts(results):
+        design = results.sel(layout=name, index=index)
+        values = [float(design["other_value"].sel(other=other)) for other in others]
+        units = [index_unit(results, other) for other in others]
+        texts = [printed(value, unit) for value, unit in zip(values, units, strict=True)]
+        rows.append(Row(name, [Cell(t, strong=other == index) for t, other in zip(texts, others, strict=True)]))
+    return Table(f"Designs that are best for {_title(results, index)}", ["Layout", *others], rows)
+
+
+def _sweep_table(results: xr.Dataset, index: str) -> Table:
+    element = str(swept_element(results))
+    data, unit = results.sel(index=index).sortby(element), results[element].attrs["units"]
+    swept, values = scale(data[element].values, unit), scale(data["value"].values, index_unit(results, index))
+    points = _some(data.sizes[element])
+    rows = []
+    for point in points:
+        here = data.isel({element: point})
+        cells = []
+        for name in layouts(results):
+            design = here.sel(layout=name)
+            improvement = _improvement(design, results.attrs["baseline"]) if name in compared(results) else ""
+            cells.append(Cell(_number(float(design["value"]) * values.factor), improvement))
+        rows.append(Row(typeset(f"{float(here[element]) * swept.factor:.4g}"), cells))
+    names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
+    some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
+    caption = f"Best {_title(results, index)} in {typeset(values.unit)}, over {element} in {typeset(swept.unit)}{some}"
+    return Table(caption, [element, *names], rows, True, tuple(_failures(data, element, unit)))
+
+
+def _some(size: int) -> list[int]:
+    """Evenly spaced places in a long list, and its last."""
+    step = -(-(size - 1) // (_MOST_SWEPT - 1)) or 1
+    return sorted({*range(0, size, step), size - 1})
+
+
+def _number(value: float) -> str:
+    if not np.isfinite(value):
+        return quantity(value, "").strip()
+    return typeset(re.sub(r"\.(?=e|$)", "", f"{value:#.4g}"))
+
+
+def _failures(data: xr.Dataset, element: str, unit: str) -> list[str]:
+    """Where a status is not ok: layout, swept value and sentence; a long list is cut and says so."""
+    lines = [
+        f"{name} at {element} = {printed(float(value), unit)}: {status}"
+        for name in layouts(data)
+        for value, status in zip(data[element].values, data["status"].sel(layout=name).values.tolist(), strict=True)
+        if status != "ok"
+    ]
+    more = len(lines) - _MOST_FAILURES
+    return lines if more <= 0 else [*lines[:_MOST_FAILURES], f"and {more} more, which are in the table of results"]

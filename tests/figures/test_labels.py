@@ -1,0 +1,67 @@
+"""Words and numbers for people: they mean what the results say."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from synthetic import designs, sweep
+
+from inerter.figures.labels import axis_label, compared, layouts, percent, quantity, scale, swept_element, typeset
+from inerter.units import parse_quantity
+
+SIZES = st.floats(1e-6, 1e9)
+
+
+@given(st.lists(SIZES, min_size=1, max_size=5), st.sampled_from(["N/m", "N s/m", "kg", "N", "m", "m/s^2"]))
+def test_a_scaled_number_with_its_unit_is_the_value(values, unit):
+    handy = scale(values, unit)
+    for value in values:
+        assert parse_quantity(f"{value * handy.factor!r} {handy.unit}", unit) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("values", [[], [math.nan], [math.inf, math.nan], [0.0]])
+def test_values_that_have_no_size_keep_their_unit(values):
+    assert scale(values, "N/m").factor == 1.0
+
+
+@pytest.mark.parametrize(
+    ("plain", "printed"),
+    [
+        ("2.428 m/s^2", "2.428 m/s²"),
+        ("5e-07 m^3/cycle", "5 × 10⁻⁷ m³/cycle"),
+        ("1e-05", "10⁻⁵"),
+        ("1.2e+10 N", "1.2 × 10¹⁰ N"),
+        ("-18.7 %", "−18.7 %"),
+        ("(m/s^2)/(m/s)", "(m/s²)/(m/s)"),
+        ("20.76 um/N", "20.76 µm/N"),
+        ("inf", "inf"),
+    ],
+)
+def test_printed_numbers(plain, printed):
+    assert typeset(plain) == printed
+
+
+def test_numbers_that_are_none():
+    assert quantity(math.inf, "N") == "inf"
+    assert quantity(math.nan, "N") == percent(math.nan) == "n/a"
+    assert percent(-math.inf) == "-inf %"
+    assert percent(-0.01) == percent(0.01) == "0.0 %"
+
+
+def test_the_baseline_comes_first_and_is_not_compared_with_itself():
+    data = designs(["S2", "S1", "S3"])
+    assert layouts(data) == ["S1", "S2", "S3"]
+    assert compared(data) == ["S2", "S3"]
+    assert compared(designs(["S1"], baseline="")) == []
+
+
+def test_the_swept_element_is_the_dimension_that_only_a_sweep_has():
+    assert swept_element(designs()) is None
+    assert swept_element(sweep()) == "k"
+
+
+def test_long_labels_take_two_lines_and_keep_units_whole():
+    label = axis_label("Damping coefficient of the front axle", "kN s/m")
+    assert label.count("\n") == 1
+    assert "kN s/m".replace(" ", "\N{NO-BREAK SPACE}") in label.splitlines()[1]

@@ -1,0 +1,155 @@
+"""Figures of studies: they show the numbers, nothing runs over anything else, and results decide on every byte."""
+
+import math
+import xml.etree.ElementTree as ET
+from itertools import combinations
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from synthetic import LONG, designs, improved, sweep, with_value
+
+from inerter.errors import StudyError
+from inerter.figures.designs import frequency_responses, improvement_bars
+from inerter.figures.study import draw_study, study_figures
+from inerter.figures.style import new_figure, styled
+from inerter.figures.sweeps import parameter_curves, sweep_curves
+
+UNSTABLE = "unstable: the design has no finite norm"
+CASES = {
+    "designs": designs(),
+    "many designs": designs(LONG),
+    "one design": designs(["S1"], baseline=""),
+    "an infinite value": with_value(designs(), math.inf, UNSTABLE, layout="S2", index="J1"),
+    "a much worse layout": with_value(designs(LONG), 40.0, layout="S3", index="J1"),
+    "sweep": sweep(),
+    "many swept": sweep(LONG),
+    "one swept": sweep(["S1"], baseline=""),
+    "two values over decades": sweep(stiffness=[1e3, 1e6]),
+    "nothing finite": improved(sweep().assign(value=sweep()["value"] * np.nan)),
+}
+
+
+def lines(ax):
+    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
+
+
+@pytest.mark.parametrize("results", CASES.values(), ids=CASES)
+def test_every_figure_is_written_as_svg_and_png(results, tmp_path):
+    written = draw_study(results, tmp_path / "figures")
+    assert {path.name for path in written} == {f"{f.name}.{e}" for f in study_figures(results) for e in ("svg", "png")}
+    for path in written:
+        if path.suffix == ".svg":
+            assert ET.parse(path).getroot().tag.endswith("svg")
+        else:
+            assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_names_of_figures():
+    names = ["improvement", "response-J1", "response-J3", "response-J5"]
+    assert [figure.name for figure in study_figures(designs())] == names
+    assert [figure.name for figure in study_figures(designs(["S1"], baseline=""))] == names[1:]
+    assert [figure.name for figure in study_figures(sweep())] == [
+        f"{kind}-{index}" for index in ("J1", "J3", "J5") for kind in ("sweep", "parameters")
+    ]
+
+
+@pytest.mark.parametrize("results", [designs(), sweep()], ids=["designs", "sweep"])
+def test_the_same_results_give_the_same_bytes(results, tmp_path):
+    first, second = draw_study(results, tmp_path / "1"), draw_study(results.copy(deep=True), tmp_path / "2")
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+
+
+@pytest.mark.parametrize("results", CASES.values(), ids=CASES)
+def test_nothing_runs_over_the_edge_or_over_the_legend(results):
+    for drawn in study_figures(results):
+        with styled():
+            figure = drawn.draw()
+            figure.draw_without_rendering()
+        boxes = [ax.get_tightbbox() for ax in figure.axes]
+        (legend,) = figure.legends
+        for box in [*boxes, legend.get_window_extent()]:
+            assert figure.bbox.padded(2.0).count_contains([box.min, box.max]) == 2, drawn.name
+        for one, other in combinations([*boxes, legend.get_window_extent()], 2):
+            assert not one.padded(-1.0).overlaps(other), drawn.name
+
+
+@pytest.mark.parametrize("results", [designs(), designs(LONG), CASES["a much worse layout"]])
+def test_numbers_at_bars_do_not_overlap(results):
+    with styled():
+        figure = study_figures(results)[0].draw()
+        figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+    assert not any(one.padded(-0.5).overlaps(other) for one, other in combinations(boxes, 2))
+
+
+def test_settings_of_the_caller_stay(tmp_path):
+    before = dict(matplotlib.rcParams)
+    draw_study(designs(), tmp_path)
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_bars_are_the_improvements():
+    results = designs(["S2", "S1", "S3"])
+    ax = improvement_bars(results, new_figure(height=3.0)[1][0])
+    heights = {bars.get_label(): [bar.get_height() for bar in bars] for bars in ax.containers}
+    assert set(heights) == {"S2", "S3"}
+    for layout, drawn in heights.items():
+        np.testing.assert_allclose(drawn, results["improvement"].sel(layout=layout))
+    assert ax.get_xticklabels()[0].get_text() == "J1\nride comfort"
+    assert lines(ax)["S1 (baseline)"].get_ydata()[0] == 0.0
+
+
+def test_bars_say_what_is_not_a_number_and_what_is_cut():
+    results = with_value(designs(), math.inf, UNSTABLE, layout="S2", index="J1")
+    results = with_value(results, math.nan, UNSTABLE, layout="S2", index="J3")
+    results = with_value(results, 4 * float(results["value"].sel(layout="S1", index="J5")), layout="S2", index="J5")
+    ax = improvement_bars(results, new_figure(height=3.0)[1][0])
+    assert [text.get_text() for text in ax.texts][:3] == ["inf", "n/a", "−300.0"]
+    assert min(bar.get_height() for bar in ax.containers[0]) == -100.0
+
+
+def test_frequency_responses_are_gains_over_hertz_with_the_baseline_black_and_dashed():
+    results = designs()
+    axes = frequency_responses(results, "J1", new_figure(2, 2, height=3.0)[1])
+    for ax, output in zip(axes, results["output_J1"].values, strict=True):
+        baseline = lines(ax)["S1 (baseline)"]
+        np.testing.assert_allclose(baseline.get_xdata(), results["omega"] / (2 * np.pi))
+        np.testing.assert_allclose(baseline.get_ydata(), results["gain_J1"].sel(layout="S1", output_J1=output))
+        assert (to_hex(baseline.get_color()), baseline.get_linestyle()) == ("#000000", "--")
+        assert ax.get_xlabel() == "Frequency [Hz]"
+        assert "(m/s²)/(m/s)" in ax.get_ylabel()
+        peaks = [line.get_ydata().max() for line in lines(ax).values()]
+        assert ax.get_ylim()[0] < min(peaks) < max(peaks) < ax.get_ylim()[1]
+
+
+def test_sweep_curves_run_in_the_order_of_the_swept_values_and_in_a_handy_unit():
+    results = sweep(stiffness=[200e3, 10e3, 120e3])
+    left, right = sweep_curves(results, "J1", new_figure(2, 2, height=3.0)[1])
+    curve = lines(left)["S2"]
+    np.testing.assert_allclose(curve.get_xdata(), [10.0, 120.0, 200.0])
+    np.testing.assert_allclose(curve.get_ydata(), results["value"].sel(layout="S2", index="J1").sortby("k"))
+    assert left.get_xlabel() == right.get_xlabel() == "k [kN/m]"
+    assert left.get_ylabel() == "Ride comfort J1 [m/s²]"
+    assert set(lines(right)) == {"S1 (baseline)", "S2", "S3"}
+
+
+def test_parameters_at_a_bound_have_open_markers():
+    damping, inertance = parameter_curves(sweep(), "J1", new_figure(2, 2, height=3.0)[1])
+    open_markers = [line for line in inertance.lines if line.get_markerfacecolor() == "white" and len(line.get_xdata())]
+    assert [line.get_xdata().tolist() for line in open_markers] == [[300.0]]
+    assert "S1 (baseline)" in lines(damping)
+    assert "S1 (baseline)" not in lines(inertance)
+    assert inertance.get_yscale() == "log"
+
+
+def test_ten_layouts_look_different():
+    left, _ = sweep_curves(sweep(LONG), "J1", new_figure(2, 2, height=3.0)[1])
+    looks = {(to_hex(line.get_color()), line.get_linestyle(), line.get_marker()) for line in left.lines}
+    assert len(looks) == len(LONG)
+
+
+def test_curves_over_a_sweep_need_one():
+    with pytest.raises(StudyError, match="without a sweep"):
+        sweep_curves(designs(), "J1", new_figure(2, 2, height=3.0)[1])

@@ -1,0 +1,155 @@
+"""The report page: it holds the answer, needs no other file, and what is filled in cannot break it."""
+
+import math
+import re
+from collections import Counter
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic import LONG, designs, sweep, with_value
+
+from inerter.figures.study import draw_study
+from inerter.report.page import report, write_report
+from inerter.study.file import load_study
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+VOID = {"meta", "wbr", "br"}
+SPACE = "\N{NO-BREAK SPACE}"
+
+
+@pytest.fixture(scope="session")
+def study():
+    return load_study(EXAMPLES / "quarter-car.toml")
+
+
+@pytest.fixture(scope="session")
+def sweep_study():
+    return load_study(EXAMPLES / "stiffness-sweep.toml")
+
+
+class Page(HTMLParser):
+    """The text of a page, its attributes, and whether every tag is closed in its turn."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.open, self.words, self.attributes, self.tags = [], [], [], []
+        self.feed(page)
+        assert self.open == []
+        self.text = re.sub(r"\s+", " ", "".join(self.words))
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.attributes += attrs
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.words.append(data)
+
+
+def test_the_answer_is_on_the_page(study, tmp_path):
+    results = designs()
+    page = Page(report(results, study, tmp_path))
+    best = results["value"].sel(index="J1").min().item()
+    assert f"Best ride comfort: S3, {best:.4g} m/s², 12.0 % better than S1." in page.text
+    assert f"{best:.4g} m/s²+12.0 %" in page.text
+    assert "14 of 16" in page.text
+    assert "at its upper bound" in page.text
+    assert page.text.count("at its upper bound") == 1
+
+
+def test_the_question_is_on_the_page_in_the_digits_of_the_study_file(study, tmp_path):
+    text = Page(report(designs(), study, tmp_path)).text
+    for words in ("181.75 kg", "25 m/s (90 km/h)", "5 × 10⁻⁷ m³/cycle", "free, 100 N s/m to 100 kN s/m"):
+        assert words in text
+    for layout in study.layouts.values():
+        assert layout.struts["strut"] in text
+
+
+@pytest.mark.parametrize("hostile", ["<script>alert(1)</script>", '"><img src=x onerror=y>', "{{ 7 * 7 }} & <co>"])
+def test_what_is_filled_in_is_only_text(study, tmp_path, hostile):
+    results = with_value(designs(), math.inf, f"failed: {hostile}", layout="S2", index="J1")
+    results.attrs |= {"title": hostile, "notes": hostile}
+    source = report(results, study, tmp_path)
+    page = Page(source)
+    assert hostile not in source
+    assert page.text.count(hostile) == 4  # in the title of the page, its heading, the status and the notes
+    assert not {"script", "img"} & set(page.tags)
+
+
+@pytest.mark.parametrize("results", [designs(LONG), sweep(LONG)], ids=["designs", "sweep"])
+def test_the_page_needs_no_other_file_and_names_each_thing_once(results, study, sweep_study, tmp_path):
+    draw_study(results, tmp_path)
+    source = report(results, study if "omega" in results else sweep_study, tmp_path)
+    page = Page(source)
+    assert page.tags.count("svg") == len(list(tmp_path.glob("*.svg")))
+    assert "<?xml" not in source
+    assert not {"script", "link", "img", "iframe", "object"} & set(page.tags)
+    names = Counter(value for key, value in page.attributes if key == "id")
+    assert set(names.values()) == {1}
+    references = [value for key, value in page.attributes if key in ("href", "src", "xlink:href")]
+    references += re.findall(r"url\(([^)]*)\)", source)
+    assert references
+    assert {reference.removeprefix("#") for reference in references} <= set(names)
+
+
+def test_figures_that_were_not_drawn_are_left_out(study, tmp_path):
+    assert "<figure>" not in report(designs(), study, tmp_path)
+    draw_study(designs(), tmp_path)
+    (tmp_path / "improvement.svg").unlink()
+    assert report(designs(), study, tmp_path).count("<figure>") == 3
+
+
+def test_the_same_results_give_the_same_page(study, tmp_path):
+    draw_study(designs(), tmp_path / "figures")
+    first = write_report(designs(), study, tmp_path / "figures", tmp_path / "1.html")
+    second = write_report(designs(), study, tmp_path / "figures", tmp_path / "2.html")
+    assert first.read_bytes() == second.read_bytes()
+    assert str(tmp_path) not in first.read_text(encoding="utf-8")
+    assert str(EXAMPLES) not in first.read_text(encoding="utf-8")
+
+
+def test_values_that_are_not_ok_stand_with_their_sentence(study, sweep_study, tmp_path):
+    status = "unstable: the design has no finite norm"
+    results = with_value(designs(), math.inf, status, layout="S2", index="J3")
+    text = Page(report(results, study, tmp_path)).text
+    assert "S2inf−inf %" in text
+    assert f"S2 – {status}" in text
+    results = with_value(sweep(), math.inf, status, layout="S2", index="J3", k=60e3)
+    text = Page(report(results, sweep_study, tmp_path)).text
+    assert f"S2 at k = 60 kN/m: {status}" in text
+
+
+def test_a_design_for_one_index_is_shown_with_its_other_indices(study, tmp_path):
+    results = designs()
+    text = Page(report(results, study, tmp_path)).text
+    for other in ("J1", "J3"):
+        value = results["other_value"].sel(layout="S2", index="J1", other=other).item()
+        assert f"{value:.4g}" in text
+
+
+def test_a_long_sweep_is_shown_at_some_values_and_at_both_ends(sweep_study, tmp_path):
+    stiffness = np.linspace(10e3, 309e3, 300)
+    text = Page(report(sweep(stiffness=stiffness), sweep_study, tmp_path)).text
+    shown = re.search(r"over k in kN/m, (\d+) of 300 values", text)
+    assert shown
+    assert 8 <= int(shown[1]) <= 17
+    assert "its improvement over the sweep lies between" in text
+    page = report(sweep(stiffness=stiffness), sweep_study, tmp_path)
+    assert '<th scope="row">10</th>' in page
+    assert '<th scope="row">309</th>' in page
+
+
+def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
+    text = Page(report(designs(["S1"], baseline=""), study, tmp_path)).text
+    assert "Improvement" not in text
+    assert "Best ride comfort: S1, 2.525 m/s²." in text.replace(SPACE, " ")

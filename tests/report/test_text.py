@@ -1,0 +1,98 @@
+"""Tables for the terminal: plain, narrow, and with all the numbers."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from synthetic import LONG, designs, improved, sweep, with_value
+
+from inerter.report.findings import best_layout, headlines
+from inerter.report.text import WIDTH, summary_table
+
+NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)
+ANY_VALUE = st.one_of(st.floats(1e-12, 1e12), st.sampled_from([math.inf, math.nan]))
+
+
+@settings(max_examples=30)
+@given(st.lists(NAMES, min_size=1, max_size=6, unique=True), ANY_VALUE, st.booleans(), st.text(max_size=200))
+def test_tables_fit_a_terminal(names, value, swept, message):
+    results = (sweep if swept else designs)(names, baseline=names[0])
+    results = with_value(results, value, f"failed: {message}", layout=names[-1], index="J3")
+    text = summary_table(results)
+    assert text.isascii()
+    assert all(len(line) <= WIDTH and line == line.rstrip() for line in text.split("\n"))
+    for name in names[1:] if len(names) > 1 else names:
+        assert name in text
+
+
+def test_designs_with_their_numbers():
+    lines = summary_table(designs()).split("\n")
+    assert lines[:5] == [
+        "J1: ride comfort, compared with S1",
+        "  layout  value        improvement  parameters",
+        "  S1      2.575 m/s^2  baseline     c = 4.12 kN s/m",
+        "  S2      2.42 m/s^2   +6.0 %       c = 3.873 kN s/m, b = 250 kg",
+        "  S3      2.266 m/s^2  +12.0 %      c = 3.626 kN s/m, b = 250 kg (upper bound)",
+    ]
+
+
+def test_a_sweep_by_its_best_and_its_worst():
+    results = improved(sweep(stiffness=[10e3, 100e3, 300e3]))
+    results["improvement"].loc[{"layout": "S2", "index": "J5"}] = [3.0, -2.0, 7.0]
+    assert "  S2      +7.0 % at 300 kN/m  -2.0 % at 100 kN/m" in summary_table(results).split("\n")
+
+
+def test_a_status_that_is_not_ok_is_told():
+    status = "unstable: the design has no finite norm"
+    assert f"    ! {status}" in summary_table(with_value(designs(), math.inf, status, layout="S2", index="J1"))
+    one_point = with_value(sweep(), math.inf, status, layout="S2", index="J1", k=10e3)
+    assert f"    ! {status} (1 of 5 values are not ok)" in summary_table(one_point).split("\n")
+
+
+def test_ten_layouts_in_one_block_each():
+    assert [line[:2] for line in summary_table(designs(LONG)).split("\n") if line[:1] == "J"] == ["J1", "J3", "J5"]
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({}, "Best ride comfort: S3, 2.266 m/s^2, 12.0 % better than S1."),
+        (
+            {"layout": "S1", "value": 2.0},
+            "Best ride comfort: S1, 2 m/s^2; no other layout is better than this baseline.",
+        ),
+        ({"layout": "S1", "value": 2.2661}, "Best ride comfort: S3, 2.266 m/s^2, no better than S1."),
+        ({"layout": "S1", "value": math.inf}, "Best ride comfort: S3, 2.266 m/s^2; S1 has no finite value."),
+        ({"layout": ["S1", "S2", "S3"], "value": math.inf}, "Best ride comfort: no layout has a finite value."),
+    ],
+)
+def test_headlines_of_designs(change, sentence):
+    results = designs()
+    if change:
+        results = with_value(results, change["value"], layout=change["layout"], index="J1")
+    assert headlines(results)[0] == sentence
+
+
+@pytest.mark.parametrize(
+    ("improvement", "sentence"),
+    [
+        (
+            [3.0, -2.0, 7.0],
+            "Best ride comfort compared with S1 of the same k: S2, 7.0 % better at k = 300 kN/m; "
+            "its improvement over the sweep lies between -2.0 % and 7.0 %.",
+        ),
+        ([0.0, -2.0, -math.inf], "Best ride comfort: no layout is better than S1 at any k."),
+        ([math.nan, math.nan, math.nan], "Best ride comfort: no layout has a finite value."),
+    ],
+)
+def test_headlines_of_sweeps(improvement, sentence):
+    results = sweep(["S1", "S2"], stiffness=[10e3, 100e3, 300e3])
+    results["improvement"].loc[{"layout": "S2", "index": "J1"}] = improvement
+    assert headlines(results)[0] == sentence
+
+
+def test_the_best_layout_has_the_least_finite_value():
+    results = designs()
+    assert best_layout(results, "J1") == results["layout"][results["value"].sel(index="J1").argmin("layout")]
+    assert best_layout(with_value(results, math.nan, layout="S3", index="J1"), "J1") == "S2"

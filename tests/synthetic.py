@@ -1,0 +1,115 @@
+"""Results of studies that were never computed: plausible numbers in the shape that `inerter.study` gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+UNITS = {"J1": "m/s^2", "J3": "N", "J5": "m/N"}
+TITLES = {"J1": "ride comfort", "J3": "dynamic tyre load", "J5": "dynamic load carrying"}
+SIZES = {"J1": 2.5, "J3": 550.0, "J5": 2.4e-5}
+OUTPUTS = {"J1": ["sprung_acceleration", "pitch_acceleration"], "J3": ["tyre_load"], "J5": ["sprung_displacement"]}
+GAINS = {
+    "J1": ("(m/s^2)/(m/s)", "body acceleration per road velocity", 60.0),
+    "J3": ("N/(m/s)", "tyre force per road velocity", 1.5e4),
+    "J5": ("m/N", "body displacement per force on the body", 3e-5),
+}
+LONG = ["S1", "S2", "S3", "a-layout-with-a-name-of-forty-characters", *(f"layout_{i}_of_many" for i in range(4, 10))]
+
+
+def designs(layouts: Sequence[str] = ("S1", "S2", "S3"), baseline: str = "S1") -> xr.Dataset:
+    """Results of a study without a sweep; the baseline has no inerter."""
+    data = _results(layouts, baseline, None)
+    omega = np.geomspace(1.0, 600.0, 600)
+    data = data.assign_coords(omega=("omega", omega, {"units": "rad/s", "long_name": "angular frequency"}))
+    for index, (unit, name, height) in GAINS.items():
+        gains = [
+            [_gain(omega, height, 18.0 + 2 * i, 0.15 + 0.02 * j) for j in range(len(OUTPUTS[index]))]
+            for i in range(len(layouts))
+        ]
+        attributes = {"units": unit, "long_name": name}
+        data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), np.array(gains), attributes)
+        data = data.assign_coords({f"output_{index}": OUTPUTS[index]})
+    return data
+
+
+def sweep(
+    layouts: Sequence[str] = ("S1", "S2", "S3"),
+    baseline: str = "S1",
+    stiffness: Sequence[float] = (10e3, 60e3, 120e3, 200e3, 300e3),
+) -> xr.Dataset:
+    """Results of a study that sweeps the spring k [N/m]."""
+    return _results(layouts, baseline, np.asarray(stiffness, dtype=float))
+
+
+def improved(data: xr.Dataset) -> xr.Dataset:
+    """The same results with improvements that belong to their values."""
+    base = data["value"].sel(layout=data.attrs["baseline"], drop=True)
+    base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
+    with np.errstate(invalid="ignore"):
+        return data.assign(improvement=(100.0 * (1.0 - data["value"] / base)).transpose(*data["value"].dims))
+
+
+def with_value(data: xr.Dataset, value: float, status: str = "ok", **where: object) -> xr.Dataset:
+    """The same results with one value and its status replaced, where labels are `where`."""
+    data = data.copy(deep=True)
+    data["status"] = data["status"].astype(object)
+    data["value"].loc[where] = value
+    data["status"].loc[where] = status
+    return improved(data)
+
+
+def _results(layouts: Sequence[str], baseline: str, stiffness: np.ndarray | None) -> xr.Dataset:
+    swept = np.ones(1) if stiffness is None else stiffness / 120e3
+    n = len(layouts)
+    better = 1.0 - 0.06 * (np.arange(n) % 4)
+    size = np.array(list(SIZES.values()))
+    value = better[:, None, None] * size[None, :, None] * (swept[None, None, :] ** 0.5 * (1.0 + 0.01 * n))
+    parameter = np.stack([4e3 * value / size[None, :, None], 250.0 * swept * np.ones_like(value)], axis=-1)
+    parameter[[name == baseline for name in layouts], ..., 1] = np.nan
+    bound = np.full(parameter.shape, "", dtype=object)
+    bound[-1, 0, -1, 1] = "upper"
+    dims = ("layout", "index", "k")
+    data = xr.Dataset(
+        {
+            "value": (dims, value),
+            "improvement": (dims, np.full(value.shape, np.nan)),
+            "other_value": ((*dims, "other"), value.swapaxes(1, 2)[:, None] * (1.1 - 0.1 * np.eye(3))[:, None]),
+            "parameter_value": ((*dims, "parameter"), parameter),
+            "at_bound": ((*dims, "parameter"), bound.astype(str)),
+            "status": (dims, np.full(value.shape, "ok")),
+            "starts": (dims, np.full(value.shape, 16)),
+            "agreed": (dims, np.full(value.shape, 14)),
+        },
+        coords={
+            "layout": list(layouts),
+            "index": list(UNITS),
+            "other": list(UNITS),
+            "parameter": ["c", "b"],
+            "parameter_unit": ("parameter", ["N s/m", "kg"]),
+            "index_unit": ("index", list(UNITS.values())),
+            "index_title": ("index", list(TITLES.values())),
+        },
+        attrs={
+            "title": "A quarter car",
+            "baseline": baseline,
+            "conventions": "exact",
+            "model": "quarter-car",
+            "seed": 0,
+            "inerter_version": "0.1.0",
+            "notes": "",
+        },
+    )
+    if stiffness is None:
+        data = data.isel(k=0)
+    else:
+        data = data.assign_coords(k=("k", stiffness, {"units": "N/m", "long_name": "k"}))
+    return improved(data) if baseline else data
+
+
+def _gain(omega: np.ndarray, height: float, resonance: float, damping: float) -> np.ndarray:
+    """The gain of an oscillator, `height` at its resonance [rad/s]."""
+    r = omega / resonance
+    return height * 2 * damping * r / np.abs(1 - r**2 + 2j * damping * r)

@@ -78,6 +78,8 @@ def _results(layouts: Sequence[str], baseline: str, stiffness: np.ndarray | None
             "improvement": (dims, np.full(value.shape, np.nan)),
             "other_value": ((*dims, "other"), value.swapaxes(1, 2)[:, None] * (1.1 - 0.1 * np.eye(3))[:, None]),
             "parameter_value": ((*dims, "parameter"), parameter),
+            "parameter_low": ((*dims, "parameter"), 0.99 * parameter),
+            "parameter_high": ((*dims, "parameter"), 1.02 * parameter),
             "at_bound": ((*dims, "parameter"), bound.astype(str)),
             "status": (dims, np.full(value.shape, "ok")),
             "starts": (dims, np.full(value.shape, 16)),

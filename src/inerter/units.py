@@ -27,6 +27,7 @@ _PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
     "N s/m": ((1e6, "MN s/m"), (1e3, "kN s/m"), (1.0, "N s/m")),
     "N": ((1e6, "MN"), (1e3, "kN"), (1.0, "N")),
     "m": ((1.0, "m"), (1e-3, "mm")),
+    "m/N": ((1.0, "m/N"), (1e-3, "mm/N"), (1e-6, "um/N")),
 }
 
 

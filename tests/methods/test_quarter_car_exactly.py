@@ -103,7 +103,7 @@ def test_both_conventions_are_one_where_the_road_arrives_once():
 
 
 def test_conventions_of_the_half_car_differ_by_delay_and_filter_only():
-    """Shared paper notes: Pade(5) moves J1 by up to 0.2 %; the filter lowers J3 by about 4 %; J5 has neither."""
+    """Pade(5) moves J1 by up to 0.2 %; the filter lowers J3 by about 4 %; J5 has neither."""
     car = paper_half_car(Spring(120e3) | Damper(4e3), Spring(100e3) | Damper(4e3))
     ratio = [
         evaluate(car, index, Norm("paper2008")).value / evaluate(car, index, Norm()).value for index in (J1, J3, J5)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -13,8 +15,9 @@ from inerter.cli.progress import progress
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
 from inerter.papers import wang_su_2008
+from inerter.report.findings import headlines
 from inerter.report.page import write_report
-from inerter.report.text import summary_table
+from inerter.report.text import WIDTH, summary_table
 from inerter.study.file import load_study
 from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study
 
@@ -23,16 +26,20 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
     """Run a study file into a folder; returns the exit code."""
     loaded = load_study(study)
     folder = output or Path(f"{study.stem}-results")
-    _check_jobs(jobs)
+    processes = _processes(jobs)
     try:
         with progress(study.stem) as callback:
-            result = run_study(loaded, folder, jobs=jobs, resume=resume, force=force, progress=callback)
+            result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback)
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with: inerter run {study} -o {folder} --resume")
         return 1
     draw_study(result.data, folder / FIGURES)
     write_report(result.data, loaded, folder / FIGURES, folder / REPORT)
-    print(_as_json(result) if as_json else f"{loaded.title}\n\n{summary_table(result.data)}")
+    if as_json:
+        print(_as_json(result))
+    else:
+        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrap(text, WIDTH)))
+        print(f"\n{summary_table(result.data)}")
     _say(f"report: {folder / REPORT}")
     return _judge(result)
 
@@ -45,8 +52,8 @@ def check(study: Path) -> int:
     count = len(loaded.layouts) * len(loaded.indices) * points
     swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
     print(
-        f"{study}: ok. {loaded.model}; layouts {', '.join(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}: "
-        f"{count} designs to {'find' if loaded.optimise else 'judge'}."
+        f"{study}: ok. {loaded.model}; layouts {', '.join(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
+        f": {count} designs to {'find' if loaded.optimise else 'judge'}."
     )
     return 0
 
@@ -56,10 +63,10 @@ def reproduce(output: Path | None, jobs: int | None, *, resume: bool, force: boo
     from inerter.report import reproduction as pages
 
     folder = output or Path(f"{wang_su_2008.KEY}-results")
-    _check_jobs(jobs)
+    processes = _processes(jobs)
     try:
         with progress(wang_su_2008.KEY) as callback:
-            found = wang_su_2008.reproduce_linear(folder, jobs=jobs, resume=resume, force=force, progress=callback)
+            found = wang_su_2008.reproduce_linear(folder, jobs=processes, resume=resume, force=force, progress=callback)
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")
         return 1
@@ -69,9 +76,10 @@ def reproduce(output: Path | None, jobs: int | None, *, resume: bool, force: boo
     return max(_judge(result) for result in found.studies.values())
 
 
-def _check_jobs(jobs: int | None) -> None:
+def _processes(jobs: int | None) -> int:
     if jobs is not None and jobs < 1:
         raise StudyError(f"--jobs must be 1 or more processes, got {jobs}. Leave it out to use all cores.")
+    return jobs or os.cpu_count() or 1
 
 
 def _judge(result: StudyResult) -> int:
@@ -84,7 +92,7 @@ def _judge(result: StudyResult) -> int:
 def _as_json(result: StudyResult) -> str:
     data = result.data
     rows: list[dict[str, Any]] = []
-    stacked = data[["value", "improvement", "status"]].stack(case=[d for d in data.value.dims])
+    stacked = data[["value", "improvement", "status"]].stack(case=list(data.value.dims))
     for i, place in enumerate(stacked.case.values.tolist()):
         labels = dict(zip(data.value.dims, place, strict=True))
         design = data.sel({name: labels[name] for name in labels if name != "method"})

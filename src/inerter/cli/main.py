@@ -32,7 +32,9 @@ app = App(
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
 Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Processes to use; all cores if left out.")]
-Resume = Annotated[bool, Parameter(negative="", show_default=False, help="Continue an interrupted run; finished cases are kept.")]
+Resume = Annotated[
+    bool, Parameter(negative="", show_default=False, help="Continue an interrupted run; finished cases are kept.")
+]
 Force = Annotated[bool, Parameter(negative="", show_default=False, help="Replace the results that the folder holds.")]
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
@@ -46,7 +48,13 @@ Json = Annotated[
   inerter run sweep.toml -o sweep --resume    after an interruption"""
 )
 def run(
-    study: Path, /, *, output: Output = None, jobs: Jobs = None, resume: Resume = False, force: Force = False,
+    study: Path,
+    /,
+    *,
+    output: Output = None,
+    jobs: Jobs = None,
+    resume: Resume = False,
+    force: Force = False,
     json: Json = False,
 ) -> int:
     """Find the best designs of a study file, and write tables, figures and a report.

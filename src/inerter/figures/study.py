@@ -68,7 +68,8 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
         if results.sizes["parameter"]:
             yield StudyFigure(
                 f"parameters-{index}",
-                f"Parameters that are best for {title} for each value of {element}. Open markers: at a bound.",
+                f"Parameters that are best for {title} for each value of {element}. Open markers: at a bound. "
+                "Bands: equally good designs.",
                 partial(_parameters, results, index),
             )
 

@@ -91,6 +91,8 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
 def parameter_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
     """The parameters that are best for `index` over the swept value, one of `axes` each; open markers: at a bound.
 
+    Bands span designs that are equally good, where the optimum is flat.
+
     Raises `StudyError` if nothing is swept.
     """
     sweep = _sweep(results, index)
@@ -101,6 +103,8 @@ def parameter_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> S
             row = column.sel(layout=name)
             numbers = row["parameter_value"].values * unit.factor
             if np.any(np.isfinite(numbers)):
+                low, high = row["parameter_low"].values * unit.factor, row["parameter_high"].values * unit.factor
+                ax.fill_between(sweep.values, low, high, color=sweep.styles[name].colour, alpha=0.15, linewidth=0.0)
                 sweep.draw(ax, name, numbers, open_where=row["at_bound"].values != "")
         ax.set_ylabel(axis_label(f"Best {parameter}", unit.unit))
         log_axis(ax, "y")

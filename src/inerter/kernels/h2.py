@@ -216,10 +216,10 @@ def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner:
                 CP[k, i] += P[i, j] * C[k, j]
             total += CP[k, i] * C[k, i]
         result[k] = np.sqrt(total)
+    least = 0.0
     for i in range(n):
-        if not P[i, i] >= 0.0:
-            return False
-    return True
+        least = min(least, P[i, i])
+    return least == 0.0 and not np.isnan(result.sum())
 
 
 @compiled

@@ -14,6 +14,7 @@ from inerter.indices.index import Index
 from inerter.methods.method import Estimate, Method, Objective, check_request
 from inerter.networks.elements import Free
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish
+from inerter.optimisation.threads import one_blas_thread
 from inerter.vehicle.cars import Vehicle
 
 Array = NDArray[np.float64]
@@ -76,8 +77,9 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     lower = np.array([free.lower for free in variables.values()])
     upper = np.array([free.upper for free in variables.values()])
     objective = method.objective(vehicle, index)
-    first, evaluations = _starting_points(objective, lower, upper, starts, seed)
-    found = _searches(objective, first, lower, upper)
+    with one_blas_thread():
+        first, evaluations = _starting_points(objective, lower, upper, starts, seed)
+        found = _searches(objective, first, lower, upper)
     evaluations += sum(local.evaluations for local in found)
     best = min(found, key=lambda local: local.value, default=None)
     if best is None or not np.isfinite(best.value):

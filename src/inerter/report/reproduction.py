@@ -42,8 +42,8 @@ def reproduction_text(found: LinearReproduction) -> str:
         [
             "Wang and Su (2008), linear part",
             "",
-            "Printed designs: the printed value, and the same design computed anew under both",
-            "conventions; off: paper2008 less printed, in units of the last printed digit.",
+            "Printed designs, computed anew under both conventions; off: paper2008 less",
+            "printed, in units of the last printed digit; differs: exact against printed.",
             "",
             f"{'table':6}{'index':6}{'case':>4}  {'layout':9}{'printed':>12}{'paper2008':>13}{'off':>6}{'exact':>13}"
             f"{'differs':>9}",
@@ -51,8 +51,8 @@ def reproduction_text(found: LinearReproduction) -> str:
             "",
             *wrap(_agreement(found.compared), WIDTH),
             "",
-            "Designs found from scratch (paper2008), beside the printed ones; lower: by how much",
-            "the found value is below the printed one; starts: searches that agreed.",
+            "Designs found from scratch under paper2008, with the printed ones in brackets;",
+            "lower: how far the value lies below the printed one; starts: how many agreed.",
             "",
             f"{'table':6}{'index':6}{'layout':9}{'printed':>12}{'found':>13}{'lower':>9}{'starts':>9}",
             *(line for f in found.found for line in _found_lines(f)),
@@ -68,12 +68,17 @@ def _compared_line(c: ComparedRow) -> str:
     row = c.row
     return (
         f"{row.table:<6}{row.index:6}{row.case:>4}  {row.layout:9}{row.printed:>12}{_digits(c.paper2008):>13}"
-        f"{c.off_by:>+6.1f}{_digits(c.exact):>13}{_share(c):>+7.2f} %"
+        f"{_signed(c.off_by, 1):>6}{_digits(c.exact):>13}{_signed(_share(c)):>7} %"
     )
 
 
 def _share(c: ComparedRow) -> float:
     return 100.0 * (c.exact / float(c.row.printed) - 1.0)
+
+
+def _signed(value: float, decimals: int = 2) -> str:
+    text = f"{value:+.{decimals}f}"
+    return text[1:] if float(text) == 0.0 else text
 
 
 def _digits(value: float) -> str:
@@ -92,10 +97,11 @@ def _agreement(compared: list[ComparedRow]) -> str:
 def _found_lines(f: FoundDesign) -> Iterator[str]:
     yield (
         f"{f.row.table:<6}{f.row.index:6}{f.row.layout:9}{f.row.printed:>12}{_digits(f.value):>13}"
-        f"{f.gain_percent:>+7.2f} %{f.agreed:>5}/{f.starts:<3}"
+        f"{_signed(f.gain_percent):>7} %{f.agreed:>5}/{f.starts}"
     )
-    pairs = ", ".join(f"{name} {value:.6g} ({f.row.parameters[name]:g})" for name, value in f.parameters.items())
-    yield from wrap(f"{pairs}", WIDTH, initial_indent=" " * 12, subsequent_indent=" " * 12)
+    pairs = [f"{name} {value:.6g} ({f.row.parameters[name]:g})" for name, value in f.parameters.items()]
+    for i in range(0, len(pairs), 2):
+        yield " " * 12 + ", ".join(pairs[i : i + 2])
 
 
 def _claim_lines(claim: Claim) -> Iterator[str]:
@@ -126,9 +132,9 @@ def _compared_table(compared: list[ComparedRow], number: int) -> Table:
             [
                 Cell(printed(float(c.row.printed), c.unit) if "e" in c.row.printed else f"{c.row.printed} {c.unit}"),
                 Cell(typeset(_digits(c.paper2008))),
-                Cell(typeset(f"{c.off_by:+.1f}"), strong=not c.agrees),
+                Cell(typeset(_signed(c.off_by, 1)), strong=not c.agrees),
                 Cell(typeset(_digits(c.exact))),
-                Cell(typeset(f"{_share(c):+.2f} %")),
+                Cell(typeset(f"{_signed(_share(c))} %")),
             ],
         )
         for c in compared
@@ -146,7 +152,7 @@ def _designs_table(found: list[FoundDesign], number: int) -> Table:
             f"{f.row.index} {f.row.layout}",
             [
                 Cell(typeset(_digits(f.value)), f"printed {typeset(f.row.printed)}"),
-                Cell(typeset(f"{f.gain_percent:+.2f} %")),
+                Cell(typeset(f"{_signed(f.gain_percent)} %")),
                 *(
                     Cell(f"{f.parameters[name]:.6g}", f"printed {f.row.parameters[name]:g}")
                     if name in f.parameters

@@ -10,6 +10,7 @@ import numpy as np
 from inerter.errors import InerterError, Status, StatusKind
 from inerter.methods.method import Estimate, evaluate
 from inerter.optimisation.optimise import optimise
+from inerter.optimisation.threads import one_blas_thread
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.values import Study
 
@@ -64,7 +65,8 @@ def run_case(study: Study, case: Case) -> Outcome:
     A failure is an outcome with a status and a sentence, so that one case never ends a study.
     """
     try:
-        return _run(study, case)
+        with one_blas_thread():
+            return _run(study, case)
     except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
         failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
         return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, str(error))

@@ -109,12 +109,17 @@ def expression(value: Any) -> str:
     return value
 
 
+_TAKEN = frozenset("layout index method other parameter point omega value improvement status starts agreed".split())
+
+
 def element_name(name: Any) -> str:
-    """A name that can stand in an expression."""
+    """A name that can stand in an expression, and in results beside the names that are there already."""
     if not NAME.fullmatch(name):
         raise ValueError(
             f"Got {shown(name)}: not a name; expected a letter followed by letters, digits and underscores, such as k1."
         )
+    if name in _TAKEN:
+        raise ValueError(f"Got {shown(name)}: a word that results use themselves; expected another name, such as k1.")
     return str(name)
 
 

@@ -36,11 +36,11 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
     value = np.full((*shape, len(methods)), np.nan)
     other = np.full((*shape, len(methods), len(indices)), np.nan)
     error = np.full((*shape, len(methods)), np.nan)
-    found = np.full((*shape, len(parameters)), np.nan)
+    found = np.full((*shape, len(parameters), 3), np.nan)  # value, least and largest of the same height
     bound = np.full((*shape, len(parameters)), "", dtype=object)
     status = np.full(shape, "missing", dtype=object)
     counts = np.zeros((*shape, 3), dtype=int)
-    notes: dict[str, None] = {}
+    notes: dict[str, dict[str, None]] = {}  # note -> layouts
     for case in cases(study):
         outcome = outcomes.get(case)
         if outcome is None:
@@ -52,16 +52,17 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
             other[(*at, m)] = [values.get(index, np.nan) for index in indices]
             error[(*at, m)] = outcome.standard_errors.get(method, {}).get(case.index) or np.nan
         for name, number in outcome.parameters.items():
-            found[(*at, list(parameters).index(name))] = number
+            found[(*at, list(parameters).index(name))] = number, *outcome.ranges.get(name, (number, number))
             bound[(*at, list(parameters).index(name))] = outcome.active_bounds.get(name, "")
         status[at] = _status(outcome)
         counts[at] = outcome.starts, outcome.agreed, outcome.evaluations
-        notes.update(dict.fromkeys(f"{case.layout}: {note}" for note in outcome.notes))
+        for note in outcome.notes:
+            notes.setdefault(note, {})[case.layout] = None
     improvement = np.full(value.shape, np.nan)
     if study.baseline is not None:
         base = value[layouts.index(study.baseline)]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            improvement = 100.0 * (1.0 - value / base)
+        base = np.where(np.isfinite(base), base, np.nan)  # nothing is a share of an infinite value
+        improvement = 100.0 * (1.0 - value / base)
     dims = ("layout", "index", sweep.element if sweep else "point")
     data = xr.Dataset(
         {
@@ -69,7 +70,9 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
             "standard_error": ((*dims, "method"), error, {"long_name": "standard error of the value"}),
             "improvement": ((*dims, "method"), improvement, {"units": "percent", "long_name": "improvement"}),
             "other_value": ((*dims, "method", "other"), other, {"long_name": "other indices of the same design"}),
-            "parameter_value": ((*dims, "parameter"), found, {"long_name": "value of the parameter at the optimum"}),
+            "parameter_value": ((*dims, "parameter"), found[..., 0], {"long_name": "parameter at the optimum"}),
+            "parameter_low": ((*dims, "parameter"), found[..., 1], {"long_name": "least among equally good optima"}),
+            "parameter_high": ((*dims, "parameter"), found[..., 2], {"long_name": "largest among equally good optima"}),
             "at_bound": ((*dims, "parameter"), bound.astype(str), {"long_name": "bound that holds the parameter"}),
             "status": (dims, status.astype(str), {"long_name": "status"}),
             "starts": (dims, counts[..., 0], {"long_name": "local searches"}),
@@ -93,7 +96,7 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
             "model": study.model,
             "seed": study.seed,
             "inerter_version": inerter.__version__,
-            "notes": "\n".join(notes),
+            "notes": "\n".join(f"{', '.join(where)}: {note}" for note, where in notes.items()),
         },
     )
     if sweep:
@@ -182,8 +185,8 @@ def _responses(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
         for layout, (problem, system) in mine.items():
             response = frequency_response(system, omega, problem.pade_order)[:, :, 0]
             gains[list(study.layouts).index(layout)] = weights[:, None] * np.abs(response).T
-        per = "m/s" if question.road is not None else "N"
-        unit = question.unit if question.road is None else f"({question.unit})/({per})"
+        own = f"({question.unit})" if "/" in question.unit else question.unit
+        unit = question.unit if question.road is None else f"{own}/(m/s)"
         of = "road velocity" if question.road is not None else "force on the body"
         what = {"J1": "body acceleration", "J3": "tyre force", "J5": "body displacement"}[index]
         attributes = {"units": unit, "long_name": f"{what} per {of}"}

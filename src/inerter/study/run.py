@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import platform
 import shutil
 from collections.abc import Callable
@@ -74,12 +73,15 @@ def run_study(
     study: Study,
     folder: Path,
     *,
-    jobs: int | None = None,
+    jobs: int = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, outcome: None,
 ) -> StudyResult:
-    """Run `study` over `jobs` processes into `folder`, and write the resolved study, the summary and the dataset.
+    """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
+
+    With more than one process, `jobs`, a script that calls this needs the line `if __name__ == "__main__":`, because
+    processes are started afresh and import it.
 
     Every finished case is in the journal at once. With `resume`, cases in the journal are not computed again, and the
     results are the same, byte for byte, as those of an undisturbed run.
@@ -94,7 +96,7 @@ def run_study(
     pending = [case for case in everything if case not in done]
     progress(len(done), len(everything), None)
     with journal.appending() as writer:
-        for outcome in run_all(study, pending, jobs or os.cpu_count() or 1):
+        for outcome in run_all(study, pending, jobs):
             writer.write(outcome)
             done[outcome.case] = outcome
             progress(len(done), len(everything), outcome)

@@ -41,8 +41,6 @@ def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcom
 
 
 def _begin_worker() -> None:
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ[name] = "1"
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which ends the pool
     parent = multiprocessing.parent_process()
     if parent is not None:

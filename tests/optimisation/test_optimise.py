@@ -1,0 +1,207 @@
+"""Optima against brute force on cars that nobody tuned, and what the result says about itself."""
+
+import math
+
+import numpy as np
+import pytest
+import scipy.optimize
+from strategies import paper_quarter_car, random_half_car, random_quarter_car
+
+from inerter import (
+    Damper,
+    Inerter,
+    LoadCarrying,
+    Norm,
+    RideComfort,
+    Road,
+    Spring,
+    StatusKind,
+    TyreLoad,
+    evaluate,
+    evaluate_many,
+    free,
+    optimise,
+)
+from inerter.errors import IndicatorError
+
+ROAD = Road(roughness=5e-7, speed=25.0)
+J1, J3, J5 = RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying()
+k, c, b = Spring(80e3), Damper(free(10.0, 1e6, "c")), Inerter(free(0.01, 1e5, "b"))
+screw = Spring(1e6) | Damper(3200.0)
+STRUTS = {"S1": k | c, "S2": k | c | b, "S3": k | c - b, "elastic S3": k | c - screw - b}
+AGREE = {J1: 1e-6, J3: 1e-6, J5: 1e-4}
+ids = {J1: "J1", J3: "J3", J5: "J5"}.get
+
+
+def unknown_car(strut, seed=2024):
+    return random_quarter_car(np.random.default_rng(seed), strut)
+
+
+def grid_search(car, index, method):
+    """The least value on grids that close in on it, each over a tenth of the one before, from three best places."""
+    names, bounds = list(car.free_values()), [(v.lower, v.upper) for v in car.free_values().values()]
+    low, high = np.log(np.array(bounds)).T
+    count = {1: 400, 2: 60}[len(names)]
+
+    def values(axes):
+        mesh = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(names))
+        points = dict(zip(names, np.exp(mesh).T, strict=True))
+        return mesh, evaluate_many(car, index, points, method)[:, 0]
+
+    mesh, found = values([np.linspace(a, z, count) for a, z in zip(low, high, strict=True)])
+    seeds, best = mesh[np.argsort(found)[:200:40]], math.inf
+    for centre in seeds:
+        width = 3.0 * (high - low) / count
+        for _ in range(12):
+            axes = [
+                np.linspace(max(x - w, a), min(x + w, z), 15)
+                for x, w, a, z in zip(centre, width, low, high, strict=True)
+            ]
+            mesh, found = values(axes)
+            centre, width = mesh[np.argmin(found)], 0.4 * width
+        best = min(best, float(found.min()))
+    return best
+
+
+@pytest.mark.parametrize("index", [J1, J3, J5], ids=ids)
+@pytest.mark.parametrize("name", ["S1", "S2", "S3", "elastic S3"])
+def test_no_grid_finds_less(name, index):
+    car, method = unknown_car(STRUTS[name]), Norm()
+    best = optimise(car, index, method, seed=1)
+    expected = grid_search(car, index, method)
+    assert best.status.ok
+    assert best.value == pytest.approx(expected, rel=AGREE[index])
+    assert best.value <= expected * (1.0 + 1e-7)
+
+
+@pytest.mark.parametrize("index", [J1, J3, J5], ids=ids)
+def test_no_evolution_finds_less_for_a_half_car_with_four_free_values(index):
+    front = k | Damper(free(10.0, 1e6, "cf")) - Inerter(free(0.01, 1e5, "bf"))
+    rear = k | Damper(free(10.0, 1e6, "cr")) - Inerter(free(0.01, 1e5, "br"))
+    car, method = random_half_car(np.random.default_rng(7), front, rear), Norm()
+    best = optimise(car, index, method, seed=0)
+    names = list(car.free_values())
+
+    def population(x):
+        return evaluate_many(car, index, dict(zip(names, np.exp(np.atleast_2d(x.T)).T, strict=True)), method)[:, 0]
+
+    evolved = scipy.optimize.differential_evolution(
+        population,
+        [tuple(np.log((v.lower, v.upper))) for v in car.free_values().values()],
+        vectorized=True,
+        updating="deferred",
+        popsize=20,
+        maxiter=60,
+        tol=1e-10,
+        polish=False,
+        rng=np.random.default_rng(0),
+    )
+    assert best.value <= float(evolved.fun) * (1.0 + 1e-7)
+
+
+@pytest.mark.parametrize("index", [J1, J3, J5], ids=ids)
+@pytest.mark.parametrize("name", ["S2", "S3"])
+def test_twenty_seeds_find_one_value(name, index):
+    values = [optimise(paper_quarter_car(STRUTS[name]), index, Norm(), seed=seed).value for seed in range(20)]
+    assert max(values) <= min(values) * (1.0 + AGREE[index])
+
+
+@pytest.mark.parametrize("index", [J1, J3, J5], ids=ids)
+@pytest.mark.parametrize("name", ["S1", "S2", "S3", "elastic S3"])
+def test_no_small_step_improves_the_optimum(name, index):
+    car = unknown_car(STRUTS[name], seed=5)
+    best = optimise(car, index, Norm())
+    rng, names = np.random.default_rng(0), list(best.parameters)
+    steps = rng.standard_normal((400, len(names))) * 10 ** rng.uniform(-5, -1, (400, 1))
+    points = {
+        name: np.clip(best.parameters[name] * np.exp(steps[:, i]), free_.lower, free_.upper)
+        for i, (name, free_) in enumerate(car.free_values().items())
+    }
+    assert evaluate_many(car, index, points, Norm()).min() >= best.value * (1.0 - 1e-7)
+
+
+@pytest.mark.parametrize(
+    "car",
+    [
+        paper_quarter_car(Spring(120e3) | c | b),
+        paper_quarter_car(Spring(120e3) | c - b),
+        unknown_car(STRUTS["S3"], 2024),
+        unknown_car(STRUTS["S3"], 5),
+        unknown_car(STRUTS["S3"], 6),
+    ],
+)
+def test_the_best_load_carrying_has_two_peaks_of_one_height(car):
+    """A minimax optimum inside its bounds, as the J5 designs of Wang and Su (2008) are."""
+    best = optimise(car, J5, Norm())
+    assert best.active_bounds == {}
+    first, second = best.estimate.peaks[:2]
+    assert second.gain == pytest.approx(first.gain, rel=1e-6)
+
+
+def test_the_best_conventional_damper_is_in_closed_form():
+    """J1^2 goes as c kt / m^2 + k^2 (m + mu) / (c m^2): least at c = k sqrt((m + mu) / kt)."""
+    car = paper_quarter_car(STRUTS["S1"])
+    best = optimise(car, J1, Norm())
+    expected = 80e3 * math.sqrt((181.75 + 25.0) / 120e3)
+    assert best.parameters["c"] == pytest.approx(expected, rel=1e-5)
+    assert best.value == pytest.approx(evaluate(car.with_values({"c": expected}), J1, Norm()).value, rel=1e-12)
+
+
+@pytest.mark.parametrize(("bounds", "side"), [((10.0, 1e3), "upper"), ((5e4, 1e6), "lower")])
+def test_a_bound_that_holds_the_optimum_back_is_named(bounds, side):
+    best = optimise(paper_quarter_car(k | Damper(free(*bounds, "c"))), J1, Norm())
+    assert best.active_bounds == {"c": side}
+    assert best.parameters["c"] == pytest.approx(bounds[0 if side == "lower" else 1], rel=1e-14)
+
+
+def test_bounds_are_never_left():
+    car = paper_quarter_car(k | Damper(free(100.0, 1234.5, "c")) - Inerter(free(2.0, 77.7, "b")))
+    for index in (J1, J3, J5):
+        best = optimise(car, index, Norm())
+        for name, value in car.free_values().items():
+            assert value.lower <= best.parameters[name] <= value.upper
+
+
+def test_the_same_seed_gives_the_same_result_and_the_result_is_a_design():
+    car = paper_quarter_car(STRUTS["S3"])
+    one, two = (optimise(car, J5, Norm(), seed=3) for _ in range(2))
+    assert one == two
+    assert one.design == car.with_values(one.parameters)
+    assert one.value == evaluate(one.design, J5, Norm()).value
+    assert one.seed == 3
+    assert 1 <= one.agreed <= one.starts
+    assert one.evaluations > one.starts
+
+
+def test_a_flat_optimum_shows_in_the_ranges():
+    """Two dampers side by side: only their sum matters, so that the starts agree on the value and not on the share."""
+    pair = Damper(free(10.0, 1e5, "c1")) | Damper(free(10.0, 1e5, "c2"))
+    best = optimise(paper_quarter_car(k | pair), J1, Norm())
+    alone = optimise(paper_quarter_car(STRUTS["S1"]), J1, Norm())
+    assert best.value == pytest.approx(alone.value, rel=1e-8)
+    assert best.parameters["c1"] + best.parameters["c2"] == pytest.approx(alone.parameters["c"], rel=1e-3)
+    assert best.agreed > 1
+    low, high = best.ranges["c1"]
+    assert high > 1.5 * low
+
+
+def test_an_index_that_no_value_makes_finite_says_so():
+    best = optimise(paper_quarter_car(Spring(free(1e4, 1e5, "k"))), J1, Norm())
+    assert best.value == math.inf
+    assert best.status.kind is StatusKind.MARGINAL
+    assert best.agreed == 0
+
+
+def test_more_freedom_is_never_worse():
+    """An inerter in parallel may be as small as its bound, and one in series as large."""
+    for index in (J1, J3, J5):
+        conventional = optimise(paper_quarter_car(STRUTS["S1"]), index, Norm()).value
+        for name in ("S2", "S3"):
+            assert optimise(paper_quarter_car(STRUTS[name]), index, Norm()).value <= conventional * (1.0 + 1e-3)
+
+
+def test_a_question_the_car_cannot_answer_is_refused_before_any_search():
+    mechanism = paper_quarter_car(STRUTS["S1"]).mechanism()
+    bare = type(mechanism)(mechanism.coordinates, mechanism.struts, mechanism.tyres, mechanism.roads)
+    with pytest.raises(IndicatorError, match=r"measures\.comfort"):
+        optimise(bare, J1, Norm())

@@ -1,0 +1,146 @@
+"""The command line as a person meets it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import inerter
+from inerter.cli.main import call
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SMALL = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8").replace('["J1", "J3", "J5"]', '["J1"]')
+
+
+def fails(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    """The sentence of a refused request: exit code 2, nothing on stdout, no traceback."""
+    assert call(arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("inerter: ")
+    assert "Traceback" not in err
+    return err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["run"], "STUDY"),
+        (["bogus"], "bogus"),
+        (["run", "missing.toml"], "no such file"),
+        (["check", "missing.toml"], "no such file"),
+        (["check", str(EXAMPLES)], "folder"),
+        (["run", "a.toml", "b.toml"], "b.toml"),
+        (["run", "a.toml", "--nope"], "--nope"),
+        (["run", str(EXAMPLES / "quarter-car.toml"), "-j", "0"], "--jobs"),
+        (["run", str(EXAMPLES / "quarter-car.toml"), "-j", "many"], "many"),
+        (["reproduce", "some-paper"], "wang-su-2008"),
+        (["reproduce", "wang-su-2008", "--only", "all"], "linear"),
+        (["run", str(EXAMPLES / "quarter-car.toml"), "-o", __file__], "is a file"),
+    ],
+)
+def test_wrong_requests(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert words in fails(arguments, capsys)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('k = "120 kN/m"', 'k = "120"', "elements.k"),
+        ('k = "120 kN/m"', 'k = "-120 kN/m"', "elements.k"),
+        ('"k | c"', '"k | q"', "layouts.S1"),
+        ('"k | c"', '"k | | c"', "layouts.S1"),
+        ("[road]", "[raod]", "raod"),
+        ('baseline = "S1"', 'baseline = "S9"', "study.baseline"),
+        ('"1 kg", to = "2000 kg"', '"2000 kg", to = "1 kg"', "elements.b"),
+    ],
+)
+def test_bad_study_files(tmp_path: Path, old: str, new: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert old in SMALL
+    path = tmp_path / "bad.toml"
+    path.write_text(SMALL.replace(old, new), encoding="utf-8")
+    message = fails(["check", str(path)], capsys)
+    assert words in message
+    assert "bad.toml" in message
+
+
+def test_run_writes_everything_and_prints_the_best(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    study, folder = tmp_path / "small.toml", tmp_path / "out"
+    study.write_text(SMALL, encoding="utf-8")
+    assert call(["run", str(study), "-o", str(folder), "-j", "1"]) == 0
+    out, err = capsys.readouterr()
+    assert "Best ride comfort: S3, 2.428 m/s^2, 18.7 % better than S1." in out
+    assert max(map(len, out.splitlines())) <= 80
+    assert "report.html" in err
+    names = {path.name for path in folder.iterdir()}
+    assert names >= {"summary.csv", "results.nc", "report.html", "figures", "study.resolved.toml", "versions.json"}
+    assert {path.name for path in (folder / "figures").iterdir()} == {
+        f"{name}.{kind}" for name in ("improvement", "response-J1") for kind in ("svg", "png")
+    }
+    assert call(["run", str(study), "-o", str(folder)]) == 2
+    assert "--force" in capsys.readouterr().err
+
+
+def test_json_is_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    study = tmp_path / "small.toml"
+    study.write_text(SMALL.replace('S2 = "k | c | b"', 'S2 = "k | b"'), encoding="utf-8")
+    assert call(["run", str(study), "-o", str(tmp_path / "out"), "-j", "1", "--json"]) == 0
+    designs = {d["layout"]: d for d in json.loads(capsys.readouterr().out)["designs"]}
+    assert designs["S3"]["value"] == pytest.approx(2.4281, abs=1e-4)  # Wang and Su (2008), Table 1
+    assert designs["S3"]["parameters"]["b"] == pytest.approx(366.52, abs=0.01)
+    assert designs["S2"]["value"] == "inf"
+    assert designs["S2"]["status"].startswith("marginal")
+
+
+@pytest.mark.parametrize("name", ["quarter-car", "half-car", "stiffness-sweep"])
+def test_examples_are_sound(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["check", str(EXAMPLES / f"{name}.toml")]) == 0
+    assert "ok" in capsys.readouterr().out
+
+
+def test_python_example_runs() -> None:
+    subprocess.run([sys.executable, str(EXAMPLES / "best_strut.py")], check=True, capture_output=True)
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["--version"]) == 0
+    assert inerter.__version__ in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["reproduce", "--help"]])
+def test_help_has_examples_and_is_quick(arguments: list[str]) -> None:
+    command = [sys.executable, "-c", "from inerter.cli.main import main; main()", *arguments]
+    times = []
+    for _ in range(3):
+        start = time.perf_counter()
+        text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        times.append(time.perf_counter() - start)
+    assert "Example" in text
+    assert max(map(len, text.splitlines())) <= 80
+    assert min(times) < 0.5
+
+
+def test_help_loads_nothing_heavy() -> None:
+    program = (
+        "import sys; from inerter.cli.main import call; call(['--help']); "
+        "sys.exit(' '.join({'numpy', 'scipy', 'numba', 'xarray', 'pint', 'matplotlib'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, check=False).returncode == 0
+
+
+def test_one_design_needs_no_compiler() -> None:
+    program = """
+import sys, inerter as it
+assert not {"numpy", "scipy"} & set(sys.modules)
+car = it.QuarterCar(sprung_mass=300, unsprung_mass=40, tyre_stiffness=2e5, strut=it.Spring(2e4) | it.Damper(1500))
+road = it.Road(roughness=5e-7, speed=25)
+for index in (it.RideComfort(road), it.TyreLoad(road), it.LoadCarrying()):
+    assert it.evaluate(car, index, it.Norm()).status.ok
+assert "numba" not in sys.modules
+"""
+    subprocess.run([sys.executable, "-c", program], check=True)

@@ -1,0 +1,84 @@
+"""The printed linear numbers of Wang and Su (2008)."""
+
+from __future__ import annotations
+
+import csv
+
+import numpy as np
+import pytest
+
+from inerter.methods.norm import Norm
+from inerter.optimisation.optimise import optimise
+from inerter.papers.wang_su_2008 import PrintedRow, Study, compare, printed_rows, study
+from inerter.study.registry import INDEX
+from inerter.study.run import check_study
+
+ROWS = printed_rows()
+DESIGNS = [row for row in ROWS if row.table < 3]
+
+
+def name(row: PrintedRow) -> str:
+    return f"table{row.table}-{row.index}-{row.layout}"
+
+
+def source(row: PrintedRow) -> Study:
+    return study("table1" if row.table == 1 else "table2")
+
+
+def test_all_linear_rows_are_there() -> None:
+    assert [sum(row.table == table for row in ROWS) for table in (1, 2, 3)] == [15, 21, 21]
+
+
+@pytest.mark.parametrize("row", DESIGNS, ids=name)
+def test_linear_values_of_tables_1_and_2(row: PrintedRow) -> None:
+    """Equal to the printed value within one unit of its last digit."""
+    assert abs(compare(row).paper2008 - float(row.printed)) <= row.last_digit
+
+
+@pytest.mark.parametrize("row", [row for row in ROWS if row.table == 3], ids=name)
+def test_table_3_repeats_table_2(row: PrintedRow) -> None:
+    """Its linear values are those of Table 2, some with a zero for a digit that Table 2 does not have."""
+    (same,) = (other for other in DESIGNS if (other.table, other.index, other.case) == (2, row.index, row.case))
+    assert float(same.printed) == float(row.printed)
+    assert same.parameters == row.parameters
+
+
+@pytest.mark.parametrize("row", DESIGNS, ids=name)
+def test_designs_are_found_from_scratch(row: PrintedRow) -> None:
+    """At or below the printed value, to its printed digits, from the widest bounds and with no hint."""
+    vehicle = source(row).design(row.layout)
+    bounds = {(free.lower, free.upper) for free in vehicle.free_values().values()}
+    assert bounds <= {(10.0, 1e6), (0.01, 1e5)}
+    best = optimise(vehicle, INDEX[row.index](source(row)), Norm("paper2008"))
+    assert best.status.ok
+    assert best.value <= float(row.printed) + 0.5 * row.last_digit + 1e-9 * best.value
+
+
+@pytest.mark.parametrize("layout", ["S1", "S2-soft", "S3", "S3-hard"])
+@pytest.mark.parametrize("index", ["J1", "J3", "J5"])
+def test_seeds_agree_on_the_half_car(layout: str, index: str) -> None:
+    half = study("table2")
+    values = [optimise(half.design(layout), INDEX[index](half), Norm("paper2008"), seed=seed).value for seed in (1, 2)]
+    assert np.ptp(values) <= (1e-4 if index == "J5" else 1e-6) * min(values)
+
+
+@pytest.mark.parametrize("part", ["table1", "table2", "figure11"])
+def test_studies_can_be_run(part: str) -> None:
+    check_study(study(part))
+
+
+def test_last_digit_is_that_of_the_printed_text() -> None:
+    digits = {row.printed: row.last_digit for row in ROWS}
+    assert digits["2.9882"] == pytest.approx(1e-4)
+    assert digits["3.8761e-5"] == pytest.approx(1e-9)
+    assert digits["1044.30"] == pytest.approx(0.01)
+
+
+def test_tables_hold_the_rows_with_friction_too() -> None:
+    """The nonlinear rows are data for later; only the linear ones are compared here."""
+    from importlib.resources import files
+
+    text = (files("inerter.papers") / "data" / "wang-su-2008" / "table2.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    assert len(rows) == 39
+    assert sum("friction" in row["nonlinearity"] for row in rows) == 39 - 21

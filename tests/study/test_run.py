@@ -1,0 +1,233 @@
+"""Running studies: results on disk, interruption and resumption."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from inerter.errors import StudyError
+from inerter.methods.method import evaluate
+from inerter.study.cases import Outcome, cases
+from inerter.study.file import load_study
+from inerter.study.journal import Journal
+from inerter.study.registry import INDEX, METHOD
+from inerter.study.run import check_study, run_study
+
+SWEEP = """
+title = "Soft and stiff springs"
+[vehicle]
+model = "quarter-car"
+sprung_mass = "320 kg"
+unsprung_mass = "38 kg"
+tyre_stiffness = "190 kN/m"
+[road]
+speed = "80 km/h"
+roughness = "2e-6 m^3/cycle"
+[elements]
+k = "20 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+b = { from = "1 kg", to = "2000 kg" }
+f = "15 N"
+[layouts]
+usual = "k | c"
+serial = "k | c - (b | f)"
+[study]
+indices = ["J1", "J3"]
+optimise = "norm"
+sweep = { k = { from = "10 kN/m", to = "90 kN/m", points = POINTS } }
+"""
+
+
+def write(folder: Path, points: int = 5) -> Path:
+    path = folder / "study.toml"
+    path.write_text(SWEEP.replace("POINTS", str(points)), encoding="utf-8")
+    return path
+
+
+def lines(journal: Path) -> list[str]:
+    return journal.read_text(encoding="utf-8").splitlines() if journal.exists() else []
+
+
+def start(arguments: list[str]) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-c", "from inerter.cli.main import main; main()", *arguments]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def wait_for_cases(process: subprocess.Popen[bytes], journal: Path, count: int) -> None:
+    deadline = time.monotonic() + 120.0
+    while len(lines(journal)) < 1 + count:
+        assert process.poll() is None, process.communicate()[1].decode()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_summary_holds_the_values_of_the_designs(tmp_path: Path) -> None:
+    study = load_study(write(tmp_path))
+    result = run_study(study, tmp_path / "out")
+    with (tmp_path / "out" / "summary.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == len(cases(study)) == result.computed == 20
+    for row in rows[::3]:
+        values = {
+            name: float(row[f"{name} [{unit}]"])
+            for name, unit in (("c", "N s/m"), ("b", "kg"))
+            if row[f"{name} [{unit}]"]
+        }
+        design = study.design(row["layout"], float(row["k [N/m]"])).with_values(values)
+        again = evaluate(design, INDEX[row["index"]](study), METHOD[row["method"]](study))
+        assert again.value == pytest.approx(float(row["value"]), rel=1e-12)
+        assert again.unit == row["unit"]
+        assert row["status"] == "ok"
+
+
+def test_improvement_is_over_the_baseline_of_the_same_stiffness(tmp_path: Path) -> None:
+    data = run_study(load_study(write(tmp_path)), tmp_path / "out").data
+    expected = 100.0 * (1.0 - data.value / data.value.sel(layout="usual", drop=True))
+    assert np.all(data.improvement.sel(layout="usual") == 0.0)
+    xr.testing.assert_allclose(data.improvement, expected.transpose(*data.improvement.dims))
+
+
+def test_results_reopen_with_units(tmp_path: Path) -> None:
+    result = run_study(load_study(write(tmp_path)), tmp_path / "out")
+    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as again:
+        xr.testing.assert_identical(again.load().drop_attrs(), result.data.drop_attrs())
+        assert again["k"].attrs["units"] == "N/m"
+        assert "friction 'f' in 'strut' left out" in again.attrs["notes"]
+
+
+def test_resolved_study_gives_the_same_results(tmp_path: Path) -> None:
+    run_study(load_study(write(tmp_path)), tmp_path / "one")
+    run_study(load_study(tmp_path / "one" / "study.resolved.toml"), tmp_path / "two")
+    assert (tmp_path / "one" / "summary.csv").read_bytes() == (tmp_path / "two" / "summary.csv").read_bytes()
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=["kill -9", "Ctrl-C"])
+def test_interrupted_sweep_resumes_to_the_same_bytes(tmp_path: Path, how: signal.Signals) -> None:
+    study = write(tmp_path, points=60)
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    undisturbed = start(["run", str(study), "-o", str(whole), "-j", "1"])
+    process = start(["run", str(study), "-o", str(broken), "-j", "2"])
+    wait_for_cases(process, broken / "journal.jsonl", 30)
+    process.send_signal(how)
+    _, problems = process.communicate(timeout=60)
+    if how == signal.SIGINT:
+        assert process.returncode == 1
+        assert b"--resume" in problems
+        assert b"Traceback" not in problems
+    kept = lines(broken / "journal.jsonl")
+    assert 30 < len(kept) < 1 + 240
+    resumed = start(["run", str(study), "-o", str(broken), "-j", "2", "--resume"])
+    assert resumed.wait(timeout=120) == 0, resumed.communicate()[1].decode()
+    assert undisturbed.wait(timeout=120) == 0
+    assert (broken / "summary.csv").read_bytes() == (whole / "summary.csv").read_bytes()
+    after = lines(broken / "journal.jsonl")
+    complete = [line for line in kept if line.endswith("}")]
+    assert after[: len(complete)] == complete
+    assert len(after) == 1 + 240  # every case once: nothing finished was computed again
+
+
+def test_workers_end_with_their_parent(tmp_path: Path) -> None:
+    process = start(["run", str(write(tmp_path, points=400)), "-o", str(tmp_path / "out"), "-j", "2"])
+    wait_for_cases(process, tmp_path / "out" / "journal.jsonl", 30)
+    children = [int(pid) for pid in os.listdir("/proc") if pid.isdigit() and _parent(pid) == process.pid]
+    assert len(children) >= 2
+    process.kill()
+    process.communicate()
+    deadline = time.monotonic() + 10.0
+    while any(Path(f"/proc/{pid}").exists() and _state(pid) != "Z" for pid in children):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def _parent(pid: str) -> int:
+    try:
+        return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+    except OSError:
+        return -1
+
+
+def _state(pid: int) -> str:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return "Z"
+
+
+def test_a_line_cut_short_is_dropped(tmp_path: Path) -> None:
+    study = load_study(write(tmp_path))
+    run_study(study, tmp_path / "out")
+    journal = tmp_path / "out" / "journal.jsonl"
+    summary = (tmp_path / "out" / "summary.csv").read_bytes()
+    journal.write_bytes(journal.read_bytes()[:-100])
+    result = run_study(study, tmp_path / "out", resume=True)
+    assert result.computed == 1
+    assert (tmp_path / "out" / "summary.csv").read_bytes() == summary
+
+
+def test_finished_study_resumes_without_work(tmp_path: Path) -> None:
+    study = load_study(write(tmp_path))
+    run_study(study, tmp_path / "out")
+    assert run_study(study, tmp_path / "out", resume=True).computed == 0
+
+
+def test_folder_is_never_overwritten_unasked(tmp_path: Path) -> None:
+    study = load_study(write(tmp_path))
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.txt").write_text("mine")
+    with pytest.raises(StudyError, match="not empty"):
+        run_study(study, tmp_path / "out")
+    run_study(study, tmp_path / "out", force=True)
+    assert (tmp_path / "out" / "thesis.txt").read_text() == "mine"
+    with pytest.raises(StudyError, match="--resume"):
+        run_study(study, tmp_path / "out")
+
+
+def test_journal_of_another_study_is_refused(tmp_path: Path) -> None:
+    run_study(load_study(write(tmp_path)), tmp_path / "out")
+    other = load_study(write(tmp_path, points=6))
+    with pytest.raises(StudyError, match="another study"):
+        run_study(other, tmp_path / "out", resume=True)
+
+
+@pytest.mark.parametrize("text", ["", "not json\n", '{"format": 1}\n[1, 2]\n'], ids=["empty", "text", "odd line"])
+def test_damaged_journal_is_refused(tmp_path: Path, text: str) -> None:
+    study = load_study(write(tmp_path))
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "journal.jsonl").write_text(text)
+    with pytest.raises(StudyError, match="journal"):
+        run_study(study, tmp_path / "out", resume=True)
+
+
+def test_outcomes_survive_the_journal(tmp_path: Path) -> None:
+    study = load_study(write(tmp_path))
+    run_study(study, tmp_path / "out")
+    for case, outcome in Journal(tmp_path / "out" / "journal.jsonl", study).read().items():
+        assert outcome.case == case
+        assert Outcome(**json.loads(json.dumps(outcome.to_json()))) == outcome
+
+
+def test_ill_posed_layout_is_found_before_work(tmp_path: Path) -> None:
+    path = write(tmp_path)
+    path.write_text(path.read_text().replace('serial = "k | c - (b | f)"', 'serial = "f"'))
+    with pytest.raises(StudyError, match=r"layouts\.serial.*held by nothing"):
+        check_study(load_study(path))
+
+
+def test_undamped_layout_is_a_result_with_a_status(tmp_path: Path) -> None:
+    path = write(tmp_path, points=2)
+    path.write_text(path.read_text().replace('serial = "k | c - (b | f)"', 'serial = "k | b"'))
+    result = run_study(load_study(path), tmp_path / "out")
+    row = result.data.sel(layout="serial", index="J1")
+    assert np.all(np.isinf(row.value))
+    assert np.all(row.status.str.startswith("marginal"))
+    assert len(result.failures) == 4

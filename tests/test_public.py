@@ -1,0 +1,82 @@
+"""The public names, as documented, and what the documents promise."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import inerter as it
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_every_public_name_is_there() -> None:
+    for name in it.__all__:
+        assert getattr(it, name) is not None
+    assert set(it._HOME) | {"__version__"} == set(it.__all__)
+    with pytest.raises(AttributeError, match="no attribute"):
+        _ = it.nothing_of_that_name  # type: ignore[attr-defined]
+
+
+def test_readme_has_the_two_commands() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    commands = re.findall(r"^ *(python3 -m venv .*)$", text, re.MULTILINE)
+    assert commands == [
+        "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/inerter run examples/quarter-car.toml",
+        'python3 -m venv .venv && .venv/bin/pip install -e ".[test]" && .venv/bin/pytest',
+    ]
+
+
+def test_documents_name_every_command() -> None:
+    text = "".join(path.read_text(encoding="utf-8") for path in [ROOT / "README.md", *ROOT.glob("docs/*.md")])
+    for command in ("inerter run", "inerter check", "inerter reproduce wang-su-2008 --only linear", "--resume"):
+        assert command in text
+
+
+def test_names_of_the_first_release() -> None:
+    k, c, b = it.Spring(120e3), it.Damper(it.free(100, 100e3, name="c")), it.Inerter(it.free(1, 2000, name="b"))
+    car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=k | c - b)
+    road = it.Road(roughness=5e-7, speed=25)
+    best = it.optimise(car, it.RideComfort(road), it.Norm(), seed=0)
+    assert best.value == pytest.approx(2.4281, abs=5e-5)  # Wang and Su (2008), Table 1, J1 case 7
+    assert best.parameters["c"] == pytest.approx(7544.2, abs=0.05)
+    assert best.parameters["b"] == pytest.approx(366.52, abs=0.005)
+    indices = [it.RideComfort(road), it.TyreLoad(road)]
+    values = it.evaluate_many(car, indices, {"c": [7544.2, 6666.4], "b": [366.52, 363.55]}, it.Norm())
+    assert values.shape == (2, 2)
+    assert values[0, 0] == pytest.approx(2.4281, abs=1e-4)
+    assert values[1, 1] == pytest.approx(501.20, abs=1e-2)
+    assert it.evaluate(best.design, it.TyreLoad(road), it.Norm()).value > 501.20
+    assert it.evaluate(best.design, it.LoadCarrying(), it.Norm()).value > 2.5946e-5
+    system = it.assemble(best.design)
+    assert (system.A.shape[0], system.B.shape[1], system.C.shape[0]) == tuple(
+        map(len, (system.states, system.inputs, system.outputs))
+    )
+    compliance = system.select("sprung_force", "strut_travel")
+    assert it.hinf_norm(compliance).value == it.hinf_norm(compliance).peaks[0].gain
+    assert it.h2_norm(system.select("road", "sprung_acceleration")) * road.velocity_intensity == best.value
+    parts = {"k": it.Spring(120e3), "c": it.Damper(7544.2), "b": it.Inerter(366.52)}
+    omega = np.array([1.0, 10.0])
+    expected = 120e3 / (1j * omega) + 1.0 / (1.0 / 7544.2 + 1.0 / (366.52 * 1j * omega))
+    assert it.network("k | c - b", **parts).admittance(1j * omega) == pytest.approx(expected, rel=1e-13)
+
+
+def test_half_car_of_the_first_release() -> None:
+    road = it.Road(roughness=5e-7, speed=25)
+    half = it.HalfCar(
+        sprung_mass=363.5,
+        pitch_inertia=200,
+        unsprung_mass_front=25,
+        unsprung_mass_rear=20,
+        tyre_stiffness_front=120e3,
+        tyre_stiffness_rear=100e3,
+        distance_front=0.775,
+        distance_rear=1.265,
+        front=it.Spring(120e3) | it.Damper(3710.2),
+        rear=it.Spring(120e3) | it.Damper(4385.6),
+    )
+    value = it.evaluate(half, it.RideComfort(road), it.Norm(conventions="paper2008")).value
+    assert value == pytest.approx(6.1101, abs=1e-4)  # Wang and Su (2008), Table 2, J1 case 1

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import IndicatorError
+from inerter.errors import DesignError, IndicatorError
 from inerter.indices.index import Combination, Index, Question
 from inerter.methods.method import Estimate, Objective
 from inerter.norms.h2 import h2
@@ -77,7 +77,14 @@ class Norm:
         from inerter.methods.compiled_norm import CompiledQuestion
 
         mechanism = vehicle.mechanism()
-        return CompiledQuestion(linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions]))
+        problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
+        idle = [name for name in vehicle.free_values() if name not in problem.descriptor.variables]
+        if idle:
+            raise DesignError(
+                f"The free value of {', '.join(idle)} has no effect in linear analysis, which leaves friction out, "
+                f"closes gaps and drops what carries no force then. Fix it, or choose a method that sees it."
+            )
+        return CompiledQuestion(problem)
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,15 +36,24 @@ def pade(order: int) -> Approximant:
     """
     if not isinstance(order, int) or not 1 <= order <= 10:
         raise LinearSystemError(f"A Pade approximant of order 1 to 10 is available, got {order!r}.")
-    powers = np.arange(order + 1)
     coefficients = np.array(
-        [math.factorial(2 * order - k) / (math.factorial(k) * math.factorial(order - k)) for k in powers]
+        [math.factorial(2 * order - k) // (math.factorial(k) * math.factorial(order - k)) for k in range(order + 1)],
+        dtype=np.longdouble,
     )
-    denominator = np.polynomial.Polynomial(coefficients)
-    numerator = np.polynomial.Polynomial(coefficients * (-1.0) ** powers)
-    poles = np.asarray(denominator.roots(), dtype=complex)
-    residues = np.asarray(numerator(poles) / denominator.deriv()(poles), dtype=complex)
-    return Approximant((-1.0) ** order, poles, residues)
+    signs = (-1.0) ** np.arange(order + 1)
+    slopes = coefficients[1:] * np.arange(1, order + 1)
+    poles = np.polynomial.Polynomial(coefficients.astype(float)).roots().astype(np.clongdouble)
+    for _ in range(4):  # the roots of a polynomial lose digits, and the residues magnify that
+        poles = poles - _horner(coefficients, poles) / _horner(slopes, poles)
+    residues = _horner(coefficients * signs, poles) / _horner(slopes, poles)
+    return Approximant((-1.0) ** order, poles.astype(complex), residues.astype(complex))
+
+
+def _horner(coefficients: NDArray[np.longdouble], x: NDArray[np.clongdouble]) -> NDArray[np.clongdouble]:
+    result = np.zeros_like(x)
+    for coefficient in coefficients[::-1]:
+        result = result * x + coefficient
+    return result
 
 
 def propagate(A: Matrix, columns: Matrix, time: float, pade_order: int | None) -> Matrix:

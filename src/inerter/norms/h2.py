@@ -15,6 +15,7 @@ from inerter.norms.stability import Split, split
 from inerter.systems.linear import LinearSystem
 
 Matrix = NDArray[np.float64]
+_LOST = "some motions are so much slower than others that rounding hides their damping"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,13 +82,15 @@ def _squares(system: LinearSystem, parts: Split, pade_order: int | None) -> tupl
     A = scipy.linalg.block_diag(decaying.A, np.zeros_like(lasting.A)) if drifts else decaying.A
     B = np.vstack([decaying.B, lasting.B]) if drifts else decaying.B
     W = _excitation(system, A, B, pade_order)
-    P = solve_lyapunov(decaying.A, W[:n, :n])
+    P, converged = solve_lyapunov(decaying.A, W[:n, :n])
     square = np.einsum("ij,jk,ik->i", decaying.C, P, decaying.C)
     if drifts:
         cross = -np.linalg.solve(decaying.A, W[:n, n:]) if n else W[:n, n:]
         square = square + 2.0 * np.einsum("ij,jk,ik->i", decaying.C, cross, lasting.C)
         square = square + np.einsum("ij,jk,ik->i", lasting.C, _drift_covariance(system, lasting.B), lasting.C)
-    return square, seen, parts.status if np.any(seen) else OK
+    if np.any(seen):
+        return square, seen, parts.status
+    return square, seen, OK if converged else Status(StatusKind.INACCURATE, _LOST)
 
 
 def _is_drift(parts: Split) -> bool:
@@ -126,11 +129,19 @@ def _excitation(system: LinearSystem, A: Matrix, B: Matrix, pade_order: int | No
     return W
 
 
-def solve_lyapunov(A: Matrix, W: Matrix) -> Matrix:
-    """The symmetric P with A P + P A' + W = 0, with one step of refinement."""
+def solve_lyapunov(A: Matrix, W: Matrix) -> tuple[Matrix, bool]:
+    """The symmetric P with A P + P A' + W = 0, refined with residuals in extended precision; whether that converged."""
     if A.shape[0] == 0:
-        return np.zeros((0, 0))
+        return np.zeros((0, 0)), True
     P = scipy.linalg.solve_continuous_lyapunov(A, -W)
-    residual = A @ P + P @ A.T + W
-    P = P + scipy.linalg.solve_continuous_lyapunov(A, -residual)
-    return np.asarray(0.5 * (P + P.T), dtype=float)
+    P = 0.5 * (P + P.T)
+    long_A, long_W = A.astype(np.longdouble), W.astype(np.longdouble)
+    before = np.inf
+    for _ in range(20):
+        half = long_A @ P.astype(np.longdouble)
+        step = scipy.linalg.solve_continuous_lyapunov(A, -np.asarray(half + half.T + long_W, dtype=float))
+        change = float(np.linalg.norm(step))
+        if not change < 0.5 * before:
+            break
+        P, before = P + 0.5 * (step + step.T), change
+    return np.asarray(P, dtype=float), before <= 1e-9 * float(np.linalg.norm(P))

@@ -129,15 +129,15 @@ def _without_level_steps(grid: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
 
 
 def _refine(gain: Gain, left: float, middle: float, right: float) -> Peak:
-    """The maximum in a bracket: bounded search."""
+    """The maximum in a bracket, by its distance from the middle: a resonance may be much narrower than that."""
     result = scipy.optimize.minimize_scalar(
-        lambda w: -float(gain(np.array([w]))[0]),
-        bounds=(left, right),
+        lambda shift: -float(gain(np.array([middle + shift]))[0]),
+        bounds=(left - middle, right - middle),
         method="bounded",
-        options={"xatol": 1e-9 * (right - left) + 1e-12 * middle, "maxiter": 200},
+        options={"xatol": 1e-9 * (right - left), "maxiter": 200},
     )
     best, at_middle = -float(result.fun), float(gain(np.array([middle]))[0])
-    return Peak(float(result.x), best) if best >= at_middle else Peak(float(middle), at_middle)
+    return Peak(float(middle + result.x), best) if best >= at_middle else Peak(float(middle), at_middle)
 
 
 def _distinct(peaks: list[Peak]) -> list[Peak]:

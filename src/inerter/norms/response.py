@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import LinearSystemError
@@ -32,22 +31,34 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
     result = np.zeros((frequencies.size, len(system.outputs), len(sources)), dtype=complex)
     for j, (source, delay) in enumerate(zip(system.sources, system.delays.tolist(), strict=True)):
         factor = transfer(frequencies, delay, pade_order)
-        result[:, :, sources.index(source)] += response[:, :, j] * factor[:, None]
+        with np.errstate(invalid="ignore"):  # at a pole
+            result[:, :, sources.index(source)] += response[:, :, j] * factor[:, None]
     return result
 
 
 def resolvent(system: LinearSystem) -> Any:
-    """The function omega -> C (j omega - A)^-1 B, vectorised, by one Schur form and a substitution a frequency."""
+    """The function omega -> C (j omega - A)^-1 B, by elimination at each frequency.
+
+    Elimination keeps the digits of small responses, such as that of one axle to the other's road; a Schur form, which
+    mixes all states, would lose them.
+    """
     A, scale = balance(system.A)
-    T, Z = scipy.linalg.schur(A.astype(complex), output="complex") if A.size else (A.astype(complex), A.astype(complex))
-    B, C = Z.conj().T @ (system.B / scale[:, None]), (system.C * scale) @ Z
+    B, C = system.B / scale[:, None], system.C * scale
 
     def evaluate(omega: NDArray[np.float64]) -> Complex:
-        X = np.zeros((A.shape[0], omega.size, B.shape[1]), dtype=complex)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            for i in reversed(range(A.shape[0])):
-                rest = np.tensordot(T[i, i + 1 :], X[i + 1 :], axes=1)
-                X[i] = (B[i] + rest) / (1j * omega - T[i, i])[:, None]
-        return np.tensordot(X, C, axes=(0, 1)).swapaxes(1, 2)
+        n = A.shape[0]
+        if n == 0:
+            return np.zeros((omega.size, C.shape[0], B.shape[1]), dtype=complex)
+        M = 1j * omega[:, None, None] * np.eye(n) - A
+        try:
+            return np.asarray(C @ np.linalg.solve(M, np.broadcast_to(B.astype(complex), (omega.size, *B.shape))))
+        except np.linalg.LinAlgError:
+            result = np.full((omega.size, C.shape[0], B.shape[1]), np.inf + 0j)
+            for i in range(omega.size):
+                try:
+                    result[i] = C @ np.linalg.solve(M[i], B.astype(complex))
+                except np.linalg.LinAlgError:
+                    continue
+            return result
 
     return evaluate

@@ -32,6 +32,7 @@ class Split:
     decaying: Part
     lasting: Part
     poles: NDArray[np.complex128]
+    rate: float = 0.0  # size of the whole system's rates [1/s]
 
     def visible(self, B: Matrix | None = None) -> NDArray[np.bool_]:
         """For each output, whether the lasting part connects it to the inputs (or to other input columns `B`).
@@ -55,7 +56,7 @@ class Split:
     def status(self) -> Status:
         """What the lasting poles are, in words."""
         worst = self.poles[int(np.argmax(self.poles.real))]
-        if worst.real > 0.0 and not _is_marginal(worst, self.poles):
+        if worst.real > 0.0 and not _is_marginal(worst, self.rate):
             return Status(StatusKind.UNSTABLE, f"the system is unstable: a pole at {_pole(worst)} rad/s")
         return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {_pole(worst)} rad/s")
 
@@ -70,13 +71,13 @@ def split(system: LinearSystem) -> Split:
     n = system.order
     A, scale = balance(system.A)
     B, C = system.B / scale[:, None], system.C * scale
-    margins = pole_margins(A)
+    rates, errors = pole_rates(A)
+    margins = rates + errors
     if np.all(margins < 0.0):
         empty = Part(np.zeros((0, 0)), np.zeros((0, B.shape[1])), np.zeros((C.shape[0], 0)))
         return Split(Part(A, B, C), empty, np.zeros(0, dtype=complex))
-    poles = np.linalg.eigvals(A).real
-    decays = np.sort(poles[margins < 0.0])
-    edge = 0.5 * (decays[-1] + np.min(poles[margins >= 0.0])) if decays.size else -np.inf
+    decays = np.sort(rates[margins < 0.0])
+    edge = 0.5 * (decays[-1] + np.min(rates[margins >= 0.0])) if decays.size else -np.inf
     T, Z, count = scipy.linalg.schur(A, output="real", sort=lambda re, im: re < edge)
     Bz, Cz = Z.T @ B, C @ Z
     X = (
@@ -86,7 +87,7 @@ def split(system: LinearSystem) -> Split:
     )
     decaying = Part(T[:count, :count], Bz[:count] - X @ Bz[count:], Cz[:, :count])
     lasting = Part(T[count:, count:], Bz[count:], Cz[:, count:] + Cz[:, :count] @ X)
-    return Split(decaying, lasting, np.asarray(np.linalg.eigvals(lasting.A), dtype=complex))
+    return Split(decaying, lasting, np.asarray(np.linalg.eigvals(lasting.A), dtype=complex), float(np.linalg.norm(A)))
 
 
 def stability(system: LinearSystem) -> Status:
@@ -103,24 +104,32 @@ def balance(A: Matrix) -> tuple[Matrix, Matrix]:
     return np.asarray(balanced, dtype=float), np.asarray(scale, dtype=float)
 
 
-def pole_margins(A: Matrix) -> Matrix:
-    """Real parts of the poles plus their rounding errors: negative where a pole surely decays."""
+def pole_rates(A: Matrix) -> tuple[Matrix, Matrix]:
+    """Real parts of the poles, and their rounding errors.
+
+    The quotient of Rayleigh with left and right eigenvectors is taken for each pole: its own error is that of its
+    terms, while the eigenvalues themselves carry the error of the largest entries of A.
+    """
     if A.shape[0] == 0:
-        return np.zeros(0)
+        return np.zeros(0), np.zeros(0)
     eigen: tuple[Any, Any, Any] = scipy.linalg.eig(A, left=True, right=True)  # type: ignore[assignment]
     poles, left, right = eigen
-    overlap = np.abs(np.sum(left.conj() * right, axis=0))
+    eps = np.finfo(float).eps
+    overlap = np.sum(left.conj() * right, axis=0)
+    close = np.sum(np.abs(poles[:, None] - poles) <= 1e-2 * np.abs(poles)[:, None], axis=1).clip(1)
+    alone = np.abs(overlap) > np.sqrt(eps)
+    poles[alone] = np.sum(left.conj() * (A @ right), axis=0)[alone] / overlap[alone]
     spread = np.einsum("ik,ij,jk->k", np.abs(left), np.abs(A), np.abs(right))
-    error = 4.0 * np.finfo(float).eps * spread / np.maximum(overlap, np.finfo(float).tiny)
-    return np.asarray(poles.real + error, dtype=float)
+    size = np.maximum(np.abs(overlap), eps ** (1.0 - 1.0 / close))  # k equal poles move by eps^(1/k)
+    return np.asarray(poles.real, dtype=float), np.asarray(4.0 * eps * spread / size, dtype=float)
 
 
 def _norms(matrix: Matrix, axis: int) -> Matrix:
     return np.asarray(np.linalg.norm(matrix, axis=axis), dtype=float)
 
 
-def _is_marginal(worst: complex, poles: NDArray[np.complex128]) -> bool:
-    return abs(worst.real) <= 1e-9 * max(abs(worst), float(np.abs(poles).max(initial=0.0)), 1e-300)
+def _is_marginal(worst: complex, rate: float) -> bool:
+    return abs(worst.real) <= 1e-13 * rate + 1e-9 * abs(worst.imag)
 
 
 def _pole(value: complex) -> str:

@@ -68,7 +68,10 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
     )
     size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
     n = R.shape[1]
-    solved = np.linalg.solve(S / size, np.hstack([R, F]) / size)
+    scaled, right = S / size, np.hstack([R, F]) / size
+    solved = np.linalg.solve(scaled, right)
+    rest = right.astype(np.longdouble) - scaled.astype(np.longdouble) @ solved.astype(np.longdouble)
+    solved = solved + np.linalg.solve(scaled, np.asarray(rest, dtype=float))
     T_x, T_u = solved[:, :n], solved[:, n:]
     return LinearSystem(
         A=descriptor.X_x + descriptor.X_eta @ T_x,
@@ -353,4 +356,5 @@ class _Equations:
         for row in self.split.P:
             labels = [self.springs[i].label for i in np.flatnonzero(row)]
             elongations.append("_".join(labels) + ("_elongation" if len(labels) == 1 else "_mean_elongation"))
-        return (*velocities, *elongations, *(name for name, *_ in self.extra))
+        names = [*velocities, *elongations, *(name for name, *_ in self.extra)]
+        return tuple(n if names.count(n) == 1 else f"{n}{names[: i + 1].count(n)}" for i, n in enumerate(names))

@@ -10,8 +10,13 @@ from inerter.errors import InerterError
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether `value` is a finite real number (a bool is not)."""
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    """Whether `value` is a finite real number (a bool is not, nor is an integer beyond floating point)."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(float(value))
+    except OverflowError:
+        return False
 
 
 def check_positive(error: type[InerterError], what: str, value: object, unit: str) -> None:

@@ -17,6 +17,7 @@ from inerter import (
     RideComfort,
     Road,
     Spring,
+    StatusKind,
     TyreLoad,
     evaluate,
     evaluate_many,
@@ -81,14 +82,19 @@ def test_many_designs_in_rational_arithmetic(layout):
         np.testing.assert_allclose(row, np.array(quarter_car_norms(design)) * ROAD.velocity_intensity, rtol=1e-8)
 
 
-@pytest.mark.xfail(strict=True, reason="rounding decides where c/b exceeds 1e6, and evaluate_many cannot say so")
 def test_many_designs_in_the_far_corner_of_the_bounds():
+    """Every number that is given is right; where rounding decides there is none, and `evaluate` says so."""
     car = paper_quarter_car(STRUTS["S3"])
     values = draw(car, 200, seed=12, stiffest=np.inf)
     many = evaluate_many(car, INDICES[:2], values, Norm())
+    known = np.all(np.isfinite(many), axis=1)
+    assert known.mean() > 0.95
     for i, row in enumerate(many):
         design = car.with_values({key: float(column[i]) for key, column in values.items()})
-        np.testing.assert_allclose(row, np.array(quarter_car_norms(design)) * ROAD.velocity_intensity, rtol=1e-6)
+        if known[i]:
+            np.testing.assert_allclose(row, np.array(quarter_car_norms(design)) * ROAD.velocity_intensity, rtol=1e-6)
+        else:
+            assert evaluate(design, INDICES[0], Norm()).status.kind is StatusKind.INACCURATE
 
 
 def slopes(function, point):

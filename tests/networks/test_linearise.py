@@ -76,7 +76,6 @@ def test_what_is_left_has_the_admittance_of_the_whole(network, real, imaginary):
         assert network.admittance(s) == pytest.approx(left.network.admittance(s), rel=1e-12)
 
 
-@pytest.mark.xfail(strict=True, reason="idle elements are told by identity, so a shared one is taken for a used one")
 def test_an_element_that_stands_in_two_places_may_be_idle_in_one():
     assert linearise(c | c - f).idle == ("c",)
 

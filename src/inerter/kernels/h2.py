@@ -16,6 +16,7 @@ from inerter.kernels.closing import close_in, closing_space, pull_back
 from inerter.kernels.linalg import exponential, factor, matmul, solve, solve_transposed
 
 Array = Any
+_LARGEST_ERROR = 1e-9  # relative change of a squared norm by one step of refinement, which tells its rounding error
 
 
 @compiled
@@ -183,6 +184,7 @@ def norms_space(descriptor: Array, corner: float) -> Any:
         np.zeros((m, order)),
         np.empty((order, order)),
         np.empty((order, order)),
+        np.empty((order, order)),
         np.empty((o, order)),
     )
 
@@ -190,7 +192,7 @@ def norms_space(descriptor: Array, corner: float) -> Any:
 @compiled
 def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, result: Array) -> bool:
     """Fill `result` with the norm of each output; False if that did not go well. See `norms` for the arguments."""
-    closing, lyapunov, met, W, P, CP = space
+    closing, lyapunov, met, W, P, correction, CP = space
     gaps, poles, residues, direct = arrivals
     if not close_in(closing, p, descriptor):
         return False
@@ -208,18 +210,28 @@ def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner:
             for c in range(m):
                 W[i, j] += B[i, c] * B[j, c] + met[c, i] * B[j, c] + B[i, c] * met[c, j]
     solve_symmetric(lyapunov, W, False, P)
+    for i in range(n):  # the equation's residual, in the place of W
+        for j in range(i, n):
+            total = W[i, j]
+            for k in range(n):
+                total += A[i, k] * P[k, j] + P[i, k] * A[j, k]
+            W[i, j] = total
+            W[j, i] = total
+    solve_symmetric(lyapunov, W, False, correction)
     for k in range(o):
-        total = 0.0
+        total, error = 0.0, 0.0
         for i in range(n):
             CP[k, i] = 0.0
+            row = 0.0
             for j in range(n):
                 CP[k, i] += P[i, j] * C[k, j]
+                row += correction[i, j] * C[k, j]
             total += CP[k, i] * C[k, i]
+            error += row * C[k, i]
+        if not abs(error) <= _LARGEST_ERROR * total:
+            return False
         result[k] = np.sqrt(total)
-    least = 0.0
-    for i in range(n):
-        least = min(least, P[i, i])
-    return least == 0.0 and not np.isnan(result.sum())
+    return True
 
 
 @compiled
@@ -230,7 +242,7 @@ def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: 
     approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
     """
     space = norms_space(descriptor, corner)
-    closing, lyapunov, met, CC, P, CP = space
+    closing, lyapunov, met, CC, P, Q, CP = space
     A0, B0, C0, D0, T, factors, _, _ = closing
     gaps, poles, residues, direct = arrivals
     o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
@@ -249,7 +261,6 @@ def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: 
             G_C[k, i] = 2.0 * share * CP[k, i]
             for j in range(n):
                 CC[i, j] += share * C[k, i] * C[k, j]
-    Q = np.empty((n, n))
     solve_symmetric(lyapunov, CC, True, Q)
     G_A, G_B = np.empty((n, n)), np.zeros((n, m))
     matmul(Q, P, G_A)

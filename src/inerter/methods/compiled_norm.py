@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.errors import StatusKind
 from inerter.indices.index import Combination, Question
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
@@ -83,7 +84,9 @@ class CompiledQuestion:
         for i in np.flatnonzero(~good):
             values = dict(zip(self._variables, points[i].tolist(), strict=True))
             system = self.problem.system(close(self.problem.descriptor, values))
-            result[i] = h2(system, self.problem.pade_order).outputs
+            exact = h2(system, self.problem.pade_order)
+            lost = exact.status.kind in (StatusKind.INACCURATE, StatusKind.FAILED)
+            result[i] = np.nan if lost else exact.outputs
         return np.asarray(result)
 
     def values(self, points: Array) -> Array:
@@ -123,6 +126,8 @@ class CompiledQuestion:
         if not self.is_peak:
             return None
         omegas: Array = gain_kernels.peaks_at(point, self.descriptor)[0]
+        if omegas.size == 0:  # equal poles have no partial fractions
+            omegas = np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])
         return omegas
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:

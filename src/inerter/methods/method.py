@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import OK, DesignError, IndicatorError, Status
 from inerter.indices.index import Index
 from inerter.norms.hinf import Peak
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.cars import Vehicle, check_vehicle
 from inerter.vehicle.mechanism import check_known
 
 Array = NDArray[np.float64]
@@ -98,7 +98,8 @@ def evaluate_many(
 ) -> Array:
     """Indices of many designs of one layout: an array (designs, indices).
 
-    `values` gives for each free value of `vehicle` an array of one length (or one number for all designs).
+    `values` gives for each free value of `vehicle` an array of one length (or one number for all designs). Where
+    `evaluate` would call the value inaccurate, it is nan here.
 
     Raises `DesignError` if a free value is missing, unknown, not positive or not finite, or if lengths differ; and
     what `evaluate` raises.
@@ -111,8 +112,7 @@ def evaluate_many(
 
 def check_request(vehicle: object, index: object, method: object) -> None:
     """Raises `DesignError` or `IndicatorError` where an argument is not what its place asks for."""
-    if not hasattr(vehicle, "mechanism"):
-        raise DesignError(f"The first argument must be a vehicle such as a QuarterCar, got {vehicle!r}.")
+    check_vehicle(vehicle)
     if isinstance(index, type) or not hasattr(index, "question"):
         raise IndicatorError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
     if isinstance(method, type) or not isinstance(method, Method):
@@ -129,7 +129,10 @@ def check_points(vehicle: Vehicle, values: Mapping[str, ArrayLike]) -> dict[str,
     arrays: dict[str, Array] = {}
     for name, given in values.items():
         try:
-            array = np.asarray(given, dtype=float)
+            array = np.asarray(given)
+            if np.iscomplexobj(array):
+                raise TypeError
+            array = array.astype(float)
         except (TypeError, ValueError):
             raise DesignError(f"The values of {name!r} must be numbers, got {given!r}.") from None
         if array.ndim > 1 or not np.all(np.isfinite(array)) or not np.all(array > 0.0):

@@ -54,7 +54,7 @@ class Norm:
     name = "norm"
 
     def __post_init__(self) -> None:
-        if self.conventions not in CONVENTIONS:
+        if not isinstance(self.conventions, str) or self.conventions not in CONVENTIONS:
             known = ", ".join(CONVENTIONS)
             raise IndicatorError(f"There are no conventions named {self.conventions!r} (known: {known}).")
 

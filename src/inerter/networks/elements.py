@@ -63,6 +63,12 @@ class Network:
     def __sub__(self, other: Network) -> Series:
         return Series((*_parts(self, Series), *_parts(other, Series)))
 
+    def __ror__(self, other: object) -> Parallel:
+        return Parallel((*_parts(other, Parallel), *_parts(self, Parallel)))
+
+    def __rsub__(self, other: object) -> Series:
+        return Series((*_parts(other, Series), *_parts(self, Series)))
+
     def elements(self) -> Iterator[Element]:
         """The elements in the order in which they are written."""
         raise NotImplementedError
@@ -77,7 +83,7 @@ class Network:
         Friction is left out (Y = 0) and gaps are closed (Y infinite), as in all linear analysis. Infinite at poles,
         such as a spring at s = 0.
 
-        Raises `DesignError` if a value is still free.
+        Raises `DesignError` if a value is still free, `NetworkError` if `s` is not made of numbers.
 
         >>> (Spring(100.0) | Damper(5.0)).admittance(2j)
         np.complex128(5-50j)
@@ -85,7 +91,11 @@ class Network:
         for element in self.elements():
             if isinstance(element.value, Free):
                 raise DesignError(f"The admittance needs numbers, but {element.label!r} is still free. Fix it first.")
-        numerator, denominator = self.fraction(np.asarray(s, dtype=complex))
+        try:
+            points = np.asarray(s, dtype=complex)
+        except (TypeError, ValueError):
+            raise NetworkError(f"An admittance needs complex numbers s [rad/s], got {s!r}.") from None
+        numerator, denominator = self.fraction(points)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(denominator == 0.0, np.inf, numerator / denominator)[()]
 

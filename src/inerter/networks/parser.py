@@ -10,6 +10,7 @@ from typing import NoReturn
 from inerter.errors import NetworkError
 from inerter.networks.elements import Element, Network, check_network
 
+_DEEPEST = 100
 _TOKEN = re.compile(r"\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()\-]))")
 
 
@@ -42,6 +43,7 @@ class _Parser:
     tokens: list[tuple[str, int]]
     parts: Mapping[str, Network]
     position: int = 0
+    depth: int = 0
 
     def parse(self) -> Network:
         result = self._parallel()
@@ -67,7 +69,11 @@ class _Parser:
         token = self._next()
         if token == "(":
             self.position += 1
+            self.depth += 1
+            if self.depth > _DEEPEST:
+                self._fail(f"more than {_DEEPEST} brackets inside each other")
             result = self._parallel()
+            self.depth -= 1
             if self._next() != ")":
                 self._fail("expected ')' here")
             self.position += 1

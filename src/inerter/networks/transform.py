@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -91,10 +92,12 @@ def linearise(network: Network) -> Linearised:
     """
     before = list(network.elements())
     kept, rigid = _linear(network)
-    after = {id(element) for element in kept.elements()} if kept is not None else set()
+    after = Counter(id(element) for element in kept.elements()) if kept is not None else Counter()
+    dropped = Counter(id(element) for element in before) - after
     frictions = tuple(e.label for e in before if isinstance(e, Friction))
     gaps = tuple(e.label for e in before if isinstance(e, Gap))
-    idle = tuple(e.label for e in before if id(e) not in after and not isinstance(e, Friction | Gap))
+    others = {id(e): e for e in before if not isinstance(e, Friction | Gap)}
+    idle = tuple(element.label for key, element in others.items() if dropped[key])
     return Linearised(kept, rigid, frictions, gaps, idle)
 
 

@@ -10,9 +10,9 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.norms.delay import propagate
+from inerter.norms.delay import pade, propagate
 from inerter.norms.stability import Split, split
-from inerter.systems.linear import LinearSystem
+from inerter.systems.linear import LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
 _LOST = "some motions are so much slower than others that rounding hides their damping"
@@ -50,6 +50,9 @@ def h2(system: LinearSystem, pade_order: int | None = None) -> H2:
     The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
     of each delayed arrival with the state that its earlier arrivals have left: exp(A dt) Bi Bj' and its transpose.
     """
+    check_system(system)
+    if pade_order is not None:
+        pade(pade_order)  # refuses an order that there is not, even where nothing is late
     direct = np.any(_merged_direct(system) != 0.0, axis=1)
     parts = split(system)
     square, lasting, status = _squares(system, parts, pade_order)
@@ -130,18 +133,27 @@ def _excitation(system: LinearSystem, A: Matrix, B: Matrix, pade_order: int | No
 
 
 def solve_lyapunov(A: Matrix, W: Matrix) -> tuple[Matrix, bool]:
-    """The symmetric P with A P + P A' + W = 0, refined with residuals in extended precision; whether that converged."""
+    """The symmetric P with A P + P A' + W = 0, refined with residuals in extended precision; whether that converged.
+
+    Bartels and Stewart (1972), with one Schur form for all steps of refinement.
+    """
     if A.shape[0] == 0:
         return np.zeros((0, 0)), True
-    P = scipy.linalg.solve_continuous_lyapunov(A, -W)
-    P = 0.5 * (P + P.T)
+    T, Z = scipy.linalg.schur(A, output="real")
+
+    def solve(right: Matrix) -> Matrix:
+        Y, scale, _ = scipy.linalg.lapack.dtrsyl(T, T, -(Z.T @ right @ Z), tranb="T")
+        P = Z @ (Y / scale) @ Z.T
+        return np.asarray(0.5 * (P + P.T), dtype=float)
+
+    P = solve(W)
     long_A, long_W = A.astype(np.longdouble), W.astype(np.longdouble)
     before = np.inf
     for _ in range(20):
         half = long_A @ P.astype(np.longdouble)
-        step = scipy.linalg.solve_continuous_lyapunov(A, -np.asarray(half + half.T + long_W, dtype=float))
+        step = solve(np.asarray(half + half.T + long_W, dtype=float))
         change = float(np.linalg.norm(step))
         if not change < 0.5 * before:
             break
-        P, before = P + 0.5 * (step + step.T), change
-    return np.asarray(P, dtype=float), before <= 1e-9 * float(np.linalg.norm(P))
+        P, before = P + step, change
+    return P, bool(before <= 1e-9 * float(np.linalg.norm(P)))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, LinearSystemError, Status
 from inerter.norms.response import resolvent
 from inerter.norms.stability import split
-from inerter.systems.linear import LinearSystem
+from inerter.systems.linear import LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
 Gain = Callable[[Matrix], Matrix]
@@ -46,6 +46,7 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
 
     Raises `LinearSystemError` if inputs of one source arrive at different times.
     """
+    check_system(system)
     merged = _merge(system)
     parts = split(merged)
     if parts.poles.size and np.any(parts.visible()):

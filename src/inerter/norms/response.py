@@ -10,9 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import LinearSystemError
 from inerter.norms.delay import transfer
 from inerter.norms.stability import balance
-from inerter.systems.linear import LinearSystem
+from inerter.systems.linear import LinearSystem, check_system
 
+Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+_MOST_ENTRIES = 4_000_000  # of all matrices that are solved at once
 
 
 def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int | None = None) -> Complex:
@@ -23,7 +25,11 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
 
     Raises `LinearSystemError` unless omega holds finite numbers.
     """
-    frequencies = np.atleast_1d(np.asarray(omega, dtype=float))
+    check_system(system)
+    try:
+        frequencies = np.atleast_1d(np.asarray(omega, dtype=float))
+    except (TypeError, ValueError):
+        raise LinearSystemError(f"A frequency response needs a list of frequencies [rad/s], got {omega!r}.") from None
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies)):
         raise LinearSystemError("A frequency response needs a list of finite frequencies [rad/s].")
     response = resolvent(system)(frequencies) + system.D
@@ -46,19 +52,19 @@ def resolvent(system: LinearSystem) -> Any:
     B, C = system.B / scale[:, None], system.C * scale
 
     def evaluate(omega: NDArray[np.float64]) -> Complex:
-        n = A.shape[0]
-        if n == 0:
+        if A.shape[0] == 0:
             return np.zeros((omega.size, C.shape[0], B.shape[1]), dtype=complex)
-        M = 1j * omega[:, None, None] * np.eye(n) - A
-        try:
-            return np.asarray(C @ np.linalg.solve(M, np.broadcast_to(B.astype(complex), (omega.size, *B.shape))))
-        except np.linalg.LinAlgError:
-            result = np.full((omega.size, C.shape[0], B.shape[1]), np.inf + 0j)
-            for i in range(omega.size):
-                try:
-                    result[i] = C @ np.linalg.solve(M[i], B.astype(complex))
-                except np.linalg.LinAlgError:
-                    continue
-            return result
+        parts = np.array_split(omega, max(1, omega.size * A.size // _MOST_ENTRIES))
+        return np.concatenate([_solve(A, B, C, part) for part in parts])
 
     return evaluate
+
+
+def _solve(A: Matrix, B: Matrix, C: Matrix, omega: Matrix) -> Complex:
+    M = 1j * omega[:, None, None] * np.eye(A.shape[0]) - A
+    try:
+        return np.asarray(C @ np.linalg.solve(M, np.broadcast_to(B.astype(complex), (omega.size, *B.shape))))
+    except np.linalg.LinAlgError:
+        if omega.size == 1:  # a pole
+            return np.full((1, C.shape[0], B.shape[1]), np.inf + 0j)
+        return np.concatenate([_solve(A, B, C, omega[i : i + 1]) for i in range(omega.size)])

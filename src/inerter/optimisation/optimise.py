@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from numbers import Integral
 
 import numpy as np
 import scipy.spatial
@@ -72,7 +73,7 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     check_request(vehicle, index, method)
     variables = _variables(vehicle)
     starts = 8 * len(variables) if starts is None else starts
-    if not isinstance(starts, int) or starts < 1 or not isinstance(seed, int) or seed < 0:
+    if not isinstance(starts, Integral) or starts < 1 or not isinstance(seed, Integral) or seed < 0:
         raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
     lower = np.array([free.lower for free in variables.values()])
     upper = np.array([free.upper for free in variables.values()])
@@ -85,7 +86,9 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     if best is None or not np.isfinite(best.value):
         best = LocalOptimum(np.sqrt(lower * upper), np.inf, 0)
     same = [local.point for local in found if local.value <= best.value * (1.0 + AGREEMENT)] or [best.point]
-    parameters = dict(zip(variables, best.point.tolist(), strict=True))
+    point = np.where(np.isclose(best.point, upper, rtol=1e-12, atol=0.0), upper, best.point)
+    point = np.where(np.isclose(point, lower, rtol=1e-12, atol=0.0), lower, point)
+    parameters = dict(zip(variables, point.tolist(), strict=True))
     design = vehicle.with_values(parameters)
     return Optimum(
         estimate=_confirmed(method.estimate(design, index), best.value),
@@ -96,7 +99,7 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
         starts=len(found),
         agreed=len(same) if found else 0,
         evaluations=evaluations,
-        seed=seed,
+        seed=int(seed),
     )
 
 

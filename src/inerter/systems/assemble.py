@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from inerter.errors import DesignError
 from inerter.systems.descriptor import close, describe
 from inerter.systems.linear import LinearSystem
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.cars import Vehicle, check_vehicle
 
 
 def assemble(
@@ -23,6 +23,7 @@ def assemble(
     Raises `DesignError` if a value is free, `MechanismError` if the mechanism is ill-posed, `LinearSystemError` for
     an input or output that is not there.
     """
+    check_vehicle(vehicle)
     mechanism = vehicle.mechanism()
     free = ", ".join(mechanism.free_values())
     if free:

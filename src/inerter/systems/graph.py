@@ -61,7 +61,7 @@ def linear_graph(mechanism: Mechanism) -> Graph:
         if linear.network is None:
             raise MechanismError(
                 f"{mount.name!r} carries no force in linear analysis, which leaves friction out "
-                f"({', '.join(linear.frictions)}): what it holds is held by nothing. Add a spring, damper or inerter."
+                f"({', '.join(linear.frictions)}): its ends are held by nothing there. Add a spring, damper or inerter."
             )
         networks[mount.name] = linear.network
         notes += [f"friction {label!r} in {mount.name!r} left out" for label in linear.frictions]

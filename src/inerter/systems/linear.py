@@ -37,7 +37,10 @@ class LinearSystem:
 
     def __post_init__(self) -> None:
         for name in "ABCD":
-            matrix = np.asarray(getattr(self, name), dtype=float)
+            try:
+                matrix = np.asarray(getattr(self, name), dtype=float)
+            except (TypeError, ValueError):
+                raise LinearSystemError(f"{name} must be a matrix of numbers.") from None
             if matrix.ndim != 2:
                 raise LinearSystemError(f"{name} must be a matrix, got an array of shape {matrix.shape}.")
             if not np.all(np.isfinite(matrix)):
@@ -55,7 +58,8 @@ class LinearSystem:
         object.__setattr__(self, "sources", tuple(self.sources) or self.inputs)
         delays = np.asarray(self.delays, dtype=float)
         object.__setattr__(self, "delays", delays if delays.size else np.zeros(m))
-        if len(self.sources) != m or self.delays.shape != (m,) or not np.all(self.delays >= 0.0):
+        timely = np.all(np.isfinite(self.delays)) and np.all(self.delays >= 0.0)
+        if len(self.sources) != m or self.delays.shape != (m,) or not timely:
             raise LinearSystemError(f"Each of the {m} inputs needs one source and one delay of zero or more seconds.")
 
     @property
@@ -92,6 +96,12 @@ class LinearSystem:
             f"LinearSystem({self.order} states; inputs {', '.join(self.inputs) or 'none'}; "
             f"outputs {', '.join(self.outputs) or 'none'})"
         )
+
+
+def check_system(system: object) -> None:
+    """Raises `LinearSystemError` unless `system` is a `LinearSystem`."""
+    if not isinstance(system, LinearSystem):
+        raise LinearSystemError(f"Expected a LinearSystem, such as assemble(vehicle), got {system!r}.")
 
 
 def with_high_pass(system: LinearSystem, omega: float) -> LinearSystem:

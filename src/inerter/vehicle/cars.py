@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 from inerter.checks import check_positive
-from inerter.errors import MechanismError
+from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Free, Network, Spring, check_network
 from inerter.networks.transform import name_free_values, with_values
 from inerter.vehicle.mechanism import (
@@ -37,6 +37,12 @@ class Vehicle(Protocol):
     def with_values(self, values: Mapping[str, float]) -> Self:
         """The same vehicle with the named free values fixed."""
         ...
+
+
+def check_vehicle(vehicle: object) -> None:
+    """Raises `DesignError` unless `vehicle` is one (its class is not)."""
+    if isinstance(vehicle, type) or not hasattr(vehicle, "mechanism"):
+        raise DesignError(f"Expected a vehicle, such as QuarterCar(...), got {vehicle!r}.")
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ network's elongation is the displacement of its upper end less that of its lower
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from inerter.checks import check_positive, is_number
@@ -103,8 +103,9 @@ class Mechanism:
     measures: Measures = field(default_factory=Measures)
 
     def __post_init__(self) -> None:
-        for name in ("coordinates", "struts", "tyres", "roads", "forces"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+        for name, kind in _KINDS.items():
+            object.__setattr__(self, name, _parts(name, getattr(self, name), kind))
+        _check_measures(self.measures)
         _check_names(self)
         _check_numbers(self)
         _check_ports(self)
@@ -140,12 +141,39 @@ class Mechanism:
         )
 
 
-def check_known(values: Mapping[str, object], free_values: Mapping[str, Free]) -> None:
-    """Raises `DesignError` for a name in `values` that is not a free value."""
+_KINDS: dict[str, type] = {
+    "coordinates": Coordinate,
+    "struts": Strut,
+    "tyres": Tyre,
+    "roads": RoadInput,
+    "forces": Force,
+}
+
+
+def check_known(values: object, free_values: Mapping[str, Free]) -> None:
+    """Raises `DesignError` unless `values` is a mapping whose every name is a free value."""
+    if not isinstance(values, Mapping):
+        raise DesignError(f"Expected values by name, such as {{'c': 3000.0}}, got {values!r}.")
     for name in values:
         if name not in free_values:
             known = ", ".join(free_values) or "none"
             raise DesignError(f"There is no free value named {name!r} in this design (free: {known}).")
+
+
+def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
+    parts = tuple(given) if isinstance(given, Iterable) and not isinstance(given, str) else (given,)
+    for part in parts:
+        if not isinstance(part, kind) or parts == (given,):
+            raise MechanismError(f"The {name} of a mechanism are a tuple of {kind.__name__}(...), got {given!r}.")
+    return parts
+
+
+def _check_measures(measures: object) -> None:
+    if not isinstance(measures, Measures):
+        raise MechanismError(f"The measures of a mechanism are Measures(...), got {measures!r}.")
+    for output in (*measures.comfort, *measures.tyre_load):
+        if not isinstance(output, Weighted) or not isinstance(output.output, str) or not is_number(output.weight):
+            raise MechanismError(f"A measure is Weighted(output name, number), got {output!r}.")
 
 
 def _check_names(mechanism: Mechanism) -> None:
@@ -193,6 +221,8 @@ def _check_ports(mechanism: Mechanism) -> None:
     ports += [(f"tyre {t.name!r}", t.port) for t in mechanism.tyres]
     ports += [(f"force {f.name!r}", f.port) for f in mechanism.forces]
     for where, port in ports:
+        if not isinstance(port, Mapping):
+            raise MechanismError(f"The port of {where} maps coordinates to levers, as {{'body': 1.0}}; got {port!r}.")
         for name, lever in port.items():
             if name not in coordinates:
                 known = ", ".join(sorted(coordinates))

@@ -63,6 +63,11 @@ def start(arguments: list[str]) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
+def finish(process: subprocess.Popen[bytes]) -> None:
+    problems = process.communicate(timeout=120)[1]
+    assert process.returncode == 0, problems.decode()
+
+
 def wait_for_cases(process: subprocess.Popen[bytes], journal: Path, count: int) -> None:
     deadline = time.monotonic() + 120.0
     while len(lines(journal)) < 1 + count:
@@ -126,9 +131,8 @@ def test_interrupted_sweep_resumes_to_the_same_bytes(tmp_path: Path, how: signal
         assert b"Traceback" not in problems
     kept = lines(broken / "journal.jsonl")
     assert 30 < len(kept) < 1 + 240
-    resumed = start(["run", str(study), "-o", str(broken), "-j", "2", "--resume"])
-    assert resumed.wait(timeout=120) == 0, resumed.communicate()[1].decode()
-    assert undisturbed.wait(timeout=120) == 0
+    finish(start(["run", str(study), "-o", str(broken), "-j", "2", "--resume"]))
+    finish(undisturbed)
     assert (broken / "summary.csv").read_bytes() == (whole / "summary.csv").read_bytes()
     after = lines(broken / "journal.jsonl")
     complete = [line for line in kept if line.endswith("}")]

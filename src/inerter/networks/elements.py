@@ -271,9 +271,8 @@ def _series(one: Fraction, other: Fraction) -> Fraction:
 
 
 def _scaled(n: Complex, d: Complex) -> Fraction:
-    """Long chains would overflow without this."""
-    size = np.maximum(np.abs(n), np.abs(d))
-    size = np.where(size == 0.0, 1.0, size)
+    """Long chains would overflow without this; powers of two change no digit."""
+    size = np.ldexp(1.0, np.frexp(np.maximum(np.abs(n), np.abs(d)))[1])
     return n / size, d / size
 
 

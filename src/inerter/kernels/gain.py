@@ -79,6 +79,29 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
 
 
 @compiled
+def partial_fractions(A: Array, B: Array, C: Array, scale: Array) -> Any:
+    """Poles and residues of C (s - A)^-1 B, and whether A has a full set of eigenvectors."""
+    n = A.shape[0]
+    scaled = np.empty((n, n), np.complex128)
+    for i in range(n):
+        for j in range(n):
+            scaled[i, j] = A[i, j] * scale[j] / scale[i]
+    poles, vectors = np.linalg.eig(scaled)
+    LU, pivots, weights = vectors.copy(), np.empty(n, np.int64), np.empty(n, np.complex128)
+    for i in range(n):
+        weights[i] = B[i, 0] / scale[i]
+    residues = np.zeros(n, np.complex128)
+    if not factor(LU, pivots):
+        return poles, residues, False
+    solve(LU, pivots, weights)
+    for k in range(n):
+        for i in range(n):
+            residues[k] += C[0, i] * scale[i] * vectors[i, k]
+        residues[k] *= weights[k]
+    return poles, residues, True
+
+
+@compiled
 def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> float:
     """|G(j omega)| from partial fractions."""
     G = direct + 0j
@@ -88,36 +111,16 @@ def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> fl
 
 
 @compiled
-def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
-    """Frequencies and values of the local maxima of the gain, found in partial fractions, valued by a direct solve.
-
-    Partial fractions cost little at each frequency; where they lose digits (nearly equal poles) only the place of a
-    peak suffers, and there by the square root only, because the value at it is computed anew.
-    """
-    n = A.shape[0]
-    scale = units(A)
-    scaled = np.empty((n, n), np.complex128)
-    for i in range(n):
-        for j in range(n):
-            scaled[i, j] = A[i, j] * scale[j] / scale[i]
-    poles, vectors = np.linalg.eig(scaled)
-    LU, pivots, weights = vectors.copy(), np.empty(n, np.int64), np.empty(n, np.complex128)
-    for i in range(n):
-        weights[i] = B[i, 0] / scale[i]
-    if not factor(LU, pivots):
-        return np.zeros(0), np.zeros(0)
-    solve(LU, pivots, weights)
-    residues = np.zeros(n, np.complex128)
+def frequencies(poles: Array) -> Array:
+    """Zero, a logarithmic grid over all time scales, and points on and around every resonance, in order."""
+    n = poles.size
     slowest, fastest = np.inf, 0.0
     for k in range(n):
-        for i in range(n):
-            residues[k] += C[0, i] * scale[i] * vectors[i, k]
-        residues[k] *= weights[k]
         size = abs(poles[k])
         slowest, fastest = min(slowest, max(size, 1e-300)), max(fastest, size)
     low, high = 0.01 * slowest, 10.0 * fastest  # a static maximum may rise to a peak close to zero first
     steps = 1 + int(24.0 * np.log10(high / low))
-    grid = np.empty(steps + 1 + 15 * n)
+    grid = np.empty(steps + 1 + 14 * n)
     grid[0] = 0.0
     for k in range(steps):
         grid[1 + k] = low * (high / low) ** (k / (steps - 1))
@@ -131,35 +134,54 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
                     count += 1
             grid[count] = abs(poles[k])
             count += 1
-    ordered = np.sort(grid[:count])
-    values = np.empty(count)
+    return np.sort(grid[:count])
+
+
+@compiled
+def top(poles: Array, residues: Array, direct: float, low: float, high: float) -> float:
+    """Where the gain is largest between `low` and `high`, by golden section."""
+    width = 1e-5 * (high - low) + 1e-14 * high  # the grid is as fine as a resonance is wide
+    a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    ga, gb = modal_gain(poles, residues, direct, a), modal_gain(poles, residues, direct, b)
+    while high - low > width:
+        if ga > gb:
+            high, b, gb = b, a, ga
+            a = high - _GOLDEN * (high - low)
+            ga = modal_gain(poles, residues, direct, a)
+        else:
+            low, a, ga = a, b, gb
+            b = low + _GOLDEN * (high - low)
+            gb = modal_gain(poles, residues, direct, b)
+    return 0.5 * (low + high)
+
+
+@compiled
+def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
+    """Frequencies and values of the local maxima of the gain, found in partial fractions, valued by a direct solve.
+
+    Partial fractions cost little at each frequency; where they lose digits (nearly equal poles) only the place of a
+    peak suffers, and there by the square root only, because the value at it is computed anew. None are found where A
+    has no full set of eigenvectors.
+    """
+    scale, direct = units(A), D[0, 0]
+    poles, residues, good = partial_fractions(A, B, C, scale)
+    if not good:
+        return np.zeros(0), np.zeros(0)
+    grid = frequencies(poles)
+    values = np.empty(grid.size)
     count = 0
-    for omega in ordered:  # points of equal gain count once, or the top of a peak between two of them would be lost
-        value = modal_gain(poles, residues, D[0, 0], omega)
+    for omega in grid:  # points of equal gain count once, or the top of a peak between two of them would be lost
+        value = modal_gain(poles, residues, direct, omega)
         if count == 0 or abs(value - values[count - 1]) > 1e-11 * value:
             grid[count], values[count] = omega, value
             count += 1
     omegas, found = np.empty(count), np.empty(count)
     number = 0
-    if count == 1 or values[0] > values[1]:
-        omegas[0], found[0] = 0.0, gain_at(A, B, C, D, scale, 0.0)
-        number = 1
-    for k in range(1, count - 1):
-        if values[k] > values[k - 1] and values[k] > values[k + 1]:
-            low, high = grid[k - 1], grid[k + 1]
-            a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
-            ga, gb = modal_gain(poles, residues, D[0, 0], a), modal_gain(poles, residues, D[0, 0], b)
-            width = 1e-5 * (high - low) + 1e-14 * high  # the grid is as fine as a resonance is wide
-            while high - low > width:
-                if ga > gb:
-                    high, b, gb = b, a, ga
-                    a = high - _GOLDEN * (high - low)
-                    ga = modal_gain(poles, residues, D[0, 0], a)
-                else:
-                    low, a, ga = a, b, gb
-                    b = low + _GOLDEN * (high - low)
-                    gb = modal_gain(poles, residues, D[0, 0], b)
-            omegas[number] = 0.5 * (low + high)
+    for k in range(count if count == 1 else count - 1):
+        above_last = k == 0 or values[k] > values[k - 1]
+        above_next = count == 1 or values[k] > values[k + 1]
+        if above_last and above_next:
+            omegas[number] = 0.0 if k == 0 else top(poles, residues, direct, grid[k - 1], grid[k + 1])
             found[number] = gain_at(A, B, C, D, scale, omegas[number])
             number += 1
     return omegas[:number], found[:number]

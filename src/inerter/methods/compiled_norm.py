@@ -19,7 +19,7 @@ from inerter.errors import StatusKind
 from inerter.indices.index import Combination, Question
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
-from inerter.methods.norm import Conventions, LinearProblem, linear_problem
+from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.norms.delay import pade
 from inerter.norms.h2 import h2
 from inerter.systems.descriptor import Descriptor, close

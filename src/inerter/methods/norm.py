@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -10,34 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, IndicatorError
-from inerter.indices.index import Combination, Index, Question
+from inerter.indices.index import Index
+from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Estimate, Objective
-from inerter.norms.h2 import h2
-from inerter.norms.hinf import Peak, hinf_norm
-from inerter.systems.descriptor import Descriptor, close, describe
-from inerter.systems.linear import LinearSystem, with_high_pass
+from inerter.systems.descriptor import close
 from inerter.vehicle.cars import Vehicle
-from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Conventions:
-    """How the wheelbase delay is taken, and which filter stands in for 1/s where the road arrives at several axles."""
-
-    name: str
-    pade_order: int | None
-    corner: float | None  # [rad/s]
-
-
-CONVENTIONS = {
-    row.name: row
-    for row in (
-        Conventions("exact", pade_order=None, corner=None),
-        Conventions("paper2008", pade_order=5, corner=2.0 * math.pi),
-    )
-}
 
 
 @dataclass(frozen=True)
@@ -85,55 +63,3 @@ class Norm:
                 f"closes gaps and drops what carries no force then. Fix it, or choose a method that sees it."
             )
         return CompiledQuestion(problem)
-
-
-@dataclass(frozen=True, eq=False)
-class LinearProblem:
-    """A question put to the linear model of a mechanism: a descriptor, and what to do with its system."""
-
-    question: Question
-    descriptor: Descriptor
-    delays: Array  # [s], one an input of the descriptor, in rising order
-    pade_order: int | None
-    corner: float | None  # [rad/s]
-
-    @property
-    def weights(self) -> Array:
-        """What each output's norm is multiplied by in the index."""
-        road = self.question.road
-        scale = 1.0 if road is None else road.velocity_intensity
-        return scale * np.array([abs(output.weight) for output in self.question.outputs])
-
-    def system(self, closed: LinearSystem) -> LinearSystem:
-        """The closed descriptor with delays and filter."""
-        delayed = closed if self.question.road is None else closed.delayed("road", self.delays.tolist())
-        return delayed if self.corner is None else with_high_pass(delayed, self.corner)
-
-    def estimate(self, closed: LinearSystem) -> Estimate:
-        """The value of the index."""
-        system = self.system(closed)
-        if self.question.combination is Combination.PEAK_GAIN:
-            return self._peak_gain(system)
-        norms = h2(system, self.pade_order)
-        value = float(np.sum(self.weights * norms.outputs))
-        return Estimate(value, self.question.unit, norms.status, notes=system.notes)
-
-    def _peak_gain(self, system: LinearSystem) -> Estimate:
-        gain = hinf_norm(system)
-        weight = float(self.weights[0])
-        peaks = tuple(Peak(peak.omega, weight * peak.gain) for peak in gain.peaks)
-        return Estimate(weight * gain.value, self.question.unit, gain.status, peaks=peaks, notes=system.notes)
-
-
-def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
-    """The descriptor for `question`, with delays from the road's speed and the filter that the conventions ask for."""
-    inputs, delays = question.inputs, np.zeros(len(question.inputs))
-    if question.road is not None:
-        distance = {road.name: road.distance for road in mechanism.roads}
-        inputs = tuple(sorted(inputs, key=distance.__getitem__))
-        delays = np.array([distance[name] for name in inputs]) / question.road.speed
-    corner = question.high_pass
-    if corner is None and question.over_s and np.ptp(delays) > 0.0:
-        corner = conventions.corner
-    descriptor = describe(mechanism, inputs, [output.output for output in question.outputs])
-    return LinearProblem(question, descriptor, delays, conventions.pade_order, corner)

@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import inerter
-from inerter.methods.norm import CONVENTIONS, linear_problem
+from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.networks.elements import Free
 from inerter.norms.response import frequency_response
 from inerter.study.cases import Case, Outcome, cases
@@ -28,82 +28,108 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
 
     Improvements are per cent below the baseline's own optimum of the same index, method and swept value.
     """
-    sweep = study.sweep
-    layouts, indices, methods = list(study.layouts), list(study.indices), list(study.evaluate)
     parameters = _parameters(study)
-    points = len(sweep.values) if sweep else 1
-    shape = (len(layouts), len(indices), points)
-    value = np.full((*shape, len(methods)), np.nan)
-    other = np.full((*shape, len(methods), len(indices)), np.nan)
-    error = np.full((*shape, len(methods)), np.nan)
-    found = np.full((*shape, len(parameters), 3), np.nan)  # value, least and largest of the same height
-    bound = np.full((*shape, len(parameters)), "", dtype=object)
-    status = np.full(shape, "missing", dtype=object)
-    counts = np.zeros((*shape, 3), dtype=int)
-    notes: dict[str, dict[str, None]] = {}  # note -> layouts
-    for case in cases(study):
-        outcome = outcomes.get(case)
-        if outcome is None:
-            continue
-        at = (layouts.index(case.layout), indices.index(case.index), case.point)
-        for m, method in enumerate(methods):
-            values = outcome.values.get(method, {})
-            value[(*at, m)] = values.get(case.index, np.nan)
-            other[(*at, m)] = [values.get(index, np.nan) for index in indices]
-            error[(*at, m)] = outcome.standard_errors.get(method, {}).get(case.index) or np.nan
-        for name, number in outcome.parameters.items():
-            found[(*at, list(parameters).index(name))] = number, *outcome.ranges.get(name, (number, number))
-            bound[(*at, list(parameters).index(name))] = outcome.active_bounds.get(name, "")
-        status[at] = _status(outcome)
-        counts[at] = outcome.starts, outcome.agreed, outcome.evaluations
-        for note in outcome.notes:
-            notes.setdefault(note, {})[case.layout] = None
-    improvement = np.full(value.shape, np.nan)
-    if study.baseline is not None:
-        base = value[layouts.index(study.baseline)]
-        base = np.where(np.isfinite(base), base, np.nan)  # nothing is a share of an infinite value
-        improvement = 100.0 * (1.0 - value / base)
-    dims = ("layout", "index", sweep.element if sweep else "point")
-    data = xr.Dataset(
-        {
-            "value": ((*dims, "method"), value, {"long_name": "index at the optimum of that index"}),
-            "standard_error": ((*dims, "method"), error, {"long_name": "standard error of the value"}),
-            "improvement": ((*dims, "method"), improvement, {"units": "percent", "long_name": "improvement"}),
-            "other_value": ((*dims, "method", "other"), other, {"long_name": "other indices of the same design"}),
-            "parameter_value": ((*dims, "parameter"), found[..., 0], {"long_name": "parameter at the optimum"}),
-            "parameter_low": ((*dims, "parameter"), found[..., 1], {"long_name": "least among equally good optima"}),
-            "parameter_high": ((*dims, "parameter"), found[..., 2], {"long_name": "largest among equally good optima"}),
-            "at_bound": ((*dims, "parameter"), bound.astype(str), {"long_name": "bound that holds the parameter"}),
-            "status": (dims, status.astype(str), {"long_name": "status"}),
-            "starts": (dims, counts[..., 0], {"long_name": "local searches"}),
-            "agreed": (dims, counts[..., 1], {"long_name": "local searches that found this optimum"}),
-            "evaluations": (dims, counts[..., 2], {"long_name": "evaluations of the index"}),
-        },
-        coords={
-            "layout": layouts,
-            "index": indices,
-            "method": methods,
-            "other": indices,
-            "parameter": list(parameters),
-            "parameter_unit": ("parameter", list(parameters.values())),
-            "index_unit": ("index", [INDEX[name](study).unit for name in indices]),
-            "index_title": ("index", [INDEX[name](study).title for name in indices]),
-        },
-        attrs={
-            "title": study.title,
-            "baseline": study.baseline or "",
-            "conventions": study.conventions,
-            "model": study.model,
-            "seed": study.seed,
-            "inerter_version": inerter.__version__,
-            "notes": "\n".join(f"{', '.join(where)}: {note}" for note, where in notes.items()),
-        },
+    data = _labelled(study, parameters).assign_attrs(
+        title=study.title,
+        baseline=study.baseline or "",
+        conventions=study.conventions,
+        model=study.model,
+        seed=study.seed,
+        inerter_version=inerter.__version__,
+        notes="\n".join(_notes(study, outcomes)),
     )
+    for case in cases(study):
+        if case in outcomes:
+            _enter(data, study, outcomes[case])
+    data["status"] = data["status"].astype(str)
+    data["at_bound"] = data["at_bound"].astype(str)
+    if study.baseline is not None:
+        base = data["value"].sel(layout=study.baseline, drop=True)
+        base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
+        data["improvement"][:] = (100.0 * (1.0 - data["value"] / base)).transpose(*data["value"].dims).values
+    return data if study.sweep else data.isel(point=0).merge(_responses(study, outcomes))
+
+
+def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
+    """The dataset without numbers: dimensions, labels, units, and what each variable is."""
+    sweep = study.sweep
+    indices = {name: INDEX[name](study) for name in study.indices}
+    design = ("layout", "index", sweep.element if sweep else "point")
+    sizes = {
+        "layout": len(study.layouts),
+        "index": len(indices),
+        design[2]: len(sweep.values) if sweep else 1,
+        "method": len(study.evaluate),
+        "other": len(indices),
+        "parameter": len(parameters),
+    }
+    variables = {}
+    for name, (more, empty, long_name) in _VARIABLES.items():
+        dims = (*design, *more)
+        array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
+        variables[name] = (dims, array, {"long_name": long_name})
+    coords: dict[str, Any] = {
+        "layout": list(study.layouts),
+        "index": list(indices),
+        "method": list(study.evaluate),
+        "other": list(indices),
+        "parameter": list(parameters),
+        "parameter_unit": ("parameter", list(parameters.values())),
+        "index_unit": ("index", [index.unit for index in indices.values()]),
+        "index_title": ("index", [index.title for index in indices.values()]),
+    }
     if sweep:
-        return data.assign_coords(
-            {sweep.element: (sweep.element, list(sweep.values), {"units": sweep.unit, "long_name": sweep.element})}
-        )
-    return data.isel(point=0).merge(_responses(study, outcomes))
+        attributes = {"units": sweep.unit, "long_name": sweep.element}
+        coords[sweep.element] = (sweep.element, list(sweep.values), attributes)
+    data = xr.Dataset(variables, coords)
+    data["improvement"].attrs["units"] = "percent"
+    return data
+
+
+_VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+    "value": (("method",), np.nan, "index at the optimum of that index"),
+    "standard_error": (("method",), np.nan, "standard error of the value"),
+    "improvement": (("method",), np.nan, "improvement over the baseline"),
+    "other_value": (("method", "other"), np.nan, "other indices of the same design"),
+    "parameter_value": (("parameter",), np.nan, "parameter at the optimum"),
+    "parameter_low": (("parameter",), np.nan, "least among equally good optima"),
+    "parameter_high": (("parameter",), np.nan, "largest among equally good optima"),
+    "at_bound": (("parameter",), "", "bound that holds the parameter"),
+    "status": ((), "missing", "status"),
+    "starts": ((), 0, "local searches"),
+    "agreed": ((), 0, "local searches that found this optimum"),
+    "evaluations": ((), 0, "evaluations of the index"),
+}
+
+
+def _enter(data: xr.Dataset, study: Study, outcome: Outcome) -> None:
+    """Put one outcome in its place."""
+    at = (list(study.layouts).index(outcome.layout), study.indices.index(outcome.index), outcome.point)
+    for m, method in enumerate(study.evaluate):
+        values = outcome.values.get(method, {})
+        data["value"].values[(*at, m)] = values.get(outcome.index, np.nan)
+        data["other_value"].values[(*at, m)] = [values.get(index, np.nan) for index in study.indices]
+        error = outcome.standard_errors.get(method, {}).get(outcome.index)
+        data["standard_error"].values[(*at, m)] = np.nan if error is None else error
+    parameters = data["parameter"].values.tolist()
+    for name, number in outcome.parameters.items():
+        place = (*at, parameters.index(name))
+        low, high = outcome.ranges.get(name, (number, number))
+        data["parameter_value"].values[place] = number
+        data["parameter_low"].values[place], data["parameter_high"].values[place] = low, high
+        data["at_bound"].values[place] = outcome.active_bounds.get(name, "")
+    data["status"].values[at] = _status(outcome)
+    for name in ("starts", "agreed", "evaluations"):
+        data[name].values[at] = getattr(outcome, name)
+
+
+def _notes(study: Study, outcomes: Mapping[Case, Outcome]) -> list[str]:
+    """What methods left out, each with the layouts that it concerns."""
+    found: dict[str, dict[str, None]] = {}
+    for case in cases(study):
+        for note in outcomes[case].notes if case in outcomes else ():
+            found.setdefault(note, {})[case.layout] = None
+    return [f"{', '.join(layouts)}: {note}" for note, layouts in found.items()]
 
 
 def summary_csv(study: Study, data: xr.Dataset) -> str:

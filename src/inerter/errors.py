@@ -41,6 +41,10 @@ class StudyError(InerterError, ValueError):
     """A study file, or a result folder, that cannot be used."""
 
 
+class WorkError(InerterError):
+    """The request was right, but the work could not be finished; what was computed is kept."""
+
+
 class StatusKind(StrEnum):
     """What kind of number a result is."""
 
@@ -48,7 +52,6 @@ class StatusKind(StrEnum):
     UNSTABLE = "unstable"
     MARGINAL = "marginal"
     DIRECT_TERM = "direct-term"
-    NOT_CONVERGED = "not-converged"
     INACCURATE = "inaccurate"
     FAILED = "failed"
 

@@ -86,6 +86,12 @@ def test_run_writes_everything_and_prints_the_best(tmp_path: Path, capsys: pytes
     assert "--force" in capsys.readouterr().err
 
 
+def test_reproduction_never_replaces_what_is_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "report.html").write_text("mine")
+    assert "not empty" in fails(["reproduce", "wang-su-2008", "-o", str(tmp_path)], capsys)
+    assert (tmp_path / "report.html").read_text() == "mine"
+
+
 def test_json_is_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     study = tmp_path / "small.toml"
     study.write_text(SMALL.replace('S2 = "k | c | b"', 'S2 = "k | b"'), encoding="utf-8")

@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
-from inerter.errors import InerterError
+from inerter.errors import InerterError, WorkError
 
 EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
@@ -126,7 +126,7 @@ def call(arguments: list[str]) -> int:
     except CycloptsError as error:
         return _fail(f"{error}\nTry: inerter --help", 2)
     except InerterError as error:
-        return _fail(str(error), 2)
+        return _fail(str(error), 1 if isinstance(error, WorkError) else 2)
     except KeyboardInterrupt:
         return _fail("interrupted.", 1)
     except BrokenPipeError:  # the reader of stdout went away

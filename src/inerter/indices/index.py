@@ -53,6 +53,11 @@ class Index(Protocol):
         """Unit of its value."""
         ...
 
+    @property
+    def response(self) -> str:
+        """What its frequency response is, in words."""
+        ...
+
     def question(self, mechanism: Mechanism) -> Question:
         """What it asks of `mechanism`; raises `IndicatorError` if the mechanism has no answer."""
         ...
@@ -70,6 +75,7 @@ class RideComfort:
     symbol = "J1"
     title = "ride comfort"
     unit = "m/s^2"
+    response = "body acceleration per road velocity"
 
     def question(self, mechanism: Mechanism) -> Question:
         """Raises `IndicatorError` if the mechanism has no road or says nothing of comfort."""
@@ -89,6 +95,7 @@ class TyreLoad:
     symbol = "J3"
     title = "dynamic tyre load"
     unit = "N"
+    response = "tyre force per road velocity"
 
     def __post_init__(self) -> None:
         if self.high_pass is not None:
@@ -111,6 +118,7 @@ class LoadCarrying:
     symbol = "J5"
     title = "dynamic load carrying"
     unit = "m/N"
+    response = "body displacement per force on the body"
 
     def question(self, mechanism: Mechanism) -> Question:
         """Raises `IndicatorError` if the mechanism names no force and displacement for it."""

@@ -28,19 +28,21 @@ def source_hash(folder: Path) -> str:
 
 
 def cache_folder() -> Path:
-    """Where compiled code is kept: the user's cache folder, or a temporary one where that cannot be written."""
+    """Where compiled code is kept: the user's cache folder, or one for this process where that cannot be written."""
     base = os.environ.get("XDG_CACHE_HOME") or (
         os.environ.get("LOCALAPPDATA") if sys.platform == "win32" else str(Path.home() / ".cache")
     )
     name = f"kernels-{source_hash(Path(__file__).parent)}"
-    for root in (Path(base or tempfile.gettempdir()) / "inerter", Path(tempfile.gettempdir()) / "inerter"):
+    if base:
+        folder = Path(base) / "inerter" / name
         try:
-            (root / name).mkdir(parents=True, exist_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
         except OSError:
-            continue
-        if os.access(root / name, os.W_OK):
-            return root / name
-    return Path(tempfile.mkdtemp(prefix="inerter-"))
+            pass
+        else:
+            if os.access(folder, os.W_OK):
+                return folder
+    return Path(tempfile.mkdtemp(prefix="inerter-"))  # never a shared one: what is in it will be run
 
 
 _FOLDER = cache_folder()

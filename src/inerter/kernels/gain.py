@@ -118,6 +118,7 @@ def frequencies(poles: Array) -> Array:
     for k in range(n):
         size = abs(poles[k])
         slowest, fastest = min(slowest, max(size, 1e-300)), max(fastest, size)
+    slowest = max(slowest, 1e-30 * fastest)
     low, high = 0.01 * slowest, 10.0 * fastest  # a static maximum may rise to a peak close to zero first
     steps = 1 + int(24.0 * np.log10(high / low))
     grid = np.empty(steps + 1 + 14 * n)
@@ -160,12 +161,12 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
     """Frequencies and values of the local maxima of the gain, found in partial fractions, valued by a direct solve.
 
     Partial fractions cost little at each frequency; where they lose digits (nearly equal poles) only the place of a
-    peak suffers, and there by the square root only, because the value at it is computed anew. None are found where A
-    has no full set of eigenvectors.
+    peak suffers, because the value at it is computed anew. The value is nan where the two differ, because a resonance
+    is narrower than the error of its pole; no peak is found where A has no full set of eigenvectors.
     """
     scale, direct = units(A), D[0, 0]
     poles, residues, good = partial_fractions(A, B, C, scale)
-    if not good:
+    if not good or not np.isfinite(np.abs(poles).sum()):
         return np.zeros(0), np.zeros(0)
     grid = frequencies(poles)
     values = np.empty(grid.size)
@@ -183,6 +184,8 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
         if above_last and above_next:
             omegas[number] = 0.0 if k == 0 else top(poles, residues, direct, grid[k - 1], grid[k + 1])
             found[number] = gain_at(A, B, C, D, scale, omegas[number])
+            if not abs(found[number] - modal_gain(poles, residues, direct, omegas[number])) <= 1e-6 * found[number]:
+                found[number] = np.nan
             number += 1
     return omegas[:number], found[:number]
 
@@ -206,7 +209,7 @@ def largest_gains(points: Array, descriptor: Array) -> Array:
             _, found = peaks(A, B, C, D)
             largest = abs(D[0, 0])
             for value in found:
-                largest = max(largest, value)
-            if found.size > 0 and np.isfinite(largest):
+                largest = value if value > largest or np.isnan(value) else largest
+            if found.size > 0 and np.isfinite(largest) and not np.isnan(found.sum()):
                 result[i] = largest
     return result

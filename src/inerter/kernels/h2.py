@@ -230,7 +230,7 @@ def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner:
             error += row * C[k, i]
         if not abs(error) <= _LARGEST_ERROR * total:
             return False
-        result[k] = np.sqrt(total)
+        result[k] = np.sqrt(total + error)
     return True
 
 

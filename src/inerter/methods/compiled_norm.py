@@ -90,9 +90,10 @@ class CompiledQuestion:
         return np.asarray(result)
 
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`."""
+        """The index at each row of `points`; infinite where it cannot be told, so that a search goes elsewhere."""
         if not self.is_peak:
-            return np.asarray(self.output_norms(points) @ self.problem.weights)
+            totals = np.asarray(self.output_norms(points) @ self.problem.weights)
+            return np.where(np.isnan(totals), np.inf, totals)
         result = np.full(points.shape[0], np.nan)
         if self.serves:
             result = gain_kernels.largest_gains(points, self.descriptor) * self.problem.weights[0]
@@ -101,13 +102,7 @@ class CompiledQuestion:
         return result
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
-        """The index and its gradient; by differences where compiled code does not serve."""
-        if self.is_peak:
-            omegas = self.active(point)
-            assert omegas is not None
-            gains, gradients = self.components(point, omegas)
-            highest = int(np.argmax(gains))
-            return float(gains[highest]), gradients[highest]
+        """An index of r.m.s. values and its gradient; by differences where compiled code does not serve."""
         if self.serves:
             norms, gradient, good = h2_kernels.norms(
                 point, self.descriptor, self.arrivals, self.corner, self.problem.weights
@@ -119,16 +114,17 @@ class CompiledQuestion:
     def _difference(self, point: Array) -> Array:
         steps = 1e-5 * point * np.eye(point.size)
         ends = self.values(np.vstack([point + steps, point - steps]))
-        return np.asarray((ends[: point.size] - ends[point.size :]) / (2e-5 * point))
+        with np.errstate(invalid="ignore"):  # infinite on both sides: no gradient
+            return np.asarray((ends[: point.size] - ends[point.size :]) / (2e-5 * point))
 
     def active(self, point: Array) -> Array | None:
         """Frequencies [rad/s] of the local maxima of the gain, for a peak gain."""
         if not self.is_peak:
             return None
-        omegas: Array = gain_kernels.peaks_at(point, self.descriptor)[0]
-        if omegas.size == 0:  # equal poles have no partial fractions
-            omegas = np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])
-        return omegas
+        omegas, gains = gain_kernels.peaks_at(point, self.descriptor)
+        if not np.isfinite(gains.sum()) or gains.size == 0:  # equal poles, or a resonance too sharp for their digits
+            return np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])
+        return np.asarray(omegas[np.argsort(-gains)])
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Gains at the frequencies `which`, and their gradients over the free values."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.errors import IndicatorError
 from inerter.indices.index import Combination, Question
 from inerter.methods.method import Estimate
 from inerter.norms.h2 import h2
@@ -47,7 +49,7 @@ class LinearProblem:
     pade_order: int | None
     corner: float | None  # [rad/s]
 
-    @property
+    @cached_property
     def weights(self) -> Array:
         """What each output's norm is multiplied by in the index."""
         road = self.question.road
@@ -76,7 +78,14 @@ class LinearProblem:
 
 
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
-    """The descriptor for `question`, with delays from the road's speed and the filter that the conventions ask for."""
+    """The descriptor for `question`, with delays from the road's speed and the filter that the conventions ask for.
+
+    Raises `IndicatorError` for a peak gain of anything but one output of one force without a filter.
+    """
+    if question.combination is Combination.PEAK_GAIN and (
+        len(question.outputs) != 1 or len(question.inputs) != 1 or question.road or question.high_pass
+    ):
+        raise IndicatorError("A peak gain goes from one force to one output, without a road and without a filter.")
     inputs, delays = question.inputs, np.zeros(len(question.inputs))
     if question.road is not None:
         distance = {road.name: road.distance for road in mechanism.roads}

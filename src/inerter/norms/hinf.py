@@ -10,9 +10,9 @@ import scipy.linalg
 import scipy.optimize
 from numpy.typing import NDArray
 
-from inerter.errors import OK, LinearSystemError, Status
+from inerter.errors import OK, LinearSystemError, Status, StatusKind
 from inerter.norms.response import resolvent
-from inerter.norms.stability import split
+from inerter.norms.stability import pole_rates, split
 from inerter.systems.linear import LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
@@ -64,7 +64,22 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
         grid = np.unique(np.concatenate([grid, higher]))
         peaks = _peaks(gain, grid, stable.D)
     value = peaks[0].gain if peaks else 0.0
-    return HInfinity(value, tuple(peaks), OK)
+    return HInfinity(value, tuple(peaks), _sharpness(stable.A, peaks))
+
+
+def _sharpness(A: Matrix, peaks: list[Peak]) -> Status:
+    """Whether rounding leaves the damping of the resonance under the highest peak certain."""
+    if A.size == 0 or not peaks or not np.isfinite(peaks[0].omega):
+        return OK
+    rates, errors = pole_rates(A)
+    poles = np.linalg.eigvals(A)
+    nearest = int(np.argmin(np.abs(1j * peaks[0].omega - poles)))
+    there = int(np.argmin(np.abs(rates - poles[nearest].real)))
+    if abs(poles[nearest].imag) > 1e3 * abs(rates[there]) and errors[there] > 1e-6 * abs(rates[there]):
+        return Status(
+            StatusKind.INACCURATE, f"rounding hides the damping of the resonance at {peaks[0].omega:.6g} rad/s"
+        )
+    return OK
 
 
 def _merge(system: LinearSystem) -> LinearSystem:

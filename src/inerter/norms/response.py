@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import LinearSystemError
-from inerter.norms.delay import transfer
+from inerter.norms.delay import pade, transfer
 from inerter.norms.stability import balance
 from inerter.systems.linear import LinearSystem, check_system
 
@@ -20,12 +20,15 @@ _MOST_ENTRIES = 4_000_000  # of all matrices that are solved at once
 def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int | None = None) -> Complex:
     """G(j omega), shape (len(omega), outputs, sources), omega in rad/s.
 
-    Inputs of one source are one column, each arrival with its factor exp(-j omega delay) (or the Pade approximant).
+    Inputs of one source are one column, each arrival with its factor exp(-j omega delay), or with a Pade approximant
+    for each delay between one arrival and the next, as in `h2`.
     Infinite where omega is a pole.
 
     Raises `LinearSystemError` unless omega holds finite numbers.
     """
     check_system(system)
+    if pade_order is not None:
+        pade(pade_order)  # refuses an order that there is not, even where nothing is late
     try:
         frequencies = np.atleast_1d(np.asarray(omega, dtype=float))
     except (TypeError, ValueError):
@@ -35,10 +38,15 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
     response = resolvent(system)(frequencies) + system.D
     sources = list(dict.fromkeys(system.sources))
     result = np.zeros((frequencies.size, len(system.outputs), len(sources)), dtype=complex)
-    for j, (source, delay) in enumerate(zip(system.sources, system.delays.tolist(), strict=True)):
-        factor = transfer(frequencies, delay, pade_order)
-        with np.errstate(invalid="ignore"):  # at a pole
-            result[:, :, sources.index(source)] += response[:, :, j] * factor[:, None]
+    for column, source in enumerate(sources):
+        factor, before = np.ones(frequencies.size, dtype=complex), 0.0
+        for j in np.argsort(system.delays, kind="stable"):
+            if system.sources[j] != source:
+                continue
+            delay = float(system.delays[j])
+            factor, before = factor * transfer(frequencies, delay - before, pade_order), delay
+            with np.errstate(invalid="ignore"):  # at a pole
+                result[:, :, column] += response[:, :, j] * factor[:, None]
     return result
 
 

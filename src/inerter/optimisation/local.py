@@ -52,7 +52,8 @@ def descend(objective: Objective, start: Array, lower: Array, upper: Array) -> L
         bounds=scipy.optimize.Bounds(np.log(lower), np.log(upper)),
         options={"maxiter": 300, "ftol": 1e-15, "gtol": 1e-9},
     )
-    return LocalOptimum(np.clip(np.exp(result.x), lower, upper), float(np.exp(result.fun)), int(result.nfev))
+    value = np.inf if result.fun >= -_HIDDEN else float(np.exp(result.fun))
+    return LocalOptimum(np.clip(np.exp(result.x), lower, upper), value, int(result.nfev))
 
 
 def approach(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:

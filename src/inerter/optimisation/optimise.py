@@ -29,7 +29,8 @@ _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on 
 class Optimum:
     """The best design found, and what speaks for its being the best.
 
-    `agreed` of `starts` local searches ended within 1e-6 of the best value; `ranges` gives for each parameter the
+    `agreed` of `starts` local searches ended within 1e-6 of the best value (for a peak gain: or approached the very
+    place where one did); `ranges` gives for each parameter the
     least and the largest value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to
     "lower" or "upper" where its bound holds it back.
     """
@@ -71,7 +72,7 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     positive whole number; and what `evaluate` raises.
     """
     check_request(vehicle, index, method)
-    variables = _variables(vehicle)
+    variables = check_variables(vehicle)
     starts = 8 * len(variables) if starts is None else starts
     if not isinstance(starts, Integral) or starts < 1 or not isinstance(seed, Integral) or seed < 0:
         raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
@@ -124,7 +125,8 @@ def _searches(objective: Objective, first: list[Array], lower: Array, upper: Arr
     return ended
 
 
-def _variables(vehicle: Vehicle) -> dict[str, Free]:
+def check_variables(vehicle: Vehicle) -> dict[str, Free]:
+    """The free values of `vehicle`; raises `DesignError` if there is none, or if one may be zero."""
     variables = vehicle.free_values()
     if not variables:
         raise DesignError("Nothing to optimise: the design has no free value. Give one with free(lower, upper).")
@@ -147,7 +149,8 @@ def _starting_points(
     neighbours = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * lower.size + 1)[1])
     order = np.argsort(values, kind="stable")
     minima = [i for i in order if np.isfinite(values[i]) and values[i] <= values[neighbours[i]].min()]
-    others = [i for i in order if np.isfinite(values[i]) and i not in set(minima)]
+    known = set(minima)
+    others = [i for i in order if np.isfinite(values[i]) and i not in known]
     return [points[i] for i in (minima + others)[:starts]], len(points)
 
 

@@ -23,12 +23,14 @@ from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
 from inerter.study.file import load_study
 from inerter.study.registry import INDEX
-from inerter.study.run import Progress, StudyResult, run_study
+from inerter.study.run import FIGURES, REPORT, Progress, StudyResult, claimed, run_study
 from inerter.study.values import Study
 from inerter.vehicle.cars import Vehicle
 
 KEY = "wang-su-2008"
 STUDIES = ("table1", "table2", "figure11")
+TABLES = ("linear-rows", "designs", "claims")
+OWN_FILES = (*STUDIES, *(f"{name}.csv" for name in TABLES), FIGURES, REPORT)
 _DATA = files("inerter.papers") / "data" / KEY
 _LAYOUT_OF = {"none": "", "ideal": "", "elastic": "-soft", "elastic soft": "-soft", "elastic hard": "-hard"}
 _WORSE = 1e-4  # two optima that differ by less, relatively, are equally good: no figure shows it
@@ -134,11 +136,13 @@ def reproduce_linear(
     """Recompute every linear number of Tables 1 to 3, find the designs anew, redraw Figure 11's data, judge claims 1-3.
 
     The three studies go to folders inside `folder`, and can be resumed there.
+
+    Raises `StudyError` if `folder` holds something and neither `resume` nor `force` is given.
     """
-    results = {
-        name: run_study(study(name), folder / name, jobs=jobs, resume=resume, force=force, progress=progress)
-        for name in STUDIES
-    }
+    with claimed(folder, own=OWN_FILES, resume=resume, force=force):
+        results = {
+            name: run_study(study(name), folder / name, jobs=jobs, resume=resume, progress=progress) for name in STUDIES
+        }
     rows = printed_rows()
     figure11 = results["figure11"]
     return LinearReproduction(

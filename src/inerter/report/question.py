@@ -21,7 +21,7 @@ _CONVENTIONS = {
     "exact": "The delay from one axle to the next is exact, and no filter is added to what the indices define.",
     "paper2008": (
         "As for the printed numbers of Wang and Su (2008), a fifth-order Padé approximant stands for the delay from "
-        "one axle to the next, and where the road arrives at two axles tyre loads are taken over s + 6.28 rad/s."
+        "one axle to the next, and where the road arrives at two axles tyre loads are taken over s + 2 pi rad/s."
     ),
 }
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError, Status, StatusKind
+from inerter.errors import OK, InerterError, StatusKind
 from inerter.methods.method import Estimate, evaluate
-from inerter.optimisation.optimise import optimise
+from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.values import Study
@@ -65,9 +65,9 @@ def run_case(study: Study, case: Case) -> Outcome:
     A failure is an outcome with a status and a sentence, so that one case never ends a study.
     """
     try:
-        with one_blas_thread():
+        with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return _run(study, case)
-    except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
+    except (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError) as error:  # scipy refuses inf and nan so
         failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
         return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, str(error))
 
@@ -83,17 +83,21 @@ def _run(study: Study, case: Case) -> Outcome:
         "agreed": 0,
         "evaluations": 0,
     }
-    found = Status()
+    found: Optimum | None = None
     if study.optimise is not None and vehicle.free_values():
-        best = optimise(vehicle, INDEX[case.index](study), METHOD[study.optimise](study), seed=study.seed)
-        vehicle, found = best.design, best.status  # type: ignore[assignment]
-        fields = {name: getattr(best, name) for name in fields}
-    estimates: dict[str, dict[str, Estimate]] = {
-        method: {index: evaluate(vehicle, INDEX[index](study), METHOD[method](study)) for index in study.indices}
-        for method in study.evaluate
-    }
+        found = optimise(vehicle, INDEX[case.index](study), METHOD[study.optimise](study), seed=study.seed)
+        vehicle = vehicle.with_values(found.parameters)
+        fields = {name: getattr(found, name) for name in fields}
+
+    def estimate(method: str, index: str) -> Estimate:
+        if found is not None and (method, index) == (study.optimise, case.index):
+            return found.estimate
+        return evaluate(vehicle, INDEX[index](study), METHOD[method](study))
+
+    estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
-    worst = next((e.status for e in own.values() if not e.status.ok), found)
+    statuses = [*(e.status for e in own.values()), *([found.status] if found else [])]
+    worst = next((status for status in statuses if not status.ok), OK)
     return Outcome(
         case.layout,
         case.index,

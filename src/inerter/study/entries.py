@@ -109,7 +109,12 @@ def expression(value: Any) -> str:
     return value
 
 
-_TAKEN = frozenset("layout index method other parameter point omega value improvement status starts agreed".split())
+_TAKEN = frozenset(
+    (
+        "layout index method other parameter point omega value standard_error improvement other_value parameter_value "
+        "parameter_low parameter_high at_bound status starts agreed evaluations parameter_unit index_unit index_title"
+    ).split()
+)
 
 
 def element_name(name: Any) -> str:

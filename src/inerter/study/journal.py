@@ -31,12 +31,14 @@ class Journal:
         self.path.write_text(json.dumps(self._header()) + "\n", encoding="utf-8")
 
     def read(self) -> dict[Case, Outcome]:
-        """The finished cases. A last line that a kill cut short is dropped.
+        """The finished cases; none if there is no journal yet. A last line that a kill cut short is dropped.
 
         Raises `StudyError` if the journal belongs to another study or to another version of this software.
         """
-        raw = self.path.read_bytes()
+        raw = self.path.read_bytes() if self.path.exists() else b""
         whole = raw[: raw.rfind(b"\n") + 1]
+        if not whole:
+            return {}
         if len(whole) < len(raw):
             with self.path.open("r+b") as stream:
                 stream.truncate(len(whole))

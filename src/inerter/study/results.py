@@ -213,9 +213,7 @@ def _responses(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
             gains[list(study.layouts).index(layout)] = weights[:, None] * np.abs(response).T
         own = f"({question.unit})" if "/" in question.unit else question.unit
         unit = question.unit if question.road is None else f"{own}/(m/s)"
-        of = "road velocity" if question.road is not None else "force on the body"
-        what = {"J1": "body acceleration", "J3": "tyre force", "J5": "body displacement"}[index]
-        attributes = {"units": unit, "long_name": f"{what} per {of}"}
+        attributes = {"units": unit, "long_name": INDEX[index](study).response}
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
         data = data.assign_coords({f"output_{index}": [output.output for output in question.outputs]})
     return data

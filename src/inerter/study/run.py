@@ -5,27 +5,32 @@ from __future__ import annotations
 import json
 import platform
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
 import xarray as xr
+from filelock import FileLock, Timeout
 
 import inerter
 from inerter.errors import InerterError, StudyError
+from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.optimisation.optimise import check_variables
 from inerter.study import journal as journals
-from inerter.study.cases import Case, Outcome, cases
+from inerter.study.cases import Outcome, cases
 from inerter.study.journal import Journal
-from inerter.study.registry import INDEX
+from inerter.study.registry import INDEX, METHOD
 from inerter.study.results import dataset, summary_csv
 from inerter.study.values import Study, write_resolved
 from inerter.study.workers import run_all
-from inerter.systems.graph import linear_graph
+from inerter.vehicle.cars import Vehicle
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
 FIGURES, REPORT = "figures", "report.html"
-_OWN = (journals.NAME, RESOLVED, SUMMARY, DATASET, VERSIONS, FIGURES, REPORT)
+OWN = (journals.NAME, RESOLVED, SUMMARY, DATASET, VERSIONS, FIGURES, REPORT)
+_LOCK = ".lock"
 Progress = Callable[[int, int, Outcome | None], None]
 
 
@@ -50,7 +55,7 @@ class StudyResult:
 
 
 def check_study(study: Study) -> None:
-    """Assemble every layout at every swept value, so that what is ill-posed shows before any work is done.
+    """Assemble every layout for every index at every swept value, so that what is ill-posed shows before any work.
 
     Raises `StudyError` with a line for every layout that cannot be analysed.
     """
@@ -58,15 +63,22 @@ def check_study(study: Study) -> None:
     for layout in study.layouts:
         for swept in study.sweep.values if study.sweep else (None,):
             try:
-                mechanism = study.design(layout, swept).mechanism()
-                linear_graph(mechanism)
-                for index in study.indices:
-                    INDEX[index](study).question(mechanism)
+                _check_design(study, study.design(layout, swept))
             except InerterError as error:
                 problems.append(f"{study.path}: layouts.{layout}: {error}")
                 break
     if problems:
         raise StudyError("\n".join(problems))
+
+
+def _check_design(study: Study, vehicle: Vehicle) -> None:
+    mechanism = vehicle.mechanism()
+    for name in study.indices:
+        linear_problem(mechanism, INDEX[name](study).question(mechanism), CONVENTIONS[study.conventions])
+    if study.optimise is not None and vehicle.free_values():
+        check_variables(vehicle)
+        for name in study.indices:
+            METHOD[study.optimise](study).objective(vehicle, INDEX[name](study))
 
 
 def run_study(
@@ -86,58 +98,80 @@ def run_study(
     Every finished case is in the journal at once. With `resume`, cases in the journal are not computed again, and the
     results are the same, byte for byte, as those of an undisturbed run.
 
-    Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, or if it holds another
-    study's results.
+    Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, if it holds another
+    study's results, or if another run is writing to it; `WorkError` if a process is killed.
     """
     check_study(study)
-    journal = Journal(folder / journals.NAME, study)
-    done = _prepare(journal, folder, resume=resume, force=force)
-    everything = cases(study)
-    pending = [case for case in everything if case not in done]
-    progress(len(done), len(everything), None)
-    with journal.appending() as writer:
-        for outcome in run_all(study, pending, jobs):
-            writer.write(outcome)
-            done[outcome.case] = outcome
-            progress(len(done), len(everything), outcome)
-    data = dataset(study, done)
-    _write(folder / SUMMARY, summary_csv(study, data))
-    temporary = folder / f"{DATASET}.part"
-    data.to_netcdf(temporary, engine="h5netcdf")
-    temporary.replace(folder / DATASET)
+    with claimed(folder, own=OWN, resume=resume, force=force):
+        journal = Journal(folder / journals.NAME, study)
+        _write(folder / RESOLVED, write_resolved(study))
+        _write(folder / VERSIONS, _versions(study))
+        done = journal.read() if resume else {}
+        if not done:
+            journal.start()
+        everything = cases(study)
+        pending = [case for case in everything if case not in done]
+        progress(len(done), len(everything), None)
+        with journal.appending() as writer:
+            for outcome in run_all(study, pending, jobs):
+                writer.write(outcome)
+                done[outcome.case] = outcome
+                progress(len(done), len(everything), outcome)
+        data = dataset(study, done)
+        _write(folder / SUMMARY, summary_csv(study, data))
+        temporary = folder / f"{DATASET}.part"
+        data.to_netcdf(temporary, engine="h5netcdf")
+        temporary.replace(folder / DATASET)
     return StudyResult(folder, study, data, len(pending))
 
 
-def _prepare(journal: Journal, folder: Path, *, resume: bool, force: bool) -> dict[Case, Outcome]:
-    """Make the folder ready; returns what it already holds."""
+@contextmanager
+def claimed(folder: Path, *, own: Sequence[str], resume: bool, force: bool) -> Iterator[None]:
+    """A folder for results that is ours alone while we write; its files named in `own` may be replaced by `force`.
+
+    Raises `StudyError` if it is not a folder, cannot be written, is in use, or holds something and neither `resume`
+    nor `force` is given.
+    """
+    if resume and force:
+        raise StudyError("--resume keeps what the folder holds and --force replaces it: give one of them.")
     if folder.exists() and not folder.is_dir():
         raise StudyError(f"{folder}: is a file; expected a folder for the results. Choose another with -o.")
-    if resume and journal.path.exists():
-        return journal.read()
-    if folder.exists() and any(folder.iterdir()):
-        if not force:
-            kept = "Continue with --resume, or replace them with --force" if journal.path.exists() else "Use --force"
-            raise StudyError(f"{folder}: is not empty. {kept}, or choose another folder with -o.")
-        for name in _OWN:
-            path = folder / name
-            if path.is_dir():
-                shutil.rmtree(path)
-            else:
-                path.unlink(missing_ok=True)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        journal.start()
+        lock = FileLock(folder / _LOCK)
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise StudyError(f"{folder}: another run is writing to it. Wait for it, or choose another folder.") from None
     except OSError as error:
         raise StudyError(f"{folder}: cannot be written ({error.strerror}). Choose another folder with -o.") from None
-    _write(folder / RESOLVED, write_resolved(journal.study))
-    names = ("numpy", "scipy", "numba", "xarray")
+    try:
+        if not resume and any(path.name != _LOCK for path in folder.iterdir()):
+            if not force:
+                ours = any((folder / name).exists() for name in own)
+                kept = (
+                    "Continue with --resume, replace the results with --force" if ours else "Use --force to add to it"
+                )
+                raise StudyError(f"{folder}: is not empty. {kept}, or choose another folder with -o.")
+            for name in own:
+                _remove(folder / name)
+        yield
+    finally:
+        lock.release()
+        if not any(path.name != _LOCK for path in folder.iterdir()):
+            _remove(folder / _LOCK)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _versions(study: Study) -> str:
     versions = {"inerter": inerter.__version__, "python": platform.python_version()}
-    _write(
-        folder / VERSIONS,
-        json.dumps({**versions, **{name: version(name) for name in names}, "seed": journal.study.seed}, indent=2)
-        + "\n",
-    )
-    return {}
+    libraries = {name: version(name) for name in ("numpy", "scipy", "numba", "xarray")}
+    return json.dumps({**versions, **libraries, "seed": study.seed}, indent=2) + "\n"
 
 
 def _write(path: Path, text: str) -> None:

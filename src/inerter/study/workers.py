@@ -6,27 +6,36 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.connection import wait as wait_for_end
 
+from inerter.errors import WorkError
 from inerter.study.cases import Case, Outcome, run_case
 from inerter.study.values import Study
+
+_SHORT = 3.0  # seconds: to start processes takes about as long
 
 
 def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcome]:
     """Outcomes of `pending` as they are ready.
 
-    The first case runs here, so that compiled code is in the cache before others look for it. Processes are spawned
-    afresh (a fork of a threaded process may hang) and end when this one is gone, however it went.
+    The first case of each index runs here, so that compiled code is in the cache before others look for it, and so do
+    the next ones for as long as it would take to start processes. Those are spawned afresh (a fork of a threaded
+    process may hang) and end when this one is gone, however it went.
+
+    Raises `WorkError` if a process is killed from outside.
     """
-    if not pending:
-        return
-    yield run_case(study, pending[0])
-    rest = pending[1:]
-    if jobs == 1 or len(rest) < 2:
-        for case in rest:
-            yield run_case(study, case)
+    firsts = list({case.index: case for case in reversed(pending)}.values())
+    for case in firsts:
+        yield run_case(study, case)
+    rest = [case for case in pending if case not in firsts]
+    start = time.monotonic()
+    while rest and (jobs == 1 or time.monotonic() - start < _SHORT):
+        yield run_case(study, rest.pop(0))
+    if not rest:
         return
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(jobs, len(rest)), context, initializer=_begin_worker) as pool:
@@ -36,6 +45,11 @@ def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcom
                 done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                 for future in done:
                     yield future.result()
+        except BrokenProcessPool:
+            raise WorkError(
+                "a process of this run was ended from outside, perhaps for want of memory. "
+                "What was computed is kept; continue with --resume, and fewer processes (-j 1)."
+            ) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 

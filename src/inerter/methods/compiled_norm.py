@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import StatusKind
+from inerter.errors import Status, StatusKind
 from inerter.indices.index import Combination, Question
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
@@ -85,20 +85,24 @@ class CompiledQuestion:
             values = dict(zip(self._variables, points[i].tolist(), strict=True))
             system = self.problem.system(close(self.problem.descriptor, values))
             exact = h2(system, self.problem.pade_order)
-            lost = exact.status.kind in (StatusKind.INACCURATE, StatusKind.FAILED)
-            result[i] = np.nan if lost else exact.outputs
+            result[i] = np.nan if _is_lost(exact.status) else exact.outputs
         return np.asarray(result)
 
     def values(self, points: Array) -> Array:
         """The index at each row of `points`; infinite where it cannot be told, so that a search goes elsewhere."""
+        known = self.known(points)
+        return np.where(np.isnan(known), np.inf, known)
+
+    def known(self, points: Array) -> Array:
+        """The index at each row of `points`; nan where rounding decides."""
         if not self.is_peak:
-            totals = np.asarray(self.output_norms(points) @ self.problem.weights)
-            return np.where(np.isnan(totals), np.inf, totals)
+            return np.asarray(self.output_norms(points) @ self.problem.weights)
         result = np.full(points.shape[0], np.nan)
         if self.serves:
             result = gain_kernels.largest_gains(points, self.descriptor) * self.problem.weights[0]
         for i in np.flatnonzero(np.isnan(result)):
-            result[i] = self._exact(points[i]).value
+            estimate = self._exact(points[i])
+            result[i] = np.nan if _is_lost(estimate.status) else estimate.value
         return result
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
@@ -147,7 +151,7 @@ def evaluate_problems(
     for members in groups.values():
         if questions[members[0]].combination is Combination.PEAK_GAIN:
             compiled = CompiledQuestion(problems[members[0]])
-            result[:, members[0]] = compiled.values(_rows(compiled.problem.descriptor, points, result.shape[0]))
+            result[:, members[0]] = compiled.known(_rows(compiled.problem.descriptor, points, result.shape[0]))
             continue
         outputs = tuple({o.output: o for i in members for o in questions[i].outputs}.values())
         joint = linear_problem(mechanism, replace(questions[members[0]], outputs=outputs), conventions)
@@ -159,6 +163,10 @@ def evaluate_problems(
             columns = [places.index(o.output) for o in questions[i].outputs]
             result[:, i] = norms[:, columns] @ problems[i].weights
     return result
+
+
+def _is_lost(status: Status) -> bool:
+    return status.kind in (StatusKind.INACCURATE, StatusKind.FAILED)
 
 
 def _rows(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:

@@ -75,35 +75,49 @@ class CompiledQuestion:
         values = dict(zip(self._variables, point.tolist(), strict=True))
         return self.problem.estimate(close(self.problem.descriptor, values))
 
-    def output_norms(self, points: Array) -> Array:
-        """Norms (designs, outputs) at each row of `points`, for an index of r.m.s. values."""
-        count = len(self.problem.descriptor.outputs)
-        result, good = np.empty((points.shape[0], count)), np.zeros(points.shape[0], dtype=bool)
-        if self.serves:
-            result, good = h2_kernels.norms_of_many(points, self.descriptor, self.arrivals, self.corner)
-        for i in np.flatnonzero(~good):
-            values = dict(zip(self._variables, points[i].tolist(), strict=True))
-            system = self.problem.system(close(self.problem.descriptor, values))
-            exact = h2(system, self.problem.pade_order)
-            result[i] = np.nan if _is_lost(exact.status) else exact.outputs
-        return np.asarray(result)
-
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`; infinite where it cannot be told, so that a search goes elsewhere."""
-        known = self.known(points)
-        return np.where(np.isnan(known), np.inf, known)
+        """The index at each row of `points`, for a search: infinite where compiled code cannot tell.
+
+        Those are designs with hardly any damping, which no search wants; to value them exactly would cost more than
+        all the others.
+        """
+        values = self._compiled(points) if self.serves else self.known(points)
+        return np.where(np.isnan(values), np.inf, values)
 
     def known(self, points: Array) -> Array:
-        """The index at each row of `points`; nan where rounding decides."""
+        """The index at each row of `points`, from the exact norms where need be; nan where rounding decides."""
         if not self.is_peak:
             return np.asarray(self.output_norms(points) @ self.problem.weights)
-        result = np.full(points.shape[0], np.nan)
-        if self.serves:
-            result = gain_kernels.largest_gains(points, self.descriptor) * self.problem.weights[0]
+        result = self._compiled(points)
         for i in np.flatnonzero(np.isnan(result)):
             estimate = self._exact(points[i])
             result[i] = np.nan if _is_lost(estimate.status) else estimate.value
         return result
+
+    def output_norms(self, points: Array) -> Array:
+        """Norms (designs, outputs) at each row of `points`, for an index of r.m.s. values."""
+        result = self._compiled_norms(points)
+        for i in np.flatnonzero(np.isnan(result).any(axis=1)):
+            values = dict(zip(self._variables, points[i].tolist(), strict=True))
+            system = self.problem.system(close(self.problem.descriptor, values))
+            exact = h2(system, self.problem.pade_order)
+            result[i] = np.nan if _is_lost(exact.status) else exact.outputs
+        return result
+
+    def _compiled(self, points: Array) -> Array:
+        """The index by compiled code alone; nan where it cannot tell."""
+        if not self.is_peak:
+            return np.asarray(self._compiled_norms(points) @ self.problem.weights)
+        if not self.serves:
+            return np.full(points.shape[0], np.nan)
+        return np.asarray(gain_kernels.largest_gains(points, self.descriptor) * self.problem.weights[0])
+
+    def _compiled_norms(self, points: Array) -> Array:
+        if not self.serves:
+            return np.full((points.shape[0], len(self.problem.descriptor.outputs)), np.nan)
+        norms, good = h2_kernels.norms_of_many(points, self.descriptor, self.arrivals, self.corner)
+        norms[~good] = np.nan
+        return np.asarray(norms)
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
         """An index of r.m.s. values and its gradient; by differences where compiled code does not serve."""
@@ -122,13 +136,13 @@ class CompiledQuestion:
             return np.asarray((ends[: point.size] - ends[point.size :]) / (2e-5 * point))
 
     def active(self, point: Array) -> Array | None:
-        """Frequencies [rad/s] of the local maxima of the gain, for a peak gain."""
+        """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""
         if not self.is_peak:
             return None
         omegas, gains = gain_kernels.peaks_at(point, self.descriptor)
-        if not np.isfinite(gains.sum()) or gains.size == 0:  # equal poles, or a resonance too sharp for their digits
+        if omegas.size == 0:  # equal poles have no partial fractions
             return np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])
-        return np.asarray(omegas[np.argsort(-gains)])
+        return np.asarray(omegas[np.argsort(-np.where(np.isnan(gains), np.inf, gains), kind="stable")])
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Gains at the frequencies `which`, and their gradients over the free values."""

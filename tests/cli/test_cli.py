@@ -109,8 +109,20 @@ def test_examples_are_sound(name: str, capsys: pytest.CaptureFixture[str]) -> No
     assert "ok" in capsys.readouterr().out
 
 
-def test_python_example_runs() -> None:
-    subprocess.run([sys.executable, str(EXAMPLES / "best_strut.py")], check=True, capture_output=True)
+@pytest.mark.parametrize("name", ["best_strut.py", "three_axles.py"])
+def test_python_examples_run(name: str) -> None:
+    subprocess.run([sys.executable, str(EXAMPLES / name)], check=True, capture_output=True)
+
+
+def test_check_says_what_linear_analysis_leaves_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    study = tmp_path / "notes.toml"
+    text = SMALL.replace('"k | c | b"', '"k | c | (b | f)"').replace('"k | c - b"', '"k - c"')
+    study.write_text(text.replace('cs = "3200 N s/m"', 'cs = "3200 N s/m"\nf = "10 N"\nspare = "1 kg"'))
+    assert call(["check", str(study)]) == 0
+    out = capsys.readouterr().out
+    assert "S2: friction 'f' in 'strut' left out" in out
+    assert "S3: no spring carries the body" in out
+    assert "no layout uses spare" in out
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

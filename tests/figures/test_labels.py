@@ -7,7 +7,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from synthetic import designs, sweep
 
-from inerter.figures.labels import axis_label, compared, layouts, percent, quantity, scale, swept_element, typeset
+from inerter.figures.labels import (
+    axis_label,
+    compared,
+    flat_range,
+    layouts,
+    percent,
+    quantity,
+    scale,
+    swept_element,
+    typeset,
+)
 from inerter.units import parse_quantity
 
 SIZES = st.floats(1e-6, 1e9)
@@ -65,3 +75,11 @@ def test_long_labels_take_two_lines_and_keep_units_whole():
     label = axis_label("Damping coefficient of the front axle", "kN s/m")
     assert label.count("\n") == 1
     assert "kN s/m".replace(" ", "\N{NO-BREAK SPACE}") in label.splitlines()[1]
+
+
+def test_flat_optima_show_their_range() -> None:
+    data = designs()
+    entry = data.sel(layout="S2", index="J1", parameter="c")
+    assert flat_range(entry) == ""
+    wide = entry.assign(parameter_low=3000.0, parameter_high=40e3)
+    assert flat_range(wide) == "3 kN s/m to 40 kN s/m"

@@ -19,7 +19,7 @@ from inerter.report.findings import headlines
 from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table
 from inerter.study.file import load_study
-from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study
+from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study, study_notes
 
 
 def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool) -> int:
@@ -35,12 +35,14 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
         return 1
     draw_study(result.data, folder / FIGURES)
     write_report(result.data, loaded, folder / FIGURES, folder / REPORT)
+    _say(f"report: {folder / REPORT}")
     if as_json:
         print(_as_json(result))
     else:
         print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrap(text, WIDTH)))
         print(f"\n{summary_table(result.data)}")
-    _say(f"report: {folder / REPORT}")
+        for note in result.data.attrs["notes"].splitlines():
+            print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
     return _judge(result)
 
 
@@ -55,6 +57,8 @@ def check(study: Path) -> int:
         f"{study}: ok. {loaded.model}; layouts {', '.join(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
         f": {count} designs to {'find' if loaded.optimise else 'judge'}."
     )
+    for note in study_notes(loaded):
+        print(f"Note: {note}.")
     return 0
 
 
@@ -71,8 +75,8 @@ def reproduce(output: Path | None, jobs: int | None, *, resume: bool, force: boo
         _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")
         return 1
     pages.write_reproduction(found, folder)
-    print(json.dumps(wang_su_2008.tables(found), indent=2) if as_json else pages.reproduction_text(found))
     _say(f"report: {folder / REPORT}")
+    print(json.dumps(wang_su_2008.tables(found), indent=2) if as_json else pages.reproduction_text(found))
     return max(_judge(result) for result in found.studies.values())
 
 
@@ -111,8 +115,8 @@ def _as_json(result: StudyResult) -> str:
 
 
 def _finite(value: float) -> float | str | None:
-    """JSON has no infinity: it is the text "inf"; what there is not is null."""
-    return None if np.isnan(value) else float(value) if np.isfinite(value) else "inf"
+    """JSON has no infinity: it is the text "inf" or "-inf"; what there is not is null."""
+    return None if np.isnan(value) else float(value) if np.isfinite(value) else str(float(value))
 
 
 def _say(message: str) -> None:

@@ -5,6 +5,7 @@ Exit codes: 0 done; 1 the work failed or was interrupted; 2 the request was wron
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated, Literal
@@ -44,7 +45,7 @@ Json = Annotated[
 @app.command(
     help_epilogue="""Examples:
   inerter run examples/quarter-car.toml
-  inerter run sweep.toml -o sweep -j 2        into the folder sweep, over two processes
+  inerter run sweep.toml -o sweep -j 2
   inerter run sweep.toml -o sweep --resume    after an interruption"""
 )
 def run(
@@ -59,8 +60,8 @@ def run(
 ) -> int:
     """Find the best designs of a study file, and write tables, figures and a report.
 
-    The folder (by default STUDY-results) then holds report.html, summary.csv, results.nc, figures/ and the resolved
-    study. An interrupted run keeps what was computed; continue it with --resume.
+    The folder, by default STUDY-results, then holds report.html, summary.csv,
+    results.nc and figures. An interrupted run keeps what was computed.
 
     Parameters
     ----------
@@ -129,9 +130,9 @@ def call(arguments: list[str]) -> int:
         return _fail(str(error), 1 if isinstance(error, WorkError) else 2)
     except KeyboardInterrupt:
         return _fail("interrupted.", 1)
-    except BrokenPipeError:  # the reader of stdout went away
-        sys.stderr.close()
-        return 1
+    except BrokenPipeError:  # the reader of stdout has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except OSError as error:
         return _fail(f"{error.filename or 'system'}: {error.strerror or error}", 1)
 

@@ -64,6 +64,13 @@ def index_unit(results: xr.Dataset, index: str) -> str:
     return str(results["index_unit"].sel(index=index).item())
 
 
+def flat_range(entry: xr.Dataset) -> str:
+    """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
+    low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
+    unit = str(entry["parameter_unit"].item())
+    return f"{quantity(low, unit)} to {quantity(high, unit)}" if high > 1.01 * low else ""
+
+
 def capital(text: str) -> str:
     """The text as the beginning of a sentence."""
     return text[:1].upper() + text[1:]

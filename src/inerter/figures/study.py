@@ -62,7 +62,8 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
         versus = f", and improvement over the best {baseline} of the same {element}" if compared(results) else ""
         yield StudyFigure(
             f"sweep-{index}",
-            f"Best {title} for each value of {element}{versus}.",
+            f"Best {title} for each value of {element}{versus}."
+            + (f" Below {WORST:g} % the curves are cut." if bool((results["improvement"] < WORST).any()) else ""),
             partial(_sweep, results, index),
         )
         if results.sizes["parameter"]:

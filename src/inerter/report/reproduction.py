@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from textwrap import wrap
 
-from inerter.figures.labels import printed, typeset
+from inerter.figures.labels import typeset
 from inerter.figures.reproduction import FIGURE_11, draw_figure_11
 from inerter.papers.wang_su_2008 import Claim, ComparedRow, FoundDesign, LinearReproduction, tables
 from inerter.report.page import PageFigure, environment, inline
@@ -130,7 +130,7 @@ def _compared_table(compared: list[ComparedRow], number: int) -> Table:
         Row(
             f"{c.row.index} {c.row.layout}",
             [
-                Cell(printed(float(c.row.printed), c.unit) if "e" in c.row.printed else f"{c.row.printed} {c.unit}"),
+                Cell(typeset(c.row.printed)),
                 Cell(typeset(_digits(c.paper2008))),
                 Cell(typeset(_signed(c.off_by, 1)), strong=not c.agrees),
                 Cell(typeset(_digits(c.exact))),
@@ -141,7 +141,7 @@ def _compared_table(compared: list[ComparedRow], number: int) -> Table:
         if c.row.table == number
     ]
     header = ["Design", "Printed", "paper2008", "Off, last digits", "Exact", "Exact to printed"]
-    return Table(f"Table {number}: printed designs computed anew", header, rows)
+    return Table(f"Table {number} anew: J1 in m/s², J3 in N, J5 in m/N", header, rows)
 
 
 def _designs_table(found: list[FoundDesign], number: int) -> Table:

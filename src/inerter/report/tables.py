@@ -10,6 +10,7 @@ import xarray as xr
 
 from inerter.figures.labels import (
     compared,
+    flat_range,
     index_title,
     index_unit,
     indices,
@@ -105,7 +106,9 @@ def _parameter(entry: xr.Dataset) -> Cell:
     value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
     if np.isnan(value):
         return Cell("–")
-    return Cell(printed(value, str(entry["parameter_unit"].item())), f"at its {bound} bound" if bound else "")
+    flat = flat_range(entry)
+    remark = f"at its {bound} bound" if bound else f"{typeset(flat)} are as good" if flat else ""
+    return Cell(printed(value, str(entry["parameter_unit"].item())), remark)
 
 
 def _problem(design: xr.Dataset) -> str:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from inerter.figures.labels import (
     compared,
+    flat_range,
     index_title,
     index_unit,
     indices,
@@ -89,7 +90,9 @@ def _parameters(design: xr.Dataset) -> list[str]:
         value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
         if np.isfinite(value):
             text = f"{parameter} = {quantity(value, str(entry['parameter_unit'].item()))}"
-            found.append(f"{text} ({bound} bound)" if bound else text)
+            flat = flat_range(entry)
+            remarks = [*([f"{bound} bound"] if bound else []), *([f"{flat} are as good"] if flat else [])]
+            found.append(f"{text} ({', '.join(remarks)})" if remarks else text)
     return found
 
 

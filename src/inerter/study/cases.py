@@ -13,6 +13,9 @@ from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.values import Study
+from inerter.systems.descriptor import is_held_by_springs
+from inerter.systems.graph import linear_graph
+from inerter.vehicle.mechanism import Mechanism
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,15 @@ def run_case(study: Study, case: Case) -> Outcome:
         return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, str(error))
 
 
+def design_notes(mechanism: Mechanism) -> list[str]:
+    """What linear analysis leaves out of a design, and whether springs carry it."""
+    measures = mechanism.measures
+    notes = list(linear_graph(mechanism).notes)
+    if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
+        notes.append("no spring carries the body, which would sink under its own weight")
+    return notes
+
+
 def _run(study: Study, case: Case) -> Outcome:
     swept = study.sweep.values[case.point] if study.sweep else None
     vehicle = study.design(case.layout, swept)
@@ -95,6 +107,7 @@ def _run(study: Study, case: Case) -> Outcome:
         return evaluate(vehicle, INDEX[index](study), METHOD[method](study))
 
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
+    mechanism = vehicle.mechanism()
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     statuses = [*(e.status for e in own.values()), *([found.status] if found else [])]
     worst = next((status for status in statuses if not status.ok), OK)
@@ -107,5 +120,5 @@ def _run(study: Study, case: Case) -> Outcome:
         standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
         status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
         message=worst.message,
-        notes=list(dict.fromkeys(note for e in own.values() for note in e.notes)),
+        notes=list(dict.fromkeys([*(note for e in own.values() for note in e.notes), *design_notes(mechanism)])),
     )

@@ -112,7 +112,8 @@ def _enter(data: xr.Dataset, study: Study, outcome: Outcome) -> None:
         error = outcome.standard_errors.get(method, {}).get(outcome.index)
         data["standard_error"].values[(*at, m)] = np.nan if error is None else error
     parameters = data["parameter"].values.tolist()
-    for name, number in outcome.parameters.items():
+    best = np.isfinite(data["value"].values[at]).any()  # of infinite values none is best
+    for name, number in outcome.parameters.items() if best else ():
         place = (*at, parameters.index(name))
         low, high = outcome.ranges.get(name, (number, number))
         data["parameter_value"].values[place] = number
@@ -215,7 +216,8 @@ def _responses(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
         unit = question.unit if question.road is None else f"{own}/(m/s)"
         attributes = {"units": unit, "long_name": INDEX[index](study).response}
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
-        data = data.assign_coords({f"output_{index}": [output.output for output in question.outputs]})
+        names = [o.output if o.weight == 1.0 else f"{o.output} x {o.weight:g} m" for o in question.outputs]
+        data = data.assign_coords({f"output_{index}": names})
     return data
 
 

@@ -17,9 +17,10 @@ from filelock import FileLock, Timeout
 import inerter
 from inerter.errors import InerterError, StudyError
 from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.networks.parser import names
 from inerter.optimisation.optimise import check_variables
 from inerter.study import journal as journals
-from inerter.study.cases import Outcome, cases
+from inerter.study.cases import Outcome, cases, design_notes
 from inerter.study.journal import Journal
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.results import dataset, summary_csv
@@ -79,6 +80,19 @@ def _check_design(study: Study, vehicle: Vehicle) -> None:
         check_variables(vehicle)
         for name in study.indices:
             METHOD[study.optimise](study).objective(vehicle, INDEX[name](study))
+
+
+def study_notes(study: Study) -> list[str]:
+    """What a person should know before the work: elements that nothing uses, and what linear analysis leaves out."""
+    notes: dict[str, list[str]] = {}
+    for layout in study.layouts:
+        for note in design_notes(study.design(layout).mechanism()):
+            notes.setdefault(note, []).append(layout)
+    used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
+    unused = [name for name in study.elements if name not in used]
+    return [f"{', '.join(layouts)}: {note}" for note, layouts in notes.items()] + (
+        [f"no layout uses {', '.join(unused)}"] if unused else []
+    )
 
 
 def run_study(

@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from multiprocessing.connection import wait as wait_for_end
 
 from inerter.errors import WorkError
@@ -39,7 +40,8 @@ def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcom
         return
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(jobs, len(rest)), context, initializer=_begin_worker) as pool:
-        waiting: set[Future[Outcome]] = {pool.submit(run_case, study, case) for case in rest}
+        with _deaf_to_interrupts():
+            waiting: set[Future[Outcome]] = {pool.submit(run_case, study, case) for case in rest}
         try:
             while waiting:
                 done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
@@ -50,12 +52,27 @@ def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcom
                 "a process of this run was ended from outside, perhaps for want of memory. "
                 "What was computed is kept; continue with --resume, and fewer processes (-j 1)."
             ) from None
-        finally:
+        except BaseException:  # Ctrl-C: what is under way is not waited for
             pool.shutdown(wait=False, cancel_futures=True)
+            for child in multiprocessing.active_children():
+                child.terminate()
+            raise
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Processes started inside are born deaf to Ctrl-C, which is for the parent alone."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _begin_worker() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which ends the pool
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()

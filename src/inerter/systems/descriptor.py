@@ -111,6 +111,14 @@ def describe(
     return equations.finish(chosen)
 
 
+def is_held_by_springs(mechanism: Mechanism) -> bool:
+    """Whether springs determine the position of every coordinate when all roads lie still."""
+    equations = _Equations(mechanism, linear_graph(mechanism), [])
+    still = np.zeros(len(mechanism.roads))
+    rows = np.eye(len(equations.graph.nodes))[: len(mechanism.coordinates)]
+    return all(equations.displacement(row, still) is not None for row in rows)
+
+
 @dataclass
 class _Equations:
     mechanism: Mechanism
@@ -239,7 +247,7 @@ class _Equations:
         x[self.g], eta[self.z] = springs @ self.split.G, springs @ self.split.Z_e
         return eta, x
 
-    def _displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
+    def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
         """The combination of spring elongations that is this displacement whatever moves, if there is one."""
         c = self.split
         motions = np.hstack([c.R, c.U, c.Y, c.Z])
@@ -256,7 +264,7 @@ class _Equations:
         names += [f"{strut.name}_force" for strut in self.mechanism.struts]
         names += [f"{tyre.name}_load" for tyre in self.mechanism.tyres]
         for name, (nodes, roads) in self._displacements().items():
-            if self._displacement(nodes, roads) is not None:
+            if self.displacement(nodes, roads) is not None:
                 names.append(name)
         return names
 
@@ -301,7 +309,7 @@ class _Equations:
         return eta, x, u
 
     def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        weights = self._displacement(nodes, roads)
+        weights = self.displacement(nodes, roads)
         if weights is not None:
             return self._constant(*self._elongation(weights), np.zeros(self.m))
         self.extra.append((name, *self._velocity(nodes, roads)))

@@ -51,7 +51,7 @@ def report(results: xr.Dataset, study: Study, figures: Path) -> str:
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
             layouts=layout_rows(study),
-            indices=index_rows(study, results),
+            indices=index_rows(results),
             tables=design_tables(results) if swept is None else sweep_tables(results),
             trade_offs=trade_off_tables(results) if swept is None else [],
             figures=list(_drawings(results, figures)),

@@ -63,7 +63,7 @@ def layout_rows(study: Study) -> list[LayoutText]:
     return rows
 
 
-def index_rows(study: Study, results: xr.Dataset) -> list[tuple[str, str]]:
+def index_rows(results: xr.Dataset) -> list[tuple[str, str]]:
     """The indices: symbol and name."""
     return [(index, index_title(results, index)) for index in indices(results)]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from inerter.errors import DesignError
 from inerter.systems.descriptor import close, describe
-from inerter.systems.linear import LinearSystem
+from inerter.systems.linear import LinearSystem, check_names
 from inerter.vehicle.cars import Vehicle, check_vehicle
 
 
@@ -28,7 +28,6 @@ def assemble(
     free = ", ".join(mechanism.free_values())
     if free:
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
-    names = (
-        None if names is None else [names] if isinstance(names, str) else list(names) for names in (inputs, outputs)
-    )
-    return close(describe(mechanism, *names), {})
+    inputs = None if inputs is None else check_names("inputs", inputs)
+    outputs = None if outputs is None else check_names("outputs", outputs)
+    return close(describe(mechanism, inputs, outputs), {})

@@ -55,8 +55,11 @@ class LinearSystem:
                 )
         for name, letter, count in (("states", "x", n), ("inputs", "u", m), ("outputs", "y", p)):
             object.__setattr__(self, name, _labels(name, getattr(self, name), letter, count))
-        object.__setattr__(self, "sources", tuple(self.sources) or self.inputs)
-        delays = np.asarray(self.delays, dtype=float)
+        object.__setattr__(self, "sources", check_names("sources", self.sources) or self.inputs)
+        try:
+            delays = np.asarray(self.delays, dtype=float)
+        except (TypeError, ValueError):
+            raise LinearSystemError(f"The delays of a system are numbers of seconds, got {self.delays!r}.") from None
         object.__setattr__(self, "delays", delays if delays.size else np.zeros(m))
         timely = np.all(np.isfinite(self.delays)) and np.all(self.delays >= 0.0)
         if len(self.sources) != m or self.delays.shape != (m,) or not timely:
@@ -122,7 +125,16 @@ def with_high_pass(system: LinearSystem, omega: float) -> LinearSystem:
     )
 
 
-def _labels(what: str, names: Sequence[str], letter: str, count: int) -> tuple[str, ...]:
+def check_names(what: str, names: object) -> tuple[str, ...]:
+    """`names` as a tuple of texts, one text alone being one name; raises `LinearSystemError` if it is neither."""
+    given = (names,) if isinstance(names, str) else tuple(names) if isinstance(names, Sequence) else (names,)
+    if not all(isinstance(name, str) for name in given):
+        raise LinearSystemError(f"The {what} of a system are given by name, such as 'road', got {names!r}.")
+    return given
+
+
+def _labels(what: str, given: object, letter: str, count: int) -> tuple[str, ...]:
+    names = check_names(what, given)
     if not names:
         return tuple(f"{letter}{i + 1}" for i in range(count))
     if len(names) != count or len(set(names)) != count:
@@ -133,7 +145,7 @@ def _labels(what: str, names: Sequence[str], letter: str, count: int) -> tuple[s
 def _positions(what: str, names: Sequence[str] | str | None, known: tuple[str, ...]) -> list[int]:
     if names is None:
         return list(range(len(known)))
-    wanted = (names,) if isinstance(names, str) else tuple(names)
+    wanted = check_names(f"{what}s", names)
     for name in wanted:
         if name not in known:
             raise LinearSystemError(f"There is no {what} named {name!r} (there are: {', '.join(known) or 'none'}).")

@@ -171,6 +171,8 @@ def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
 def _check_measures(measures: object) -> None:
     if not isinstance(measures, Measures):
         raise MechanismError(f"The measures of a mechanism are Measures(...), got {measures!r}.")
+    if not isinstance(measures.comfort, tuple) or not isinstance(measures.tyre_load, tuple):
+        raise MechanismError(f"The outputs of measures are tuples of Weighted(...), got {measures!r}.")
     for output in (*measures.comfort, *measures.tyre_load):
         if not isinstance(output, Weighted) or not isinstance(output.output, str) or not is_number(output.weight):
             raise MechanismError(f"A measure is Weighted(output name, number), got {output!r}.")

@@ -37,6 +37,14 @@ class UnitError(InerterError, ValueError):
     """A quantity without a unit, with an unknown one, or with one of another dimension."""
 
 
+class SignalError(InerterError, ValueError):
+    """A signal that cannot be, or that is asked for a time that it does not know."""
+
+
+class SimulationError(InerterError, ValueError):
+    """A simulation that cannot be run as it was asked for."""
+
+
 class StudyError(InerterError, ValueError):
     """A study file, or a result folder, that cannot be used."""
 

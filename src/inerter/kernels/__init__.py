@@ -1,16 +1,18 @@
 """All compiled code, on plain arrays. Importing this package imports Numba; nothing else in the project does.
 
 The compiler caches a function by its own file and would run stale code when a function that it calls, in another
-file, has changed. So the cache folder is named after a hash of all sources of this package.
+file, has changed. So each module's cache folder is named after a hash of its source and of all that it imports here.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -18,23 +20,31 @@ import numba
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+_IMPORTED = re.compile(r"^from inerter\.kernels\.(\w+) import", re.MULTILINE)
 
-def source_hash(folder: Path) -> str:
-    """A short hash of every Python source in `folder` and of the compiler's version."""
+
+def source_hash(module: Path) -> str:
+    """A short hash of a kernel module, of every kernel module that it rests on, and of the compiler's version."""
+    found, waiting = {module.parent / "__init__.py"}, [module]
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting += [path.parent / f"{name}.py" for name in _IMPORTED.findall(path.read_text(encoding="utf-8"))]
     digest = hashlib.sha256(numba.__version__.encode())
-    for path in sorted(folder.glob("*.py")):
+    for path in sorted(found):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def cache_folder() -> Path:
-    """Where compiled code is kept: the user's cache folder, or one for this process where that cannot be written."""
+@cache
+def cache_folder(module: Path) -> Path:
+    """Where a module's compiled code is kept: the user's cache folder, or one for this process if none is writable."""
     base = os.environ.get("XDG_CACHE_HOME") or (
         os.environ.get("LOCALAPPDATA") if sys.platform == "win32" else str(Path.home() / ".cache")
     )
-    name = f"kernels-{source_hash(Path(__file__).parent)}"
     if base:
-        folder = Path(base) / "inerter" / name
+        folder = Path(base) / "inerter" / f"{module.stem}-{source_hash(module)}"
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError:
@@ -45,18 +55,21 @@ def cache_folder() -> Path:
     return Path(tempfile.mkdtemp(prefix="inerter-"))  # never a shared one: what is in it will be run
 
 
-_FOLDER = cache_folder()
-if not any(_FOLDER.iterdir()):
+@cache
+def _tell() -> None:
     print("inerter: compiling the numerical kernels; this happens once.", file=sys.stderr, flush=True)
 
 
 def compiled(function: F) -> F:
     """Compile on first use, and keep the result between processes."""
+    folder = cache_folder(Path(function.__code__.co_filename))
+    if not any(folder.iterdir()):
+        _tell()
     settings: Any = numba.config
     before = settings.CACHE_DIR
-    settings.CACHE_DIR = str(_FOLDER)
+    settings.CACHE_DIR = str(folder)
     try:
-        result: Any = numba.njit(cache=True, error_model="numpy")(function)
+        result: Any = numba.njit(cache=True, error_model="numpy", nogil=True)(function)
     finally:
         settings.CACHE_DIR = before
     return cast("F", result)

@@ -70,6 +70,11 @@ def linear_graph(mechanism: Mechanism) -> Graph:
     return _expand(mechanism, networks, tuple(notes))
 
 
+def full_graph(mechanism: Mechanism) -> Graph:
+    """The graph with every element in it, friction and gaps included."""
+    return _expand(mechanism, {mount.name: mount.network for mount in mechanism.mounts()}, ())
+
+
 def _expand(mechanism: Mechanism, networks: dict[str, Network], notes: tuple[str, ...]) -> Graph:
     coordinates = [c.name for c in mechanism.coordinates]
     roads = [r.name for r in mechanism.roads]
@@ -86,7 +91,7 @@ def _expand(mechanism: Mechanism, networks: dict[str, Network], notes: tuple[str
                 lower[size + roads.index(mount.road)] = 1.0
         for end, port in ports:
             for name, lever in port.items():
-                end[coordinates.index(name)] = lever
+                end[coordinates.index(name) if name in coordinates else size + roads.index(name)] = lever
         carriers = builder.add(mount.name, networks[mount.name], upper, lower)
         elongation = upper - lower
         mounts[mount.name] = Mount(elongation[:size], elongation[size:], carriers)

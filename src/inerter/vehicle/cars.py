@@ -1,4 +1,4 @@
-"""The quarter car and the half car of Wang and Su (2008) as mechanisms."""
+"""The quarter car, the half car and the test rig of Wang and Su (2008) as mechanisms."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Free, Network, Spring, check_network
 from inerter.networks.transform import name_free_values, with_values
 from inerter.vehicle.mechanism import (
+    GROUND,
     Coordinate,
     Force,
     Measures,
@@ -161,6 +162,39 @@ class HalfCar:
         """The same car with the named free values fixed; raises `DesignError` for a name that is not free here."""
         check_known(values, self.free_values())
         return replace(self, front=with_values(self.front, values), rear=with_values(self.rear, values))
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A device between a motion table, whose displacement is given, and a load cell on the ground.
+
+    Source: Wang and Su (2008), the test platform. Input `displacement` [m] of the device's upper end; the load cell
+    reads the output `device_force`, positive in tension.
+
+    Raises `NetworkError` if `device` is no network.
+    """
+
+    device: Network
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "device", name_free_values({"device": check_network(self.device)})["device"])
+
+    def mechanism(self) -> Mechanism:
+        """The same rig as a `Mechanism`."""
+        return Mechanism(
+            coordinates=(),
+            struts=(Strut("device", self.device, upper={"displacement": 1.0}, lower=GROUND),),
+            roads=(RoadInput("displacement"),),
+        )
+
+    def free_values(self) -> dict[str, Free]:
+        """The design variables by name, in the order in which they appear."""
+        return self.mechanism().free_values()
+
+    def with_values(self, values: Mapping[str, float]) -> Rig:
+        """The same rig with the named free values fixed; raises `DesignError` for a name that is not free here."""
+        check_known(values, self.free_values())
+        return replace(self, device=with_values(self.device, values))
 
 
 _HALF_CAR_UNITS = {

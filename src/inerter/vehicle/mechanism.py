@@ -1,7 +1,7 @@
 """A mechanism: coordinates with masses, and networks mounted between ports and on roads.
 
-Vertical up is positive. A port is a linear combination of coordinates, such as body height + lever x pitch. A mounted
-network's elongation is the displacement of its upper end less that of its lower end; its force is positive in tension.
+Vertical up is positive. A port is a linear combination of coordinates, such as body height + lever x pitch; a
+strut's may hold roads too, which are motions given from outside. A mounted network's elongation is the displacement of its upper end less that of its lower end; its force is positive in tension.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Coordinate:
 
 @dataclass(frozen=True)
 class Strut:
-    """A network mounted between two ports; `GROUND` is the port that does not move."""
+    """A network mounted between two ports of coordinates and roads; `GROUND` is the port that does not move."""
 
     name: str
     network: Network
@@ -201,8 +201,8 @@ def _check_names(mechanism: Mechanism) -> None:
 
 
 def _check_numbers(mechanism: Mechanism) -> None:
-    if not mechanism.coordinates:
-        raise MechanismError("A mechanism needs at least one coordinate with a mass.")
+    if not mechanism.coordinates and not mechanism.roads:
+        raise MechanismError("A mechanism needs at least one coordinate with a mass, or a road that moves it.")
     for coordinate in mechanism.coordinates:
         what = "Moment of inertia" if coordinate.angle else "Mass"
         check_positive(
@@ -219,15 +219,15 @@ def _check_numbers(mechanism: Mechanism) -> None:
 def _check_ports(mechanism: Mechanism) -> None:
     coordinates = {c.name for c in mechanism.coordinates}
     roads = {r.name for r in mechanism.roads}
-    ports = [(f"strut {s.name!r}", p) for s in mechanism.struts for p in (s.upper, s.lower)]
-    ports += [(f"tyre {t.name!r}", t.port) for t in mechanism.tyres]
-    ports += [(f"force {f.name!r}", f.port) for f in mechanism.forces]
-    for where, port in ports:
+    ports = [(f"strut {s.name!r}", p, coordinates | roads) for s in mechanism.struts for p in (s.upper, s.lower)]
+    ports += [(f"tyre {t.name!r}", t.port, coordinates) for t in mechanism.tyres]
+    ports += [(f"force {f.name!r}", f.port, coordinates) for f in mechanism.forces]
+    for where, port, may_hold in ports:
         if not isinstance(port, Mapping):
             raise MechanismError(f"The port of {where} maps coordinates to levers, as {{'body': 1.0}}; got {port!r}.")
         for name, lever in port.items():
-            if name not in coordinates:
-                known = ", ".join(sorted(coordinates))
+            if name not in may_hold:
+                known = ", ".join(sorted(coordinates)) or "none"
                 raise MechanismError(f"The {where} is at {name!r}, which is not a coordinate (coordinates: {known}).")
             if not is_number(lever):
                 raise MechanismError(f"The lever of {name!r} in {where} must be a finite number, got {lever!r}.")

@@ -34,12 +34,25 @@ if TYPE_CHECKING:
     from inerter.norms.response import frequency_response as frequency_response
     from inerter.optimisation.optimise import Optimum as Optimum
     from inerter.optimisation.optimise import optimise as optimise
+    from inerter.signals.harmonics import cosine as cosine
+    from inerter.signals.harmonics import flat_multisine as flat_multisine
+    from inerter.signals.harmonics import multisine as multisine
+    from inerter.signals.harmonics import sine as sine
+    from inerter.signals.records import held_noise as held_noise
+    from inerter.signals.records import profile as profile
     from inerter.signals.road import Road as Road
+    from inerter.signals.signal import Signal as Signal
+    from inerter.signals.transients import bump as bump
+    from inerter.signals.transients import chirp as chirp
+    from inerter.signals.transients import step as step
+    from inerter.simulation.simulate import simulate as simulate
+    from inerter.simulation.trajectory import Trajectory as Trajectory
     from inerter.study.file import load_study as load_study
     from inerter.systems.assemble import assemble as assemble
     from inerter.systems.linear import LinearSystem as LinearSystem
     from inerter.vehicle.cars import HalfCar as HalfCar
     from inerter.vehicle.cars import QuarterCar as QuarterCar
+    from inerter.vehicle.cars import Rig as Rig
     from inerter.vehicle.mechanism import GROUND as GROUND
     from inerter.vehicle.mechanism import Coordinate as Coordinate
     from inerter.vehicle.mechanism import Force as Force
@@ -71,29 +84,55 @@ __all__ = [
     "Optimum",
     "QuarterCar",
     "RideComfort",
+    "Rig",
     "Road",
     "RoadInput",
+    "Signal",
     "Spring",
     "Status",
     "StatusKind",
     "Strut",
+    "Trajectory",
     "Tyre",
     "TyreLoad",
     "Weighted",
     "__version__",
     "assemble",
+    "bump",
+    "chirp",
+    "cosine",
     "evaluate",
     "evaluate_many",
+    "flat_multisine",
     "free",
     "frequency_response",
     "h2_norm",
+    "held_noise",
     "hinf_norm",
     "load_study",
+    "multisine",
     "network",
     "optimise",
+    "profile",
+    "simulate",
+    "sine",
+    "step",
 ]
 
 _HOME = {
+    "profile": "signals.records",
+    "held_noise": "signals.records",
+    "bump": "signals.transients",
+    "step": "signals.transients",
+    "chirp": "signals.transients",
+    "cosine": "signals.harmonics",
+    "sine": "signals.harmonics",
+    "flat_multisine": "signals.harmonics",
+    "multisine": "signals.harmonics",
+    "Trajectory": "simulation.trajectory",
+    "simulate": "simulation.simulate",
+    "Signal": "signals.signal",
+    "Rig": "vehicle.cars",
     "Coordinate": "vehicle.mechanism",
     "Damper": "networks.elements",
     "Estimate": "methods.method",

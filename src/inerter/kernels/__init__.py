@@ -60,8 +60,8 @@ def _tell() -> None:
     print("inerter: compiling the numerical kernels; this happens once.", file=sys.stderr, flush=True)
 
 
-def compiled(function: F) -> F:
-    """Compile on first use, and keep the result between processes."""
+def compiled(function: F, signature: Any = None) -> F:
+    """Compile on first use, or at once for a given signature, and keep the result between processes."""
     folder = cache_folder(Path(function.__code__.co_filename))
     if not any(folder.iterdir()):
         _tell()
@@ -69,7 +69,13 @@ def compiled(function: F) -> F:
     before = settings.CACHE_DIR
     settings.CACHE_DIR = str(folder)
     try:
-        result: Any = numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+        compiler: Any = numba.njit(signature, cache=True, error_model="numpy", nogil=True)
+        result = compiler(function)
     finally:
         settings.CACHE_DIR = before
     return cast("F", result)
+
+
+def typed(signature: str) -> Callable[[F], F]:
+    """Compile for one signature, when the module is loaded: calls with constants then share it."""
+    return lambda function: compiled(function, signature)

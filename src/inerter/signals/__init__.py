@@ -1,1 +1,1 @@
-"""Roads and, later, forces and sampled signals."""
+"""Roads as random processes, and signals: road heights, displacements and forces as functions of time."""

@@ -57,27 +57,27 @@ def find_coordinates(
     Raises `MechanismError` for a node that is held by nothing.
     """
     n = len(nodes)
-    loose = _null_space(np.vstack([inertia, damping, springs]))
+    loose = null_space(np.vstack([inertia, damping, springs]))
     if loose.shape[1]:
         node = nodes[int(np.argmax(np.abs(loose[:, 0])))]
         raise MechanismError(
             f"Node {node!r} is held by nothing: no mass, spring, damper or inerter resists its motion."
         )
-    massless = _null_space(inertia)
-    Z = _null_space(np.vstack([inertia, damping]))
-    Y = _complete(Z, massless)
-    U = _null_space(np.vstack([damping, springs]))
-    U = U @ _null_space(forces @ U)
-    R = _complete(np.hstack([U, massless]), np.eye(n))
+    massless = null_space(inertia)
+    Z = null_space(np.vstack([inertia, damping]))
+    Y = complete(Z, massless)
+    U = null_space(np.vstack([damping, springs]))
+    U = U @ null_space(forces @ U)
+    R = complete(np.hstack([U, massless]), np.eye(n))
     Z_e = springs @ Z
     off_Z = np.eye(springs.shape[0]) - Z_e @ np.linalg.pinv(Z_e) if Z.shape[1] else np.eye(springs.shape[0])
     attainable = off_Z @ np.hstack([springs @ R, springs @ Y, spring_roads])
-    chosen = _independent_rows(attainable)
-    G = _clean(attainable @ np.linalg.pinv(attainable[chosen])) if chosen else np.zeros((springs.shape[0], 0))
-    return Coordinates(R, U, Y, Z, G, Z_e, _clean(off_Z[chosen]))
+    chosen = independent_rows(attainable)
+    G = clean(attainable @ np.linalg.pinv(attainable[chosen])) if chosen else np.zeros((springs.shape[0], 0))
+    return Coordinates(R, U, Y, Z, G, Z_e, clean(off_Z[chosen]))
 
 
-def _null_space(rows: Matrix) -> Matrix:
+def null_space(rows: Matrix) -> Matrix:
     """A basis (as columns) of the vectors that every row annihilates, with an identity block in it."""
     size = np.abs(rows).max(axis=1, initial=0.0)
     kept = rows[size > 0.0] / size[size > 0.0, None]
@@ -87,16 +87,16 @@ def _null_space(rows: Matrix) -> Matrix:
     if basis.shape[1] == 0:
         return basis
     pivots = scipy.linalg.qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
-    return _clean(np.linalg.solve(basis[pivots].T, basis.T).T)
+    return clean(np.linalg.solve(basis[pivots].T, basis.T).T)
 
 
-def _complete(basis: Matrix, candidates: Matrix) -> Matrix:
+def complete(basis: Matrix, candidates: Matrix) -> Matrix:
     """The first of the columns `candidates` that together with `basis` are independent and span all of them."""
     spanned = scipy.linalg.orth(basis).T if basis.size else np.zeros((0, candidates.shape[0]))
-    return candidates[:, _independent_rows(candidates.T, spanned)]
+    return candidates[:, independent_rows(candidates.T, spanned)]
 
 
-def _independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
+def independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
     """Numbers of the first rows that, with the orthonormal rows `spanned`, are independent and span all rows."""
     directions = np.zeros((0, rows.shape[1])) if spanned is None else spanned
     chosen: list[int] = []
@@ -113,6 +113,6 @@ def _independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
     return chosen
 
 
-def _clean(matrix: Matrix) -> Matrix:
+def clean(matrix: Matrix) -> Matrix:
     """Incidence arithmetic is exact but for rounding: zero is zero."""
     return np.where(np.abs(matrix) < 1e-13, 0.0, matrix)

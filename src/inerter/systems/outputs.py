@@ -14,7 +14,10 @@ from inerter.systems.graph import Graph
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
-_NONE: Matrix = np.zeros(0)
+
+
+def _none() -> Matrix:
+    return np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +27,13 @@ class Output:
     name: str
     unit: str
     title: str
-    displacement: Matrix = field(default=_NONE)  # over the nodes
-    velocity: Matrix = field(default=_NONE)
-    acceleration: Matrix = field(default=_NONE)
-    forces: Matrix = field(default=_NONE)  # over the branches
-    road: Matrix = field(default=_NONE)  # over the roads' displacements
-    road_velocity: Matrix = field(default=_NONE)
-    external: Matrix = field(default=_NONE)  # over the external forces
+    displacement: Matrix = field(default_factory=_none)  # over the nodes
+    velocity: Matrix = field(default_factory=_none)
+    acceleration: Matrix = field(default_factory=_none)
+    forces: Matrix = field(default_factory=_none)  # over the branches
+    road: Matrix = field(default_factory=_none)  # over the roads' displacements
+    road_velocity: Matrix = field(default_factory=_none)
+    external: Matrix = field(default_factory=_none)  # over the external forces
 
 
 def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:

@@ -1,0 +1,481 @@
+"""Event-driven integration: whole steps while no guard can be crossed, and a piecewise series where one might be."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from inerter.kernels import compiled, typed
+from inerter.kernels.flow import first_root, inputs_from, knot_numbers, series
+from inerter.kernels.modes import ENTRY, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N, is_locked
+
+Array = Any
+DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE = range(7)
+ACCEPTED, STRUCK, STRANDED = -1, -2, -3
+SEGMENT, MODE, EVENTS, SPECIAL, JUMPED, SWITCHES, WANTED, SETTLED, ACCOUNT, INPUTS, KNOWN = range(
+    11
+)  # places in `place`
+TRIAL, TOUCH, SIDE = range(3)  # rows of `flags`
+ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
+STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, then those of these sizes
+RESIDUAL, POLYNOMIAL, U, SIZE, X = 7, 8, 11, 19, 19 + ORDERS
+ROWS = X + 32
+_ROUNDING = 1e-13  # relative to the largest state so far
+_PAUSES = 200  # switches without any time between them
+_SWITCHES = 20000  # switches within one segment
+
+
+class Work(NamedTuple):
+    """Where an integration is, and what it works with; it can be taken up again at any point."""
+
+    work: Array  # (ROWS, enough): state, its largest size so far, a state on trial, the clock within a segment, ...
+    flags: Array  # (3, k) states on trial; leading coefficients of each guard that are zero just now; at which limit
+    place: Array  # see SEGMENT, ...
+    sizes: Array  # as in `Mechanics`, and so the next two
+    elements: Array
+    limit: Array
+    number: Array  # as in `Modes`, and so the next four
+    state: Array
+    maps: Array
+    reaction: Array
+    limits: Array
+    reach: Array
+
+
+class Record(NamedTuple):
+    """What goes in and what comes out along time."""
+
+    time: Array  # (segments + 1,) knots
+    value: Array  # (segments + 1, channels) of roads, then of forces
+    slope: Array
+    value_before: Array  # the same from the left
+    slope_before: Array
+    special: Array  # segments of another length than the step or at whose start a road jumps, then one past the end
+    slot: Array  # (segments + 1,) number of the sample at each knot, or -1
+    states: Array  # (samples or 0, n)
+    visited: Array  # (samples or 0,) mode at each sample
+    sums: Array  # (outputs,) of squares
+    events: Array  # (events, 4): time, element, from, to
+    branch_road: Array  # (branches or 0, roads)
+    gauss: Array  # (2, points) nodes and weights on [0, 1]
+
+
+@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)")
+def over_columns(row: Array, x: Array, u: Array, n: int, nu: int) -> float:
+    """A row over a mode's columns times (state, inputs, 1)."""
+    total = row[n + nu]
+    for j in range(n):
+        total += row[j] * x[j]
+    for j in range(nu):
+        total += row[n + j] * u[j]
+    return float(total)
+
+
+@typed("int64(int64[::1], int64[::1])")
+def mode_number(number: Array, trial: Array) -> int:
+    """Number of the mode in which the elements are in these states, or -1."""
+    code = 0
+    for e in range(trial.shape[0]):
+        code = 3 * code + trial[e] + 1
+    return int(number[code])
+
+
+@compiled
+def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, stop: int) -> int:
+    """Integrate up to knot `stop`.
+
+    Returns DONE, or why it stopped before: after MODE_UNKNOWN (the states are in `flags`) and EVENTS_FULL it goes on
+    from the same place once the mode is built or there is room.
+    """
+    place, work, sizes = now.place, now.work, now.sizes
+    n, nr, nu = sizes[N], sizes[NR], place[INPUTS]
+    while place[SEGMENT] < stop:
+        k = place[SEGMENT]
+        length = record.time[k + 1] - record.time[k]
+        if abs(length - h) < 1e-9 * h:
+            length = h
+        value, slope, value_before, slope_before = record.value, record.slope, record.value_before, record.slope_before
+        knot_numbers(value, slope, value_before, slope_before, k, length, work[NUMBERS])
+        if place[MODE] < 0:
+            code = switch(now, record.events, record.time[k], length, place[MODE])
+            if code != DONE:
+                return code
+            _sample(record, record.slot[k], place[MODE], work, n)
+        while record.special[place[SPECIAL]] < k:
+            place[SPECIAL] += 1
+        m = place[MODE]
+        if place[ACCOUNT] == 0 and work[CLOCK, 0] == 0.0 and place[JUMPED] == 0:
+            place[SEGMENT] = march(
+                steps[m],
+                now.limits[m],
+                work[STATE],
+                work[LINE],
+                value,
+                slope,
+                value_before,
+                slope_before,
+                record.slot,
+                record.states,
+                record.visited,
+                record.sums,
+                h,
+                m,
+                k,
+                min(stop, record.special[place[SPECIAL]]),
+                place[SETTLED],
+            )
+            if place[SEGMENT] > k:
+                continue
+        if place[JUMPED] == 0:
+            _jump(now.maps[m], sizes, work, value, value_before, record.branch_road, k, nu)
+        place[JUMPED] = 1
+        code = cross(now, record.events, record.branch_road, record.gauss, record.time[k], length)
+        if code != DONE:
+            return code
+        # close the segment
+        m, slot = place[MODE], record.slot[k + 1]
+        work[CLOCK, 0] = 0.0
+        place[JUMPED], place[SWITCHES], place[SEGMENT] = 0, 0, k + 1
+        _sample(record, slot, m, work, n)
+        if slot >= 0 and k >= place[SETTLED] and sizes[OUTPUTS] > 0:
+            inputs_from(work[NUMBERS], nr, nu, length, length, length, work[U : U + 8])
+            for o in range(sizes[OUTPUTS]):
+                record.sums[o] += over_columns(now.maps[m, sizes[OUTPUT] + o], work[STATE], work[U], n, nu) ** 2
+    return DONE
+
+
+@compiled
+def _sample(record: Record, slot: int, mode: int, work: Array, n: int) -> None:
+    if slot >= 0 and slot < record.states.shape[0]:
+        record.visited[slot] = mode
+        for i in range(n):
+            record.states[slot, i] = work[STATE, i]
+
+
+@typed("void(float64[:,::1], int64[::1], float64[:,::1], float64[:,::1], float64[::1])")
+def evaluate(rows: Array, visited: Array, states: Array, inputs: Array, out: Array) -> None:
+    """An output at all samples: each mode's row over the state, the inputs and 1."""
+    n, nu = states.shape[1], inputs.shape[1]
+    for i in range(out.shape[0]):
+        row = rows[visited[i]]
+        total = row[n + nu]
+        for j in range(n):
+            total += row[j] * states[i, j]
+        for j in range(nu):
+            total += row[n + j] * inputs[i, j]
+        out[i] = total
+
+
+@compiled
+def cross(now: Work, events: Array, branch_road: Array, gauss: Array, start: float, length: float) -> int:
+    """Go to the end of one segment piece by piece, and through every event on the way."""
+    place, work, sizes = now.place, now.work, now.sizes
+    n, nr, nu, elements, guard = sizes[N], sizes[NR], place[INPUTS], sizes[K], sizes[GUARD]
+    coefficients, state = work[U : U + 8], work[X:]
+    pauses = 0
+    while work[CLOCK, 0] < length:
+        m, t = place[MODE], work[CLOCK, 0]
+        d = min(length - t, now.reach[m])
+        inputs_from(work[NUMBERS], nr, nu, length, t, d, coefficients)
+        count = series(now.maps[m], work[STATE], coefficients, n, nu, d, state)
+        best, who = 2.0, np.int64(-1)
+        for e in range(elements):
+            if now.flags[TOUCH, e] < ORDERS:
+                s = _crossing(now.maps[m, guard + e], now.limits[m, e], now.flags, e, n, nu, count, work)
+                if s < best:
+                    best, who = s, e
+        s = min(best, 1.0)
+        if place[ACCOUNT] > 0 and s > 0.0:
+            _account(now.maps[m], sizes, work, branch_road, gauss, nu, count, s, d)
+        for i in range(n):
+            total = _polynomial(state, count, i, s)
+            if not (abs(total) < 1e150):
+                return NOT_FINITE
+            work[STATE, i] = total
+            work[SCALE, i] = max(work[SCALE, i], abs(total))
+        if s > 0.0:
+            for e in range(elements):
+                now.flags[TOUCH, e] = 0
+        work[CLOCK, 0] = length if who < 0 and d == length - t else t + s * d
+        pauses = 0 if work[CLOCK, 0] > t else pauses + 1
+        if who >= 0:
+            place[SWITCHES] += 1
+            if pauses > _PAUSES or place[SWITCHES] > _SWITCHES:
+                return CHATTER
+            code = switch(now, events, start, length, who)
+            if code != DONE:
+                return code
+    return DONE
+
+
+@typed("float64(float64[:,::1], int64, int64, float64)")
+def _polynomial(state: Array, count: int, i: int, s: float) -> float:
+    total = state[count - 1, i]
+    for j in range(count - 2, -1, -1):
+        total = total * s + state[j, i]
+    return float(total)
+
+
+@typed("float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1])")
+def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array) -> float:
+    """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not."""
+    if limits[0] == -np.inf and limits[1] == np.inf:
+        return 2.0
+    c, g = work[POLYNOMIAL], work[POLYNOMIAL + 1]
+    swing = 0.0
+    for k in range(count):
+        total = 0.0
+        for j in range(n):
+            total += row[j] * work[X + k, j]
+        if k < 4:
+            for j in range(nu):
+                total += row[n + j] * work[U + k, j]
+        c[k] = total
+        swing += abs(total)
+    swing -= abs(c[0])
+    c[0] += row[n + nu]
+    best = 2.0
+    for at in range(2):
+        side, limit = 2 * at - 1, limits[at]
+        zeros = flags[TOUCH, e] if flags[SIDE, e] == side else 0
+        if abs(limit) == np.inf or (zeros == 0 and side * (limit - c[0]) > swing):
+            continue
+        for k in range(zeros, count):
+            g[k - zeros] = -side * c[k]
+        if zeros == 0:
+            g[0] += side * limit
+        best = min(best, first_root(g, count - zeros, work[POLYNOMIAL + 2]))
+    return best
+
+
+@compiled
+def switch(now: Work, events: Array, start: float, length: float, who: int) -> int:
+    """Find the mode that goes on from here, after the guard of element `who` (or nothing, -1) was met.
+
+    Starts from the present mode and lets one element after the other change its state, the first that violates its
+    guard first (Murty's least-index rule, finite for friction and contact without impacts); if that does not settle,
+    all states are tried.
+    """
+    place, work, trial = now.place, now.work, now.flags[TRIAL]
+    elements, before = now.sizes[K], now.place[MODE]
+    if place[EVENTS] + elements > events.shape[0]:
+        return EVENTS_FULL
+    for e in range(elements):
+        trial[e] = now.state[before, e] if before >= 0 else (0 if now.limit[e] > 0.0 else 1)
+    verdict, struck, m = 0, False, -1
+    for _ in range(20 + 8 * elements):
+        m = mode_number(now.number, trial)
+        if m < 0:
+            return MODE_UNKNOWN
+        verdict = judge(now, m, length, who)
+        if verdict < 0:
+            break
+        trial[verdict] = place[WANTED]
+    codes = 1
+    for e in range(min(elements, 6)):
+        codes *= 3
+    code = 0
+    while verdict != ACCEPTED and code < codes:
+        struck = struck or verdict == STRUCK
+        rest, possible = code, True
+        code += 1
+        for e in range(elements):
+            trial[e] = rest % 3 - 1
+            rest //= 3
+            possible = possible and (now.limit[e] > 0.0 or trial[e] == 1)
+        if possible:
+            m = mode_number(now.number, trial)
+            if m < 0:
+                return MODE_UNKNOWN
+            verdict = judge(now, m, length, who)
+    if verdict != ACCEPTED:
+        return IMPACT if struck else NO_MODE
+    # go over to mode m, and note what has changed
+    for i in range(now.sizes[N]):
+        work[STATE, i] = work[GUESS, i]
+    for e in range(elements):
+        state, own = now.state[m, e], now.elements[e, OWN_POSITION]
+        if own >= 0 and state != 0:
+            work[STATE, now.sizes[NA] + own] = state * now.limit[e]
+        if before >= 0 and state != now.state[before, e]:
+            i = place[EVENTS]
+            events[i, 0] = start + work[CLOCK, 0]
+            events[i, 1], events[i, 2], events[i, 3] = e, now.state[before, e], state
+            place[EVENTS] = i + 1
+    place[MODE] = m
+    return DONE
+
+
+@compiled
+def judge(now: Work, m: int, length: float, who: int) -> int:
+    """Whether mode m can go on from here: ACCEPTED, STRUCK, STRANDED, or the element whose state must change.
+
+    First the conditions on entry, then each guard by the sign of its first derivative that is not zero.
+    """
+    sizes, maps, reaction, work, trial = now.sizes, now.maps[m], now.reaction[m], now.work, now.flags[TRIAL]
+    n, nu, elements, d = sizes[N], now.place[INPUTS], sizes[K], min(now.reach[m], length)
+    coefficients, residual = work[U : U + 8], work[RESIDUAL]
+    inputs_from(work[NUMBERS], sizes[NR], nu, length, work[CLOCK, 0], d, coefficients)
+    for i in range(n):
+        work[GUESS, i] = work[STATE, i]
+        work[SIZE, i] = max(work[SCALE, i], abs(work[STATE, i]))
+    first = 0
+    for group in range(3):
+        last = first + now.state[m, elements + group]
+        broken = False
+        for i in range(first, last):
+            row = maps[sizes[ENTRY] + i]
+            residual[i] = over_columns(row, work[STATE], work[U], n, nu)
+            broken = broken or abs(residual[i]) > 1e-10 * (_size(row, work[SIZE], work[U], n, nu) + abs(row[n + nu]))
+        if broken:
+            largest = 0.0
+            for e in range(elements):
+                largest = max(largest, abs(_asked(reaction, n + e, residual, first, last)))
+            for e in range(elements):
+                s = _asked(reaction, n + e, residual, first, last)
+                if now.limit[e] == 0.0 or abs(s) <= 1e-9 * largest:
+                    continue
+                if trial[e] == 0 and (group == 0) == is_locked(now.elements[e, KIND], trial[e]):
+                    now.place[WANTED] = 1 if s > 0.0 else -1
+                    return e
+                if trial[e] * s < 0.0:
+                    now.place[WANTED] = 0
+                    return e
+            if group != 1:
+                return STRUCK if group == 0 else STRANDED
+        for j in range(n):
+            work[GUESS, j] += _asked(reaction, j, residual, first, last)
+        first = last
+    now.place[KNOWN] = -1
+    before = now.place[MODE]
+    for e in range(elements):
+        met = before >= 0 and e == who and trial[e] == now.state[max(before, 0), e]
+        side = _violated(now, m, e, d, met)
+        if side != 0:
+            now.place[WANTED] = side if trial[e] == 0 else 0
+            return e
+    return ACCEPTED
+
+
+@typed("float64(float64[:,::1], int64, float64[::1], int64, int64)")
+def _asked(reaction: Array, row: int, residual: Array, first: int, last: int) -> float:
+    total = 0.0
+    for i in range(first, last):
+        total += reaction[row, i] * residual[i]
+    return total
+
+
+@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)")
+def _size(row: Array, size: Array, u: Array, n: int, nu: int) -> float:
+    """Sum of the sizes of what a row adds up: its rounding is a small multiple of this."""
+    total = 0.0
+    for j in range(n):
+        total += abs(row[j]) * size[j]
+    for j in range(nu):
+        total += abs(row[n + j] * u[j])
+    return total
+
+
+@typed("void(float64[:,::1], float64[:,::1], int64, int64, int64, float64)")
+def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) -> None:
+    """The k-th coefficient of the flow from GUESS, and the sizes of what it was added up from."""
+    for i in range(n):
+        if k == 0:
+            work[X, i] = work[GUESS, i]
+            continue
+        row = maps[i]
+        total = row[n + nu] if k == 1 else 0.0
+        size = abs(total)
+        for j in range(n):
+            total += row[j] * work[X + k - 1, j]
+            size += abs(row[j]) * work[SIZE + k - 1, j]
+        for j in range(nu):
+            term = row[n + j] * work[U + k - 1, j]
+            total += term
+            size += abs(term)
+        work[X + k, i] = total * d / k
+        work[SIZE + k, i] = size * d / k
+
+
+@compiled
+def _violated(now: Work, m: int, e: int, d: float, met: bool) -> int:
+    """At which limit (-1, 1) the guard of element e is violated at once, else 0; notes how long it stays on a limit.
+
+    `met`: the guard has just been found to be at its nearer limit.
+    """
+    n, nu, work, row = now.sizes[N], now.place[INPUTS], now.work, now.maps[m, now.sizes[GUARD] + e]
+    now.flags[TOUCH, e] = 0
+    for at in range(2):
+        side, limit, opposite = 2 * at - 1, now.limits[m, e, at], now.limits[m, e, 1 - at]
+        if abs(limit) == np.inf:
+            continue
+        for order in range(ORDERS):
+            if order > now.place[KNOWN]:
+                _coefficient(now.maps[m], work, order, n, nu, d)
+                now.place[KNOWN] = order
+            size = _size(row, work[SIZE + order], work[U + order], n, nu)
+            total = over_columns(row, work[X + order], work[U + order], n, nu)
+            if order == 0:
+                total -= limit
+                size += abs(limit)
+            else:
+                total -= row[n + nu]
+            zero = abs(total) <= _ROUNDING * size
+            if zero or (order == 0 and met and abs(total) < 0.5 * abs(limit - opposite)):
+                now.flags[TOUCH, e], now.flags[SIDE, e] = order + 1, side
+            elif side * total > 0.0:
+                return side
+            else:
+                break
+    return 0
+
+
+@compiled
+def _jump(
+    maps: Array, sizes: Array, work: Array, value: Array, value_before: Array, branch_road: Array, k: int, nu: int
+) -> None:
+    """A held road moves at once: positions follow, and the mean force does the work."""
+    n, nr, branches = sizes[N], sizes[NR], branch_road.shape[0]
+    first, u = sizes[OUTPUT] + sizes[OUTPUTS] + branches, work[U]
+    for c in range(nr):
+        rise = value[k, c] - value_before[k, c]
+        if rise == 0.0:
+            continue
+        for i in range(nr):
+            u[i] = value[k, i] if i < c else value_before[k, i]
+            u[nr + i] = u[2 * nr + i] = 0.0
+        for i in range(3 * nr, nu):
+            u[i] = value[k, i - 2 * nr]
+        for half in range(2):
+            for b in range(branches):
+                if branch_road[b, c] != 0.0:
+                    force = over_columns(maps[first + b], work[STATE], u, n, nu)
+                    work[ENERGY, c] += 0.5 * force * branch_road[b, c] * rise
+            if half == 0:
+                u[c] = value[k, c]
+                for i in range(n):
+                    work[STATE, i] += maps[i, n + nr + c] * rise
+
+
+@compiled
+def _account(
+    maps: Array, sizes: Array, work: Array, branch_road: Array, gauss: Array, nu: int, count: int, s: float, d: float
+) -> None:
+    """Energy through roads, forces and branches during the first part s of a piece, by Gauss's rule."""
+    n, nr, branches, first = sizes[N], sizes[NR], branch_road.shape[0], sizes[OUTPUT] + sizes[OUTPUTS]
+    nf, x, u, energy = nu - 3 * nr, work[GUESS], work[U + 7], work[ENERGY]
+    for g in range(gauss.shape[1]):
+        at = s * gauss[0, g]
+        weight = s * d * gauss[1, g]
+        for i in range(n):
+            x[i] = _polynomial(work[X:], count, i, at)
+        for j in range(nu):
+            u[j] = _polynomial(work[U : U + 8], 4, j, at)
+        for b in range(branches):
+            force = over_columns(maps[first + branches + b], x, u, n, nu)
+            energy[nr + nf + b] += weight * force * over_columns(maps[first + b], x, u, n, nu)
+            for c in range(nr):
+                energy[c] += weight * force * branch_road[b, c] * u[nr + c]
+        for f in range(nf):
+            energy[nr + f] += weight * u[3 * nr + f] * over_columns(maps[first + 2 * branches + f], x, u, n, nu)

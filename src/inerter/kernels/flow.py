@@ -1,0 +1,152 @@
+"""The exact flow inside one mode as a Taylor series, and the first root of a polynomial."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels import typed
+
+Array = Any
+
+
+@typed("void(float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], int64, float64, float64[::1])")
+def knot_numbers(
+    value: Array, slope: Array, value_before: Array, slope_before: Array, knot: int, length: float, out: Array
+) -> None:
+    """The cubic of every channel over one segment: z0, z1 - z0, and the slopes at both ends times the length."""
+    for c in range(value.shape[1]):
+        z0 = value[knot, c]
+        out[4 * c] = z0
+        out[4 * c + 1] = value_before[knot + 1, c] - z0
+        out[4 * c + 2] = length * slope[knot, c]
+        out[4 * c + 3] = length * slope_before[knot + 1, c]
+
+
+@typed("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])")
+def inputs_from(numbers: Array, nr: int, nu: int, length: float, start: float, d: float, U: Array) -> None:
+    """Coefficients (4, inputs) of roads' z, z', z'' and of forces in powers of (t - start) / d."""
+    channels = nu - 2 * nr
+    s, r = start / length, d / length
+    for c in range(channels):
+        p0, rise, b, e = numbers[4 * c], numbers[4 * c + 1], numbers[4 * c + 2], numbers[4 * c + 3]
+        p1, p2, p3 = b, 3.0 * rise - 2.0 * b - e, b + e - 2.0 * rise
+        c0 = p0 + s * (p1 + s * (p2 + s * p3))
+        c1 = r * (p1 + s * (2.0 * p2 + s * 3.0 * p3))
+        c2 = r * r * (p2 + 3.0 * s * p3)
+        c3 = r * r * r * p3
+        i = c if c < nr else c + 2 * nr
+        U[0, i], U[1, i], U[2, i], U[3, i] = c0, c1, c2, c3
+        if c < nr:
+            i += nr
+            U[0, i], U[1, i], U[2, i], U[3, i] = c1 / d, 2.0 * c2 / d, 3.0 * c3 / d, 0.0
+            i += nr
+            U[0, i], U[1, i], U[2, i], U[3, i] = 2.0 * c2 / (d * d), 6.0 * c3 / (d * d), 0.0, 0.0
+
+
+@typed("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])")
+def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array) -> int:
+    """Coefficients X[k] of the flow from x in powers of t / d, until they are below rounding; returns their number.
+
+    The last row of X is work space.
+    """
+    last = X.shape[0] - 1
+    for i in range(n):
+        X[0, i] = x[i]
+        X[last, i] = abs(x[i])  # the largest coefficient so far
+    small = 0
+    for k in range(1, last):
+        quiet = True
+        for i in range(n):
+            total = 0.0
+            for j in range(n):
+                total += maps[i, j] * X[k - 1, j]
+            if k <= 4:
+                for j in range(nu):
+                    total += maps[i, n + j] * U[k - 1, j]
+                if k == 1:
+                    total += maps[i, n + nu]
+            total *= d / k
+            X[k, i] = total
+            size = abs(total)
+            if size > X[last, i]:
+                X[last, i] = size
+            if size > 1e-18 * X[last, i]:
+                quiet = False
+        small = small + 1 if quiet and k > 4 else 0
+        if small == 2:
+            return k + 1
+    return int(last)
+
+
+@typed("float64(float64[::1], int64, float64)")
+def value_at(c: Array, count: int, s: float) -> float:
+    """The polynomial with coefficients c[0], ..., c[count - 1]."""
+    total = c[count - 1]
+    for k in range(count - 2, -1, -1):
+        total = total * s + c[k]
+    return float(total)
+
+
+@typed("float64(float64[::1], int64, float64)")
+def slope_at(c: Array, count: int, s: float) -> float:
+    """Its derivative."""
+    total = 0.0
+    for k in range(count - 1, 0, -1):
+        total = total * s + k * c[k]
+    return total
+
+
+@typed("float64(float64[::1], int64, float64, float64)")
+def polish(c: Array, count: int, a: float, b: float) -> float:
+    """The root in [a, b] of a polynomial that is positive at a and not at b: Newton's steps, or else halving."""
+    s = 0.5 * (a + b)
+    for _ in range(80):
+        value = value_at(c, count, s)
+        if value > 0.0:
+            a = s
+        else:
+            b = s
+        slope = slope_at(c, count, s)
+        after = s - value / slope if slope < 0.0 else a
+        if not (a < after < b):
+            after = 0.5 * (a + b)
+        if abs(after - s) <= 2e-16 * after or b - a <= 2e-16 * b:
+            return after
+        s = after
+    return s
+
+
+@typed("float64(float64[::1], int64, float64[::1])")
+def first_root(c: Array, count: int, ends: Array) -> float:
+    """Smallest s in [0, 1] from which on the polynomial is negative; 2 if there is none.
+
+    Between two points where it is positive it stays so if it is above the sway that its second derivative allows;
+    otherwise the interval is halved, down to where the sway is below rounding (it may touch zero, but not cross).
+    """
+    if not (c[0] > 0.0):
+        return 0.0
+    bend, size = 0.0, c[0]
+    for k in range(1, count):
+        bend += k * (k - 1) * abs(c[k])
+        size += abs(c[k])
+    a, at_a, depth = 0.0, c[0], 1
+    ends[0] = 1.0
+    while depth > 0:
+        b = ends[depth - 1]
+        at_b = value_at(c, count, b)
+        width = b - a
+        sway = 0.125 * bend * width * width
+        if at_b > 0.0 and (min(at_a, at_b) > sway or sway < 1e-16 * size):
+            a, at_a = b, at_b
+            depth -= 1
+        elif at_b <= 0.0 and (slope_at(c, count, 0.5 * (a + b)) < -0.5 * bend * width or width < 1e-15):
+            return polish(c, count, a, b)
+        elif depth == ends.shape[0]:
+            a, at_a = b, at_b
+            depth -= 1
+        else:
+            ends[depth] = 0.5 * (a + b)
+            depth += 1
+    return 2.0

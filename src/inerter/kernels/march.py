@@ -1,0 +1,112 @@
+"""Whole steps inside one mode, compiled for each size of system: constant loop bounds make them twice as fast."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from numba import types
+from numba.experimental.function_type import _get_wrapper_address
+
+from inerter.kernels import compiled
+
+_FLOATS, _INTS = types.Array(types.float64, 1, "C"), types.Array(types.int64, 1, "C")
+_TABLE = types.Array(types.float64, 2, "C")
+SIGNATURE = types.int64(
+    _TABLE,  # steps of the mode
+    _TABLE,  # limits of the guards
+    _FLOATS,  # state, changed in place
+    _FLOATS,  # work space: columns and rows of steps
+    _TABLE,  # values of the inputs at the knots
+    _TABLE,  # slopes
+    _TABLE,  # values from the left
+    _TABLE,  # slopes from the left
+    _INTS,  # sample number at each knot, or -1
+    _TABLE,  # samples of the state
+    _INTS,  # modes at the samples
+    _FLOATS,  # sums of squared outputs
+    types.float64,  # step
+    types.int64,  # number of the mode
+    types.int64,  # first segment
+    types.int64,  # last
+    types.int64,  # first segment whose squares count
+)
+
+
+class March(types.WrapperAddressProtocol):  # type: ignore[misc]
+    """A march as an argument of other compiled code, which so need not be compiled anew for each."""
+
+    def __init__(self, function: Any) -> None:
+        self.function = function
+        self.address = _get_wrapper_address(function, SIGNATURE)
+
+    def __wrapper_address__(self) -> int:
+        return int(self.address)
+
+    def signature(self) -> Any:
+        return SIGNATURE
+
+
+@cache
+def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> March:
+    """The march for systems of n states, these of `flow.knot_numbers`, so many nonlinear elements and squared outputs.
+
+    It goes on while no guard can be crossed within the step, and returns the first segment that needs more care.
+    """
+    inputs = len(used)
+    columns, rows = n + inputs + 1, n + 2 * elements
+
+    def march(  # type: ignore[no-untyped-def]
+        steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
+        h, mode, first, stop, settled,
+    ):  # fmt: skip
+        v, y = work[:columns], work[columns:]
+        for i in range(n):
+            v[i] = x[i]
+        v[columns - 1] = 1.0
+        k = first
+        while k < stop:
+            for j in range(inputs):
+                c, number = used[j] // 4, used[j] % 4
+                if number == 0:
+                    v[n + j] = value[k, c]
+                elif number == 1:
+                    v[n + j] = value_before[k + 1, c] - value[k, c]
+                elif number == 2:
+                    v[n + j] = h * slope[k, c]
+                else:
+                    v[n + j] = h * slope_before[k + 1, c]
+            for i in range(rows):
+                total = 0.0
+                for j in range(columns):
+                    total += steps[i, j] * v[j]
+                y[i] = total
+            safe = True
+            for e in range(elements):
+                sway = 0.0
+                for j in range(columns):
+                    sway += steps[rows + e, j] * abs(v[j])
+                at_end, at_start = y[n + e], y[n + elements + e]
+                if not (min(at_start, at_end) - sway > limits[e, 0] and max(at_start, at_end) + sway < limits[e, 1]):
+                    safe = False
+            if not safe:
+                break
+            if outputs > 0 and k >= settled and slot[k + 1] >= 0:
+                for o in range(outputs):
+                    total = 0.0
+                    for j in range(columns):
+                        total += steps[rows + elements + o, j] * v[j]
+                    sums[o] += total * total
+            for i in range(n):
+                v[i] = y[i]
+            k += 1
+            sample = slot[k]
+            if sample >= 0 and sample < states.shape[0]:
+                visited[sample] = mode
+                for i in range(n):
+                    states[sample, i] = y[i]
+        for i in range(n):
+            x[i] = v[i]
+        return k
+
+    return March(compiled(march, SIGNATURE))

@@ -1,0 +1,514 @@
+"""Modes of a piecewise-linear mechanism: from what slips, sticks, touches and gapes to matrices.
+
+With the velocities a that inertia carries, the positions g, the velocities w of massless motions, the forces F of the
+nonlinear elements, and the roads' z, z', z'' and forces f of `Mechanics`:
+
+    M a' + C_aw w + H_a^T F = -C_aa a - C_az z' - S_ag g - S_az z - M_z z'' + F_a f
+           C_ww w + H_w^T F = -C_aw^T a - C_wz z' - S_wg g - S_wz z
+    g' = P_a a + P_w w + P_z z'
+
+An element i is either free, with F_i given (slip, open gap), or locked (stick, contact), with the rate of its
+elongation H_a a + H_w w + H_z z' zero and F_i unknown. What a lock asks of massless velocities is met at once; what it
+asks of inertial ones (the rows L) is differentiated, and must already be true when the mode begins. Massless motions
+that only springs resist (Z) follow from the rate of the springs' balance, and those that nothing resists (Y) stay put;
+their balance must be true too. These entry conditions, and the jump that would make them true, are kept with the mode.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from inerter.kernels import compiled, typed
+from inerter.kernels.linalg import factor, solve
+
+Array = Any
+RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one
+FRICTION, GAP = 0, 1
+KIND, OWN_POSITION = 0, 1  # columns of `Mechanics.elements`
+NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT = range(11)  # places in `sizes`, see `Mechanics`
+
+
+class Mechanics(NamedTuple):
+    """A mechanism's constants. Columns of maps are the state (a, g), roads' z, z', z'', forces, and 1 (`width`)."""
+
+    sizes: Array  # na, nw, nr, n, k, numbers of dampers and squared outputs, then first rows of parts of `Modes.maps`
+    balance: Array  # (na + nw, na + nw + width): M, C_aw; 0, C_ww; then right-hand sides without elements' forces
+    rates: Array  # (ng + k + dampers + springs, na + nw + nr): of positions and elongations, over a, w, z'
+    lengths: Array  # (k, ng + nr): elongation of the gaps from positions and roads
+    elements: Array  # (k, 2) FRICTION or GAP; number of the position that is the gap's own elongation, or -1
+    limit: Array  # (k,) force or half-width; an element whose limit is zero never changes its state
+    over: Array  # (outputs, n + nu + na + nw + k): outputs over the state, the inputs, and (a', w, F)
+
+
+class Modes(NamedTuple):
+    """Modes met so far, one row each."""
+
+    number: Array  # (3^k,) index of the mode that a state of the elements has, or -1
+    state: Array  # (capacity, k + 3): -1, 0, 1 of each element; numbers of conditions on velocity, springs, the loose
+    maps: Array  # (capacity, rows, width): rate of the state, guards, (a', w, F), entry conditions, outputs
+    reaction: Array  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
+    limits: Array  # (capacity, k, 2): interval of the guards
+    steps: Array  # (capacity, rows, columns): next state, guards at the end and the start, their sway, outputs
+    reach: Array  # (capacity,) how far a Taylor series of the flow serves [s]
+
+
+@typed("float64[:,::1](float64[:,::1], float64[:,::1])")
+def product(A: Array, B: Array) -> Array:
+    """A B."""
+    out = np.zeros((A.shape[0], B.shape[1]))
+    for i in range(A.shape[0]):
+        for k in range(A.shape[1]):
+            a = A[i, k]
+            if a != 0.0:
+                for j in range(B.shape[1]):
+                    out[i, j] += a * B[k, j]
+    return out
+
+
+@typed("float64[:,::1](float64[:,::1], float64[:,::1])")
+def inner(A: Array, B: Array) -> Array:
+    """A^T B."""
+    out = np.zeros((A.shape[1], B.shape[1]))
+    for k in range(A.shape[0]):
+        for i in range(A.shape[1]):
+            a = A[k, i]
+            if a != 0.0:
+                for j in range(B.shape[1]):
+                    out[i, j] += a * B[k, j]
+    return out
+
+
+@typed("float64[:,::1](int64)")
+def unit(n: int) -> Array:
+    """The unit matrix."""
+    out = np.zeros((n, n))
+    for i in range(n):
+        out[i, i] = 1.0
+    return out
+
+
+@typed("float64[:,::1](float64[:,::1])")
+def transposed(A: Array) -> Array:
+    """A^T, in memory of its own."""
+    out = np.zeros((A.shape[1], A.shape[0]))
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            out[j, i] = A[i, j]
+    return out
+
+
+@typed("UniTuple(float64[:,::1], 2)(float64[:,::1])")
+def null_space(rows: Array) -> Any:
+    """Bases of the vectors that all rows annihilate and of a complement, by elimination with complete pivoting."""
+    m, n = rows.shape
+    A = np.zeros((m, n))
+    for i in range(m):
+        for j in range(n):
+            A[i, j] = rows[i, j]
+    order = np.zeros(n, np.int64)
+    for j in range(n):
+        order[j] = j
+    rank = 0
+    while rank < min(m, n):
+        best, p, q = RANK_TOLERANCE, -1, -1
+        for i in range(rank, m):
+            for j in range(rank, n):
+                if abs(A[i, j]) > best:
+                    best, p, q = abs(A[i, j]), i, j
+        if p < 0:
+            break
+        for j in range(n):
+            A[rank, j], A[p, j] = A[p, j], A[rank, j]
+        for i in range(m):
+            A[i, rank], A[i, q] = A[i, q], A[i, rank]
+        order[rank], order[q] = order[q], order[rank]
+        inverse = 1.0 / A[rank, rank]
+        for j in range(rank, n):
+            A[rank, j] *= inverse
+        for i in range(m):
+            if i != rank and A[i, rank] != 0.0:
+                ratio = A[i, rank]
+                for j in range(rank, n):
+                    A[i, j] -= ratio * A[rank, j]
+        rank += 1
+    basis, complement = np.zeros((n, n - rank)), np.zeros((n, rank))
+    for j in range(n - rank):
+        basis[order[rank + j], j] = 1.0
+        for i in range(rank):
+            if abs(A[i, rank + j]) > RANK_TOLERANCE:
+                basis[order[i], j] = -A[i, rank + j]
+    for j in range(rank):
+        complement[order[j], j] = 1.0
+    return basis, complement
+
+
+@typed("boolean(int64, int64)")
+def is_locked(kind: int, state: int) -> bool:
+    """Whether an element holds its elongation: friction that sticks, a gap that touches."""
+    return (state == 0) == (kind == FRICTION)
+
+
+@typed("int64[::1](float64[:,::1], int64[:,::1], int64[::1])")
+def independent_locks(locks: Array, elements: Array, state: Array) -> Array:
+    """Numbers of locked elements whose rows are independent; what depends on them is locked with them, without force."""
+    k, columns = locks.shape
+    basis, row = np.zeros((k, columns)), np.zeros(columns)
+    chosen = np.zeros(k, np.int64)
+    count = 0
+    for e in range(k):
+        if not is_locked(elements[e, KIND], state[e]):
+            continue
+        size = 0.0
+        for j in range(columns):
+            row[j] = locks[e, j]
+            size += row[j] ** 2
+        for _ in range(2):  # twice is enough for Gram-Schmidt
+            for i in range(count):
+                along = 0.0
+                for j in range(columns):
+                    along += basis[i, j] * row[j]
+                for j in range(columns):
+                    row[j] -= along * basis[i, j]
+        left = 0.0
+        for j in range(columns):
+            left += row[j] ** 2
+        if left > RANK_TOLERANCE**2 * size:
+            for j in range(columns):
+                basis[count, j] = row[j] / np.sqrt(left)
+            chosen[count] = e
+            count += 1
+    return chosen[:count].copy()
+
+
+@typed("boolean(float64[:,::1], float64[:,::1])")
+def solve_rows(S: Array, right: Array) -> bool:
+    """Solve S y = right for every column, rows and columns of S brought to one size; `right` becomes y."""
+    size, width = S.shape[0], right.shape[1]
+    columns = np.zeros(size)
+    for j in range(size):
+        largest = 0.0
+        for i in range(size):
+            largest = max(largest, abs(S[i, j]))
+        columns[j] = 1.0 / largest if largest > 0.0 else 1.0
+    for i in range(size):
+        largest = 0.0
+        for j in range(size):
+            S[i, j] *= columns[j]
+            largest = max(largest, abs(S[i, j]))
+        if not (largest > 0.0):
+            return False
+        for j in range(size):
+            S[i, j] /= largest
+        for j in range(width):
+            right[i, j] /= largest
+    pivots = np.zeros(size, np.int64)
+    if not factor(S, pivots):
+        return False
+    column = np.zeros(size)
+    for j in range(width):
+        for i in range(size):
+            column[i] = right[i, j]
+        solve(S, pivots, column)
+        for i in range(size):
+            right[i, j] = column[i] * columns[i]
+    return True
+
+
+@typed("void(float64[:,::1], int64, int64, float64[:,::1], float64)")
+def add(out: Array, top: int, left: int, A: Array, sign: float) -> None:
+    """Add sign * A to a block of `out`."""
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            out[top + i, left + j] += sign * A[i, j]
+
+
+@typed("float64[:,::1](float64[:,::1], int64, int64, int64, int64)")
+def block(A: Array, top: int, bottom: int, left: int, right: int) -> Array:
+    """A block of A, in memory of its own."""
+    out = np.zeros((bottom - top, right - left))
+    for i in range(bottom - top):
+        for j in range(right - left):
+            out[i, j] = A[top + i, left + j]
+    return out
+
+
+@compiled
+def build(
+    sizes: Array,
+    balance: Array,
+    rates: Array,
+    lengths: Array,
+    elements: Array,
+    limit: Array,
+    over: Array,
+    state: Array,
+    maps: Array,
+    reaction: Array,
+    limits: Array,
+) -> bool:
+    """Fill one mode's maps, reaction and limits for its elements' states; False if the mode is singular.
+
+    Arguments are those of `Mechanics`, then one row of those of `Modes`.
+    """
+    na, nw, nr, n, k = sizes[NA], sizes[NW], sizes[NR], sizes[N], sizes[K]
+    ng, nv, width, columns = n - na, na + nw, maps.shape[1], na + nw + nr
+    motion = block(rates, 0, ng, 0, columns)
+    locks = block(rates, ng, ng + k, 0, columns)
+    dampers = block(rates, ng + k, ng + k + sizes[DAMPERS], na, nv)
+    springs = block(rates, ng + k + sizes[DAMPERS], rates.shape[0], na, nv)
+    held = independent_locks(block(locks, 0, k, 0, nv), elements, state)
+    nl = held.shape[0]
+    H = np.zeros((nl, columns))
+    for i in range(nl):
+        for j in range(columns):
+            H[i, j] = locks[held[i], j]
+    H_a, H_w, H_z = block(H, 0, nl, 0, na), block(H, 0, nl, na, nv), block(H, 0, nl, nv, columns)
+
+    X, _ = null_space(H_w)
+    L, at_once = null_space(transposed(H_w))
+    undamped = product(X, null_space(product(dampers, X))[0])
+    loose, sprung = null_space(product(springs, undamped))
+    Z, Y = product(undamped, sprung), product(undamped, loose)
+    others, _ = null_space(transposed(undamped))
+
+    sides = block(balance, 0, nv, nv, nv + width)
+    on_wg, on_wz = block(sides, na, nv, na, n), block(sides, na, nv, n, n + nr)
+    for e in range(k):
+        if elements[e, KIND] == FRICTION:
+            for j in range(nv):
+                sides[j, width - 1] -= state[e] * limit[e] * locks[e, j]
+    on_w = block(sides, na, nv, 0, width)
+    S, right = np.zeros((nv + nl, nv + nl)), np.zeros((nv + nl, width))
+    add(S, 0, 0, block(balance, 0, na, 0, nv), 1.0)
+    add(S, 0, nv, transposed(H_a), 1.0)
+    add(right, 0, 0, block(sides, 0, na, 0, width), 1.0)
+    row = na
+    # balances of the massless motions that something damps or locks
+    add(S, row, na, inner(others, block(balance, na, nv, na, nv)), 1.0)
+    add(S, row, nv, inner(others, transposed(H_w)), 1.0)
+    add(right, row, 0, inner(others, on_w), 1.0)
+    row += others.shape[1]
+    # rate of the springs' balance
+    nz = Z.shape[1]
+    spring_rate = product(inner(Z, on_wg), motion)
+    add(spring_rate, 0, nv, inner(Z, on_wz), 1.0)
+    add(S, row, na, block(spring_rate, 0, nz, na, nv), -1.0)
+    add(right, row, 0, block(spring_rate, 0, nz, 0, na), 1.0)
+    add(right, row, n + nr, block(spring_rate, 0, nz, nv, columns), 1.0)
+    row += nz
+    add(S, row, na, transposed(Y), 1.0)
+    row += Y.shape[1]
+    # locks that massless motions meet at once, and locks between inertial motions
+    add(S, row, na, inner(at_once, H_w), 1.0)
+    add(right, row, 0, inner(at_once, H_a), -1.0)
+    add(right, row, n + nr, inner(at_once, H_z), -1.0)
+    row += at_once.shape[1]
+    velocity = inner(L, H_a)
+    add(S, row, 0, velocity, 1.0)
+    add(right, row, n + 2 * nr, inner(L, H_z), -1.0)
+    if not solve_rows(S, right):
+        return False
+
+    for i in range(maps.shape[0]):
+        for j in range(width):
+            maps[i, j] = 0.0
+    massless = block(right, na, nv, 0, width)
+    add(maps, 0, 0, block(right, 0, na, 0, width), 1.0)
+    add(maps, na, 0, product(block(motion, 0, ng, na, nv), massless), 1.0)
+    add(maps, na, 0, block(motion, 0, ng, 0, na), 1.0)
+    add(maps, na, n + nr, block(motion, 0, ng, nv, columns), 1.0)
+    eta, guard = sizes[ETA], sizes[GUARD]
+    add(maps, eta, 0, block(right, 0, nv, 0, width), 1.0)
+    for i in range(nl):
+        add(maps, eta + nv + held[i], 0, block(right, nv + i, nv + i + 1, 0, width), 1.0)
+    for e in range(k):
+        # what the state of each element asks: a row and the interval in which its value must stay
+        limits[e, 0], limits[e, 1] = -np.inf, np.inf
+        if limit[e] > 0.0:
+            limits[e, 0] = -limit[e] if state[e] == 0 else (0.0 if state[e] > 0 else -np.inf)
+            limits[e, 1] = limit[e] if state[e] == 0 else (0.0 if state[e] < 0 else np.inf)
+        if elements[e, KIND] == FRICTION:
+            maps[eta + nv + e, width - 1] += state[e] * limit[e]
+        if is_locked(elements[e, KIND], state[e]):  # its force
+            add(maps, guard + e, 0, block(maps, eta + nv + e, eta + nv + e + 1, 0, width), 1.0)
+        elif elements[e, KIND] == GAP:  # open: its elongation
+            add(maps, guard + e, na, block(lengths, e, e + 1, 0, ng + nr), 1.0)
+        else:  # slip: its velocity
+            add(maps, guard + e, 0, block(locks, e, e + 1, 0, na), 1.0)
+            add(maps, guard + e, n + nr, block(locks, e, e + 1, nv, columns), 1.0)
+            add(maps, guard + e, 0, product(block(locks, e, e + 1, na, nv), massless), 1.0)
+    inputs = width - 1
+    add(maps, sizes[OUTPUT], 0, block(over, 0, over.shape[0], 0, inputs), 1.0)
+    on_eta = block(over, 0, over.shape[0], inputs, over.shape[1])
+    add(maps, sizes[OUTPUT], 0, product(on_eta, block(maps, eta, sizes[ENTRY], 0, width)), 1.0)
+
+    # conditions on entry: velocities across locks, balance of springs, balance of what is loose
+    nc, entry = L.shape[1], sizes[ENTRY]
+    state[k], state[k + 1], state[k + 2] = nc, nz, Y.shape[1]
+    add(maps, entry, 0, velocity, 1.0)
+    add(maps, entry, n + nr, inner(L, H_z), 1.0)
+    add(maps, entry + nc, 0, inner(Z, on_w), 1.0)
+    add(maps, entry + nc + nz, 0, inner(Y, on_w), 1.0)
+    for i in range(n + k):
+        for j in range(reaction.shape[1]):
+            reaction[i, j] = 0.0
+    locks_w = block(locks, 0, k, na, nv)
+    impulse, inverse = transposed(velocity), unit(nc)
+    if not solve_rows(block(balance, 0, na, 0, na), impulse):
+        return False
+    if not solve_rows(product(velocity, impulse), inverse):
+        return False
+    add(reaction, 0, 0, product(impulse, inverse), -1.0)
+    forces = product(L, inverse)
+    for i in range(nl):
+        add(reaction, n + held[i], 0, block(forces, i, i + 1, 0, nc), 1.0)
+    inverse = unit(nz)
+    if not solve_rows(product(block(spring_rate, 0, nz, na, nv), Z), inverse):
+        return False
+    moved = product(Z, inverse)
+    add(reaction, na, nc, product(block(motion, 0, ng, na, nv), moved), -1.0)
+    add(reaction, n, nc, product(locks_w, moved), -1.0)
+    add(reaction, n, nc + nz, product(locks_w, Y), 1.0)
+    return True
+
+
+@typed("float64[:,::1](float64[:,::1])")
+def exponential(X: Array) -> Array:
+    """exp(X), by a Taylor series of a scaled X and repeated squaring."""
+    n = X.shape[0]
+    norm = 0.0
+    for i in range(n):
+        total = 0.0
+        for j in range(n):
+            total += abs(X[i, j])
+        norm = max(norm, total)
+    squarings = 0
+    while norm > 0.5:
+        norm *= 0.5
+        squarings += 1
+    scaled, term, total_term = block(X, 0, n, 0, n), unit(n), unit(n)
+    for i in range(n):
+        for j in range(n):
+            scaled[i, j] = np.ldexp(X[i, j], -squarings)
+    for k in range(1, 15):  # 0.5^15 / 15! is below rounding
+        term = product(term, scaled)
+        for i in range(n):
+            for j in range(n):
+                term[i, j] /= k
+        add(total_term, 0, 0, term, 1.0)
+    for _ in range(squarings):
+        total_term = product(total_term, total_term)
+    return total_term
+
+
+@compiled
+def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -> float:
+    """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
+
+    The input over the step is a cubic: a chain of four integrators for every road and force stands for it. Returns
+    how far a Taylor series of the flow serves [s].
+    """
+    n, nr, k = sizes[N], sizes[NR], sizes[K]
+    channels = nr + maps.shape[1] - 1 - n - 3 * nr
+    size = n + 4 * channels + 1
+    rate, guards = np.zeros((n, size)), np.zeros((k, size))
+    outputs = np.zeros((sizes[OUTPUTS], size))
+    over_chains(maps, 0, n, nr, h, rate)
+    over_chains(maps, sizes[GUARD], n, nr, h, guards)
+    over_chains(maps, sizes[OUTPUT], n, nr, h, outputs)
+    chain = np.zeros((size, size))
+    add(chain, 0, 0, rate, h)
+    for c in range(channels):
+        for j in range(3):
+            chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
+    exact = exponential(chain)
+    into_knots(block(exact, 0, n, 0, size), n, used, steps, 0)
+    into_knots(product(guards, exact), n, used, steps, n)
+    into_knots(guards, n, used, steps, n + k)
+    into_knots(product(outputs, exact), n, used, steps, n + 3 * k)
+    _bound_sway(guards, chain, n, used, steps, n + 2 * k)
+    return 1.0 / max(growth(maps, n), 1e-9)
+
+
+@typed("void(float64[:,::1], int64, int64, int64, float64, float64[:,::1])")
+def over_chains(maps: Array, first: int, n: int, nr: int, h: float, out: Array) -> None:
+    """Rows of maps, from `first` on, over the state, the chains of integrators, and 1."""
+    last, size = maps.shape[1] - 1, out.shape[1]
+    for i in range(out.shape[0]):
+        row = maps[first + i]
+        for j in range(n):
+            out[i, j] = row[j]
+        for c in range(nr):
+            out[i, n + 4 * c] = row[n + c]
+            out[i, n + 4 * c + 1] = row[n + nr + c] / h
+            out[i, n + 4 * c + 2] = row[n + 2 * nr + c] / (h * h)
+        for c in range(last - n - 3 * nr):
+            out[i, n + 4 * (nr + c)] = row[n + 3 * nr + c]
+        out[i, size - 1] = row[last]
+
+
+@typed("void(float64[:,::1], int64, int64[::1], float64[:,::1], int64)")
+def into_knots(rows: Array, n: int, used: Array, out: Array, top: int) -> None:
+    """Rows over the chains at the start of a step as rows over the numbers z0, z1 - z0, h z0', h z1' of cubics."""
+    size = rows.shape[1]
+    numbers = np.zeros(size - 1 - n)
+    for i in range(rows.shape[0]):
+        for c in range(0, size - 1 - n, 4):
+            y0, y1, y2, y3 = rows[i, n + c], rows[i, n + c + 1], rows[i, n + c + 2], rows[i, n + c + 3]
+            numbers[c] = y0
+            numbers[c + 1] = 6.0 * y2 - 12.0 * y3
+            numbers[c + 2] = y1 - 4.0 * y2 + 6.0 * y3
+            numbers[c + 3] = 6.0 * y3 - 2.0 * y2
+        for j in range(n):
+            out[top + i, j] = rows[i, j]
+        for j in range(used.shape[0]):
+            out[top + i, n + j] = numbers[used[j]]
+        out[top + i, n + used.shape[0]] = rows[i, size - 1]
+
+
+@typed("void(float64[:,::1], float64[:,::1], int64, int64[::1], float64[:,::1], int64)")
+def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, top: int) -> None:
+    """One eighth of the largest second derivative of each guard over a step, as weights on absolute values."""
+    k, columns = guards.shape[0], n + used.shape[0] + 1
+    term, power = np.zeros((k, columns)), guards
+    for i in range(k):
+        for j in range(columns):
+            steps[top + i, j] = 0.0
+    for order in range(1, 60):
+        power = product(power, chain)
+        largest = 0.0
+        for i in range(k):
+            for j in range(chain.shape[0]):
+                power[i, j] /= order
+                largest = max(largest, abs(power[i, j]))
+        if largest == 0.0:
+            break
+        into_knots(power, n, used, term, 0)
+        for i in range(k):
+            for j in range(columns):
+                steps[top + i, j] += order * (order - 1) / 8.0 * abs(term[i, j])
+
+
+@typed("float64(float64[:,::1], int64)")
+def growth(maps: Array, n: int) -> float:
+    """About the spectral radius of the state matrix, from above: the 32nd root of a norm of its 32nd power [1/s]."""
+    A = block(maps, 0, n, 0, n)
+    logarithm, power = 0.0, 1.0
+    for _ in range(6):
+        norm = 0.0
+        for i in range(n):
+            total = 0.0
+            for j in range(n):
+                total += abs(A[i, j])
+            norm = max(norm, total)
+        if norm == 0.0:
+            return 0.0
+        logarithm += power * np.log(norm)
+        for i in range(n):
+            for j in range(n):
+                A[i, j] /= norm
+        A = product(A, A)
+        power *= 0.5
+    return float(np.exp(logarithm))

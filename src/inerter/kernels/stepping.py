@@ -1,0 +1,331 @@
+"""The loop over the steps of a time-stepping integrator: a linear prediction, then friction and contact solved exactly.
+
+A step starts from what is known: (displacements, momenta, inputs, 1). One product gives what it would be without
+reactions; the reactions of frictions and gaps then follow from a small complementarity problem with a constant matrix:
+
+    rate = drift - G force, where
+    a friction has |force| <= size, force = +-size while it slides with rate above or below its aim;
+    a gap has aim - size <= rate <= aim + size, force >= 0 at the upper bound, <= 0 at the lower one, else zero;
+    a tied reaction has rate = aim, whatever its force.
+
+All that is about reactions stands in one array with a column each, because a call costs time for each array. It is
+cheap if the function has one loop nest only and no loop under a condition; others count references at each call.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from inerter.kernels import compiled
+
+Array = Any  # compiled code is typed when it is compiled
+
+ROWS = 8  # of the array of reactions; side is -1, 0 or 1: sliding or touching there, or neither
+KIND, SIZE, DRIFT, AIM, SIDE, SPEED, BETTER, HELD = 0, 1, 2, 3, 4, 5, 6, 7
+FRICTION, GAP, TIED = 0.0, 1.0, 2.0  # tied: a gap of no width, or the motion of a loose node
+DONE, STUCK, INFINITE = 0, 1, 2  # how a march ended: as it should, without reactions that fit, with nonsense
+LIMIT = 400  # solutions tried before a complementarity problem is given up
+PATIENCE = 8  # block changes without progress, before only one reaction is changed at a time
+ROUNDING = 1e-12  # part of the largest rate below which that of another one tells nothing
+
+
+@compiled
+def times(A: Array, x: Array, out: Array) -> None:
+    """Multiply: out = A x."""
+    for i in range(A.shape[0]):
+        total = 0.0
+        for j in range(A.shape[1]):
+            total += A[i, j] * x[j]
+        out[i] = total
+
+
+@compiled
+def observe(rows: Array, known: Array, weight: float, out: Array, at: int) -> None:
+    """Add `weight` times the observed quantities to one sample."""
+    for i in range(rows.shape[0]):
+        total = 0.0
+        for j in range(rows.shape[1]):
+            total += rows[i, j] * known[j]
+        out[at, i] += weight * total
+
+
+@compiled
+def eliminate(changed: bool, A: Array, pivots: Array) -> bool:
+    """LU factors in place of A if it is `changed`, with partial pivoting; False if it is singular."""
+    n = A.shape[0] if changed else 0
+    regular = True
+    for k in range(n):
+        best, row = abs(A[k, k]), k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > best:
+                best, row = abs(A[i, k]), i
+        regular = regular and best > 0.0
+        pivots[k] = row
+        for j in range(k, n):
+            A[k, j], A[row, j] = A[row, j], A[k, j]
+        for i in range(k + 1, n):
+            ratio = A[i, k] / A[k, k]
+            A[i, k] = ratio
+            for j in range(k + 1, n):
+                A[i, j] -= ratio * A[k, j]
+    return regular
+
+
+@compiled
+def forward(LU: Array, pivots: Array, b: Array) -> None:
+    """The first half of solving A x = b."""
+    n = LU.shape[0]
+    for k in range(n):
+        here = b[pivots[k]]
+        b[pivots[k]] = b[k]
+        b[k] = here
+        for i in range(k + 1, n):
+            b[i] -= LU[i, k] * here
+
+
+@compiled
+def backward(LU: Array, b: Array) -> None:
+    """The second half: b becomes x."""
+    n = LU.shape[0]
+    for k in range(n):
+        i = n - 1 - k
+        total = b[i]
+        for j in range(i + 1, n):
+            total -= LU[i, j] * b[j]
+        b[i] = total / LU[i, i]
+
+
+@compiled
+def weigh(law: Array, weight: Array) -> None:
+    """How easily a reaction takes a rate that inertia gives to several: frictions that slid do, in proportion.
+
+    A friction that stuck or a gap that was closed takes next to nothing. One that was open takes nearly all: -1.
+    """
+    largest = 1e-300
+    for i in range(weight.shape[0]):
+        weight[i] = 0.0
+        if law[KIND, i] == FRICTION and law[SIDE, i] != 0.0:
+            weight[i] = law[SPEED, i]
+            largest = max(largest, weight[i])
+        if law[KIND, i] == GAP and law[SIDE, i] == 0.0:
+            weight[i] = -1.0
+    for i in range(weight.shape[0]):
+        if weight[i] >= 0.0:
+            weight[i] = weight[i] / largest + 1e-9
+
+
+@compiled
+def combine(Z: Array, guess: Array, at: int, weight: Array, Q: Array, taken: Array) -> None:
+    """Equations for a (what each reaction takes) and multipliers m: a = weight Z' m and Z a = rates."""
+    count, size = Z.shape
+    for i in range(size + count):
+        taken[i] = 0.0
+        for j in range(size + count):
+            Q[i, j] = 0.0
+        for a in range(count if i < size else 0):
+            Q[i, i] = 1.0 if weight[i] >= 0.0 else 1e-9
+            Q[i, size + a] = -abs(weight[i]) * Z[a, i]
+        for j in range(size if i >= size else 0):
+            taken[i] = guess[at + i - size]
+            Q[i, j] = Z[i - size, j]
+
+
+@compiled
+def shift(weight: Array, taken: Array, law: Array) -> None:
+    """Add to the aims of frictions what they take."""
+    for i in range(weight.shape[0]):
+        if law[KIND, i] == FRICTION:
+            law[AIM, i] += taken[i]
+
+
+@compiled
+def hold(law: Array, force: Array) -> bool:
+    """Set up the forces for the present sides: right sides where a reaction holds, and the force itself where not.
+
+    True if other reactions hold than before.
+    """
+    changed = False
+    for i in range(force.shape[0]):
+        kind, side = law[KIND, i], law[SIDE, i]
+        reach, holds = side * law[SIZE, i], 0.0
+        if kind == TIED or (side == 0.0) == (kind == FRICTION):
+            holds = 1.0
+            force[i] = law[DRIFT, i] - law[AIM, i]
+            if kind == GAP:
+                force[i] -= reach
+        else:
+            force[i] = 0.0
+            if kind == FRICTION:
+                force[i] = reach
+        if law[HELD, i] != holds:
+            changed = True
+        law[HELD, i] = holds
+    return changed
+
+
+@compiled
+def collect(changed: bool, G: Array, law: Array, LU: Array) -> None:
+    """The equations of the forces, if they are `changed`."""
+    for i in range(G.shape[0] if changed else 0):
+        for j in range(G.shape[0]):
+            LU[i, j] = G[i, j] * law[HELD, i]
+        LU[i, i] += 1.0 - law[HELD, i]
+
+
+@compiled
+def misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
+    """How many reactions do not fit their side, and the last of them; notes on which side each should be."""
+    count, last = 0, -1
+    for i in range(G.shape[0]):
+        kind, side, size = law[KIND, i], law[SIDE, i], law[SIZE, i]
+        rate = law[DRIFT, i]
+        for j in range(G.shape[0]):
+            rate -= G[i, j] * force[j]
+        law[SPEED, i] = abs(rate)
+        above, better = rate - law[AIM, i], side
+        if kind == FRICTION and side == 0.0:
+            if abs(force[i]) > size:
+                better = 1.0 if force[i] > 0.0 else -1.0
+        elif kind == FRICTION:
+            if side * above < -slack:
+                better = 0.0
+        elif kind == GAP and side == 0.0:
+            if abs(above) > size + slack:
+                better = 1.0 if above > 0.0 else -1.0
+        elif kind == GAP and side * force[i] < 0.0:
+            better = 0.0
+        law[BETTER, i] = better
+        if better != side:
+            count += 1
+            last = i
+    return count, last
+
+
+@compiled
+def feed(inputs: Array, step: int, known: Array, at: int) -> None:
+    """The inputs of a step to their places."""
+    for j in range(inputs.shape[1]):
+        known[at + j] = inputs[step, j]
+
+
+@compiled
+def take(guess: Array, at: int, law: Array) -> float:
+    """Rates and aims without reactions to their places; how small a rate must be for its sign to mean nothing."""
+    count, largest = law.shape[1], 0.0
+    for i in range(count):
+        law[DRIFT, i] = guess[at + i]
+        law[AIM, i] = guess[at + count + i]
+        largest = max(largest, abs(guess[at + i]), abs(guess[at + count + i]))
+    return ROUNDING * largest
+
+
+@compiled
+def change(law: Array, least: int) -> None:
+    """Reactions from `least` on change to the side where they should be."""
+    for i in range(least, law.shape[1]):
+        law[SIDE, i] = law[BETTER, i]
+
+
+@compiled
+def slow(guess: Array, pull: Array, force: Array, known: Array, at: int) -> float:
+    """Mean velocities and forces of the step to their places; their sum tells whether they are numbers."""
+    n, count = pull.shape
+    total = 0.0
+    for i in range(n):
+        w = guess[i]
+        for j in range(count):
+            w -= pull[i, j] * force[j]
+            known[at + n + j] = force[j]
+        known[at + i] = w
+        total += w
+    return total
+
+
+@compiled
+def move(inertia: Array, moved: Array, h: float, known: Array, at: int) -> None:
+    """Displacements and momenta from the start of the step to its end."""
+    n = inertia.shape[0]
+    for i in range(n):
+        momentum = -known[n + i]
+        for j in range(n):
+            momentum += inertia[i, j] * known[at + j]
+        for j in range(moved.shape[1]):
+            momentum += moved[i, j] * known[2 * n + j]
+        known[n + i] = momentum
+        known[i] += h * known[at + i]
+
+
+@compiled
+def march(
+    predict: Array,
+    G: Array,
+    pull: Array,
+    Z: Array,
+    inertia: Array,
+    moved: Array,
+    h: float,
+    starts: Array,
+    ends: Array,
+    inputs: Array,
+    first: int,
+    total: int,
+    every: int,
+    known: Array,
+    law: Array,
+    scratch: Array,
+    out: Array,
+) -> Any:
+    """Step through `inputs`, which begin at step `first` of `total`; `known` and `law` are kept for the next ones.
+
+    known: displacements (n), momenta (n), inputs, 1, mean velocities (n), reactions. predict: rows over the first four
+    for mean velocities, rates, aims and shared rates. pull (n, reactions): the mean velocity that a unit reaction takes
+    away. inertia (n, n), moved (n, inputs): twice the mean momenta of mean velocities and inputs. starts, ends: what is
+    observed at a sample, from the step after it and from the step before it; a sample is the mean of both.
+
+    Z: combinations of reactions whose rates, the last of `predict`, inertia carries. The aims of their frictions get
+    the vector a with Z a = rates of least sum a_i^2 / weight_i.
+
+    Reactions: start from the sides of the step before; all misfits change at once while their number falls, then only
+    the last one, which comes to an end for every P-matrix. Source: Judice and Pires (1994), block principal pivoting
+    for linear complementarity problems with bounds.
+
+    Returns how it ended and the step that it reached.
+    """
+    n, count = pull.shape
+    guess, force, LU, pivots, weight, taken, Q, order = scratch
+    w = known.shape[0] - n - count
+    sample, left = (first + every - 1) // every, -first % every  # the next one, and the steps until then
+    for now in range(first, first + inputs.shape[0]):
+        feed(inputs, now - first, known, 2 * n)
+        times(predict, known, guess)
+        slack = take(guess, n, law)
+        for _ in range(min(Z.shape[0], 1)):
+            weigh(law, weight)
+            combine(Z, guess, n + 2 * count, weight, Q, taken)
+            eliminate(True, Q, order)
+            forward(Q, order, taken)
+            backward(Q, taken)
+            shift(weight, taken, law)
+        wrong, fewest, patience, tried = 1, count + 1, PATIENCE, 0
+        while wrong > 0 and tried < LIMIT:
+            changed = hold(law, force)
+            collect(changed, G, law, LU)
+            eliminate(changed, LU, pivots)
+            forward(LU, pivots, force)
+            backward(LU, force)
+            wrong, last = misfits(G, law, force, slack)
+            tried, patience = tried + 1, patience - 1
+            if wrong < fewest:
+                fewest, patience = wrong, PATIENCE
+            change(law, 0 if patience >= 0 else last)
+        check = slow(guess, pull, force, known, w)
+        if wrong > 0 or not abs(check) < 1e300:
+            return STUCK if wrong > 0 else INFINITE, now
+        if left == 0:
+            observe(starts, known, 1.0 if now == 0 else 0.5, out, sample)
+            sample, left = sample + 1, every
+        left -= 1
+        if left == 0:
+            observe(ends, known, 1.0 if now + 1 == total else 0.5, out, sample)
+        move(inertia, moved, h, known, w)
+    return DONE, first + inputs.shape[0]

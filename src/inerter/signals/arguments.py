@@ -1,0 +1,123 @@
+"""Checks of what signals are made of."""
+
+from __future__ import annotations
+
+from numbers import Integral
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import check_positive, is_number
+from inerter.errors import SignalError
+
+Array = NDArray[np.float64]
+
+MOST = 10**8  # entries of one signal: 0.8 GB
+
+
+def number(what: str, value: object, unit: str) -> float:
+    """`value` as a float; raises `SignalError` unless it is a finite number."""
+    if not is_number(value):
+        raise SignalError(f"{what} must be a finite number of {unit}, got {value!r}.")
+    return float(value)
+
+
+def positive(what: str, value: object, unit: str) -> float:
+    """`value` as a float; raises `SignalError` unless it is positive and finite."""
+    check_positive(SignalError, what, value, unit)
+    return float(value)  # type: ignore[arg-type]
+
+
+def band(what: str, lowest: object, highest: object) -> tuple[float, float]:
+    """Two frequencies [Hz]; raises `SignalError` unless both are positive and in order."""
+    low = positive(f"The lowest frequency of a {what}", lowest, "Hz")
+    high = positive(f"The highest frequency of a {what}", highest, "Hz")
+    if low > high:
+        raise SignalError(
+            f"The lowest frequency of a {what} must not exceed the highest, got {low:g} and {high:g} Hz. "
+            f"Swap them if they are reversed."
+        )
+    return low, high
+
+
+def speed_or_none(value: object) -> float | None:
+    """The speed of a vehicle [m/s], or None where it is not known."""
+    return None if value is None else positive("The speed of a signal", value, "m/s")
+
+
+def generator(seed: object) -> np.random.Generator:
+    """Random numbers that the seed alone decides."""
+    if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
+        raise SignalError(f"A seed must be a whole number from 0 on, got {seed!r}.")
+    return np.random.default_rng(int(seed))
+
+
+def real_array(what: str, values: object) -> Array:
+    """`values` as an array of any shape; raises `SignalError` unless all are finite real numbers."""
+    try:
+        given: NDArray[Any] = np.asarray(values)
+    except (TypeError, ValueError):
+        raise SignalError(f"{what} must be real numbers, got a {type(values).__name__} that makes no array.") from None
+    if given.size and given.dtype.kind not in "iuf":
+        raise SignalError(f"{what} must be real numbers, got {_kind(given, values)}.")
+    array = given.astype(float)
+    if not np.isfinite(array).all():
+        worst = int(np.argmin(np.isfinite(array)))
+        raise SignalError(f"{what} must be finite, but entry {worst} is {array.flat[worst]}.")
+    return array
+
+
+def real_vector(what: str, values: object) -> Array:
+    """`values` as a read-only array of one dimension."""
+    array = real_array(what, values)
+    if array.ndim != 1:
+        raise SignalError(f"{what} must be a one-dimensional array, got one of shape {array.shape}.")
+    array.setflags(write=False)
+    return array
+
+
+def whole_number(length: float, interval: float, what: str) -> int:
+    """How often `interval` goes into `length`; raises `SignalError` unless that is a whole number."""
+    ratio = length / interval
+    if ratio > MOST:
+        raise SignalError(
+            f"{what} of {length:g} s holds {ratio:.3g} intervals of {interval:g} s; at most 1e8 are kept."
+        )
+    count = round(ratio)
+    if count < 1 or abs(ratio - count) > 1e-6:
+        raise SignalError(
+            f"{what} of {length:g} s is not a whole number of intervals of {interval:g} s. "
+            f"Take an interval such as {length / max(count, 1):.12g} s."
+        )
+    return count
+
+
+def slack(time: Any, interval: float | None) -> Any:
+    """How far a time may miss the knot that it means, by rounding; 1e-12 s where there is no table."""
+    return 1e-9 * (interval or 1e-3) + 4.0 * np.finfo(float).eps * np.abs(time)
+
+
+def between(times: Array, start: float, stop: float, interval: float | None = None) -> Array:
+    """Those of `times` that lie between `start` and `stop` by more than rounding."""
+    check_span(start, stop)
+    inside: NDArray[np.bool_] = (times > start + slack(start, interval)) & (times < stop - slack(stop, interval))
+    return times[inside]
+
+
+def checked_grid(start: float, step: float, count: int) -> Array:
+    """The times of a uniform grid."""
+    number("The start of a grid", start, "s")
+    positive("The step of a grid", step, "s")
+    if not isinstance(count, Integral) or isinstance(count, bool) or not 0 <= count <= MOST:
+        raise SignalError(f"The count of a grid must be a whole number from 0 to 1e8, got {count!r}.")
+    return start + step * np.arange(int(count))
+
+
+def check_span(start: object, stop: object) -> None:
+    number("The start of a span", start, "s")
+    number("The end of a span", stop, "s")
+
+
+def _kind(array: NDArray[Any], values: object) -> str:
+    return repr(values) if isinstance(values, str | bool | complex) or values is None else f"an array of {array.dtype}"

@@ -1,0 +1,116 @@
+"""Tables that come from elsewhere: held random numbers, and measured road profiles."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+
+from inerter.errors import SignalError, UnitError
+from inerter.signals.arguments import generator, positive, whole_number
+from inerter.signals.signal import Sampled, Signal
+from inerter.units import parse_quantity, shown
+
+_HEADING = re.compile(r"\s*(distance|height)\s*\[([^\]]+)\]\s*", re.IGNORECASE)
+_EXAMPLE = 'such as "distance [m], height [mm]"'
+
+
+def held_noise(
+    seed: int, power: float, interval: float = 1e-3, duration: float = 100.0, speed: float | None = None
+) -> Sampled:
+    """Band-limited white noise: independent normal samples, each held for `interval`, that repeat after `duration` [s].
+
+    `power` is the two-sided density [unit^2/Hz] at low frequencies, so a sample has the standard deviation
+    sqrt(power / interval): 3.162 mm for 1e-8 m^2/Hz and 1 ms. Source: Wang and Su (2008), the approximated linear
+    model.
+
+    Raises `SignalError` unless `power` is positive, `duration` is a whole number of intervals and `seed` is a whole
+    number from 0 on.
+    """
+    power = positive("The power of a noise", power, "its unit squared per Hz")
+    interval = positive("The interval of a noise", interval, "s")
+    duration = positive("The duration of a noise", duration, "s")
+    count = whole_number(duration, interval, "A duration")
+    value = math.sqrt(power / interval) * generator(seed).standard_normal(count)
+    label = f"noise of {power:g} per Hz, held for {interval:g} s, seed {seed}"
+    time = np.linspace(0.0, duration, count + 1)
+    return Signal.sampled(time, np.resize(value, count + 1), "zero", periodic=True, speed=speed, label=label)
+
+
+def profile(path: str | os.PathLike[str], speed: float) -> Sampled:
+    """A measured road, driven at `speed` [m/s] from its first point at t = 0.
+
+    `path` is a CSV file with a column of distances and one of heights, whose units stand in the header, such as
+    `distance [m], height [mm]`. The points are joined by a cubic spline.
+
+    Raises `SignalError`, which names the line, for a file that cannot be read as such.
+    """
+    speed = positive("The speed over a profile", speed, "m/s")
+    if not isinstance(path, str | os.PathLike):
+        raise SignalError(f"A profile is read from the path of a CSV file, got {path!r}.")
+    name = os.fspath(path)
+    heading, *rows = _rows(name)
+    order, scales = _header(name, *heading)
+    points: list[list[float]] = []
+    for line, cells in rows:
+        numbers = [_number(name, line, cell) * scale for cell, scale in zip(cells, scales, strict=True)]
+        points.append([numbers[column] for column in order])
+        if len(points) > 1 and points[-1][0] <= points[-2][0]:
+            raise SignalError(
+                f"{name}, line {line}: the distances of a profile must increase, got {points[-1][0]:.9g} m "
+                f"after {points[-2][0]:.9g} m."
+            )
+    if len(points) < 2:
+        raise SignalError(f"{name}: a profile needs at least two points, got {len(points)}.")
+    distance, height = np.array(points).T
+    return Signal.sampled((distance - distance[0]) / speed, height, speed=speed, label=f"profile {Path(name).name}")
+
+
+def _rows(name: str) -> list[tuple[int, list[str]]]:
+    """The lines that are not empty, numbered, each of two cells; at least one."""
+    try:
+        with open(name, encoding="utf-8-sig", newline="") as file:
+            reader = csv.reader(file, strict=True)
+            rows = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
+    except FileNotFoundError:
+        raise SignalError(f"There is no file {name!r}, looked for in {os.getcwd()!r}.") from None
+    except (OSError, ValueError, csv.Error) as problem:
+        raise SignalError(f"The profile {name!r} cannot be read as a CSV file: {problem}.") from None
+    for line, cells in rows:
+        if len(cells) != 2:
+            raise SignalError(
+                f"{name}, line {line}: expected two cells with a comma between them, "
+                f"got {len(cells)} in {shown(','.join(cells))}."
+            )
+    if not rows:
+        raise SignalError(f"The profile {name!r} is empty: expected a header, {_EXAMPLE}, and at least two points.")
+    return rows
+
+
+def _header(name: str, line: int, cells: list[str]) -> tuple[list[int], list[float]]:
+    """The columns of distance and height, and the size of each column's unit [m]."""
+    found = [_HEADING.fullmatch(cell) for cell in cells]
+    names = [match[1].lower() if match else "" for match in found]
+    if sorted(names) != ["distance", "height"]:
+        raise SignalError(
+            f"{name}, line {line}: expected a header with units, {_EXAMPLE}, got {shown(','.join(cells))}."
+        )
+    try:
+        scales = [parse_quantity(f"1 {match[2].strip()}", "m") for match in found if match]
+    except UnitError as problem:
+        raise SignalError(f"{name}, line {line}: {problem}") from None
+    return [names.index("distance"), names.index("height")], scales
+
+
+def _number(name: str, line: int, cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise SignalError(f"{name}, line {line}: expected a finite number with a decimal point, got {shown(cell)}.")
+    return value

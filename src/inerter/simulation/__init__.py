@@ -1,0 +1,1 @@
+"""Motions with real friction and backlash: two integrators, and the trajectories that they leave."""

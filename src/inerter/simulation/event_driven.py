@@ -1,0 +1,202 @@
+"""The event-driven integrator: compiled kernels on arrays, and the room that they need."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import OK, Status, StatusKind
+from inerter.kernels import events as kernel
+from inerter.kernels.march import march_of
+from inerter.kernels.modes import ENTRY, ETA, Mechanics, Modes, build, discretise
+from inerter.networks.elements import Damper
+from inerter.simulation.inputs import InputTable
+from inerter.systems.outputs import Output
+from inerter.systems.piecewise import PiecewiseSystem, output_rows
+
+Matrix = NDArray[np.float64]
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+
+
+@dataclass
+class Integration:
+    """One integration under way: the modes met so far, the state now and what has been recorded."""
+
+    system: PiecewiseSystem
+    table: InputTable
+    march: Any
+    mechanics: Mechanics
+    modes: Modes
+    used: NDArray[np.int64]
+    work: Matrix
+    flags: NDArray[np.int64]
+    place: NDArray[np.int64]
+    record: kernel.Record
+    account: bool = False
+    count: int = 0
+    status: Status = OK
+    warning: Status = OK  # of a run that went to its end
+
+    def advance(self, stop: int) -> None:
+        """Integrate up to knot `stop`, or until something is wrong, which `status` then tells."""
+        while self.status.ok:
+            m, c = self.modes, self.mechanics
+            now = kernel.Work(
+                self.work, self.flags, self.place, c.sizes, c.elements, c.limit,
+                m.number, m.state, m.maps, m.reaction, m.limits, m.reach,
+            )  # fmt: skip
+            code = kernel.integrate(self.march, m.steps, now, self.record, self.table.step, stop)
+            if code == kernel.DONE:
+                return
+            if code == kernel.MODE_UNKNOWN:
+                if not self._build(self.flags[kernel.TRIAL]):
+                    self.status = self._failed(_SINGULAR)
+            elif code == kernel.EVENTS_FULL:
+                events = self.record.events
+                self.record = self.record._replace(events=np.concatenate([events, np.empty_like(events)]))
+            else:
+                self.status = self._failed(_FAILURES[code])
+
+    def _build(self, states: NDArray[np.int64]) -> bool:
+        """Add the mode in which the nonlinear elements are in these states."""
+        if self.count == self.modes.reach.shape[0]:
+            more = (np.concatenate([array, np.zeros_like(array)]) for array in self.modes[1:])
+            self.modes = Modes(self.modes.number, *more)
+        modes, m, self.count = self.modes, self.count, self.count + 1
+        modes.state[m, : states.size] = states
+        modes.number[int("".join(str(state + 1) for state in states) or "0", 3)] = m
+        if not build(*self.mechanics, modes.state[m], modes.maps[m], modes.reaction[m], modes.limits[m]):
+            return False
+        modes.reach[m] = discretise(self.mechanics.sizes, self.used, modes.maps[m], modes.steps[m], self.table.step)
+        return True
+
+    @property
+    def now(self) -> float:
+        """Time reached [s]."""
+        return float(self.record.time[self.place[kernel.SEGMENT]] + self.work[kernel.CLOCK, 0])
+
+    @property
+    def state(self) -> Matrix:
+        """State now."""
+        return self.work[kernel.STATE, : self.system.order].copy()
+
+    @property
+    def eta(self) -> slice:
+        """Rows of the maps that hold a', w and the nonlinear elements' forces."""
+        return slice(int(self.mechanics.sizes[ETA]), int(self.mechanics.sizes[ENTRY]))
+
+    def mismatch(self, before: Matrix) -> float:
+        """Change of the state since `before`, relative to the largest velocity, or position, so far."""
+        na, n = self.system.motions[0].shape[1], self.system.order
+        change, scale = np.abs(self.state - before), self.work[kernel.SCALE, :n]
+        parts = (slice(0, na), slice(na, n))
+        return max(float(change[p].max(initial=0.0) / max(scale[p].max(initial=0.0), 1e-300)) for p in parts)
+
+    def _failed(self, why: str) -> Status:
+        return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; nothing comes after that")
+
+
+_FAILURES = {
+    kernel.CHATTER: "the elements change their states without end (chattering)",
+    kernel.IMPACT: "two inertias meet without compliance between them",
+    kernel.NO_MODE: "no combination of slip, stick and contact can go on",
+    kernel.NOT_FINITE: "the motion grows beyond all bounds",
+}
+_SINGULAR = "the forces in a combination of slip, stick and contact are not determined"
+
+
+def start(
+    system: PiecewiseSystem,
+    table: InputTable,
+    state: Matrix,
+    outputs: Sequence[str] = (),
+    *,
+    keep: bool = True,
+    account: bool = False,
+    settled: int = 0,
+) -> Integration:
+    """An integration at its beginning.
+
+    `keep` the states at all samples; `outputs` are to be squared and added up from knot `settled` on; `account` for
+    the energy.
+    """
+    n, nu, k = system.order, system.inputs, len(system.nonlinear)
+    na, nw = (motion.shape[1] for motion in system.motions[:2])
+    rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])
+    over = np.array([np.concatenate(row) for row in rows]).reshape(len(rows), n + nu + na + nw + k)
+    roads, channels = len(system.mechanism.roads), table.value.shape[1]
+    used = _used(system, table, bool(rows))
+    starts = np.cumsum([0, n, k, na + nw + k, nw + k, len(rows)])
+    dampers = sum(isinstance(b.element, Damper) for b in system.graph.branches)
+    mechanics = Mechanics(
+        sizes=np.array([na, nw, roads, n, k, dampers, len(outputs), *starts[1:5]], dtype=np.int64),
+        **vars(system.mechanics),
+        over=over,
+    )
+    branches = system.graph.branches if account else ()
+    samples, channels = table.samples if keep else 0, table.value.shape[1]
+    work = np.zeros((kernel.ROWS, max(64, 2 * n + 3 * k + used.size + 1, nu, 4 * channels, channels + len(branches))))
+    work[kernel.STATE, :n], work[kernel.SCALE, :n] = state, np.abs(state)
+    record = kernel.Record(
+        time=table.time,
+        value=table.value,
+        slope=table.slope,
+        value_before=table.value_before,
+        slope_before=table.slope_before,
+        special=table.special,
+        slot=table.slot,
+        states=np.empty((samples, n)),
+        visited=np.zeros(samples, np.int64),
+        sums=np.zeros(len(outputs)),
+        events=np.empty((256, 4)),
+        branch_road=np.array([b.roads for b in branches]).reshape(len(branches), roads),
+        gauss=np.array([0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS]),
+    )
+    record.states[:1] = state
+    place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0], np.int64)
+    march = march_of(n, tuple(used.tolist()), k, len(outputs))
+    capacity, width = min(3**k, 9), n + nu + 1
+    modes = Modes(
+        number=np.full(3**k, -1, np.int64),
+        state=np.zeros((capacity, k + 3), np.int64),
+        maps=np.zeros((capacity, int(starts[5]), width)),
+        reaction=np.zeros((capacity, n + k, nw + k)),
+        limits=np.zeros((capacity, k, 2)),
+        steps=np.zeros((capacity, n + 3 * k + len(outputs), n + used.size + 1)),
+        reach=np.zeros(capacity),
+    )
+    flags = np.zeros((3, k), np.int64)
+    return Integration(system, table, march, mechanics, modes, used, work, flags, place, record, account)
+
+
+def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[np.int64]:
+    """Which of the knot numbers matter: none of an input at rest, and of a road most often not its height."""
+    n, roads = system.order, len(system.mechanism.roads)
+    na, nw = (motion.shape[1] for motion in system.motions[:2])
+    mechanics = system.mechanics
+    heights = (
+        outputs
+        or np.any(mechanics.balance[:, na + nw + n : na + nw + n + roads])
+        or np.any(mechanics.lengths[:, n - na :])
+    )
+    moving = np.any(table.value, axis=0) | np.any(table.slope, axis=0)
+    numbers = range(4 * moving.size)
+    return np.array([i for i in numbers if moving[i // 4] and (i % 4 or i >= 4 * roads or heights)], dtype=np.int64)
+
+
+def energy_rows(system: PiecewiseSystem) -> list[tuple[Matrix, Matrix, Matrix]]:
+    """Rates, then forces, of all branches, then velocities of the ports of external forces."""
+    count, nodes = len(system.graph.branches), len(system.graph.nodes)
+    rows = []
+    for b in system.graph.branches:
+        rows.append(output_rows(system, Output("", "", "", velocity=b.nodes, road_velocity=b.roads)))
+    rows += [output_rows(system, Output("", "", "", forces=row)) for row in np.eye(count)]
+    for force in system.mechanism.forces:
+        port = np.zeros(nodes)
+        port[: len(system.mechanism.coordinates)] = [force.port.get(c.name, 0.0) for c in system.mechanism.coordinates]
+        rows.append(output_rows(system, Output("", "", "", velocity=port)))
+    return rows

@@ -1,0 +1,216 @@
+"""Signals along the knots of an integration: one cubic for every input between two knots."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import check_positive
+from inerter.errors import SimulationError
+from inerter.signals.signal import Signal
+from inerter.vehicle.mechanism import Mechanism
+
+Matrix = NDArray[np.float64]
+_SAME = 1e-9  # of a step: knots that differ by less are one
+MEMORY_LIMIT = 4 * 2**30
+
+
+@dataclass(frozen=True, eq=False)
+class InputTable:
+    """Values and slopes of all inputs (columns: roads, then forces) at the knots, from both sides.
+
+    Knots are the multiples of `step` and the breaks of the signals between them. Where a signal does not break, both
+    sides are the same array.
+    """
+
+    step: float  # [s]
+    time: Matrix  # (knots,)
+    value: Matrix  # (knots, inputs) from the right
+    slope: Matrix
+    value_before: Matrix  # from the left
+    slope_before: Matrix
+    special: NDArray[np.int64]  # segments of another length, or at whose start an input jumps; then one past the end
+    slot: NDArray[np.int64]  # (knots,) number of the sample, or -1
+    samples: int
+
+    @property
+    def sampled(self) -> Matrix:
+        """Times of the samples [s]."""
+        return self.time[self.slot >= 0]
+
+
+def assign(
+    mechanism: Mechanism, road: object, forces: object, displacement: object, speed: float | None
+) -> tuple[list[Signal | None], list[float]]:
+    """The signal (None: nothing moves) and the delay [s] of every road and force, from the arguments of `simulate`.
+
+    Raises `SimulationError` for a signal that is missing, that nothing takes, or whose delay is not known.
+    """
+    roads, names = [r.name for r in mechanism.roads], [f.name for f in mechanism.forces]
+    moved = road if displacement is None else displacement
+    if road is not None and displacement is not None:
+        raise SimulationError("Give either road or displacement: both move the same ends of the mechanism.")
+    by_road = _by_name("road" if displacement is None else "displacement", moved, roads)
+    if len(by_road) < len(roads) and (by_road or not forces):
+        missing = ", ".join(name for name in roads if name not in by_road)
+        raise SimulationError(
+            f"The motion of {missing} is missing. Give a signal for all, such as road=multisine(...), one for each by "
+            f"name, or forces alone with the roads at rest."
+        )
+    by_force = _by_name("forces", forces, names) if isinstance(forces, Mapping) or len(names) == 1 else {}
+    if forces is not None and not by_force:
+        raise SimulationError(f"Forces are given by name, forces={{name: signal}} (there are: {_listed(names)}).")
+    signals: list[Signal | None] = [by_road.get(name) for name in roads]
+    delays = [_delay(r.distance, s, speed, r.name) for r, s in zip(mechanism.roads, signals, strict=True)]
+    return [*signals, *(by_force.get(name) for name in names)], delays + [0.0] * len(names)
+
+
+def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal]:
+    if given is None:
+        return {}
+    found = given if isinstance(given, Mapping) else dict.fromkeys(names, given)
+    if given is not None and not names:
+        raise SimulationError(f"The mechanism has nothing that takes {what}=.")
+    for name, signal in found.items():
+        if name not in names:
+            raise SimulationError(f"There is no input named {name!r} for {what}= (there are: {_listed(names)}).")
+        if not isinstance(signal, Signal):
+            raise SimulationError(
+                f"The input {name!r} needs a signal, such as sine(...) or Signal.sampled(time, value), got {signal!r}."
+            )
+    return dict(found)
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names) or "none"
+
+
+def _delay(distance: float, signal: Signal | None, speed: float | None, name: str) -> float:
+    if distance == 0.0 or signal is None:
+        return 0.0
+    known = signal.speed if speed is None else speed
+    if known is None:
+        raise SimulationError(
+            f"The road reaches {name!r} {distance:g} m later, but neither the signal nor simulate(..., speed=...) says "
+            f"how fast the vehicle is."
+        )
+    check_positive(SimulationError, "The speed", known, "m/s")
+    return distance / known
+
+
+def tabulate(
+    signals: Sequence[Signal | None],
+    delays: Sequence[float],
+    duration: float,
+    step: float,
+    every: int = 1,
+    start: float = 0.0,
+) -> InputTable:
+    """All inputs along the knots from `start` to `start` + `duration` [s], with a sample at every `every`-th step.
+
+    Raises `SimulationError` if a step is longer than a signal's table or than half its shortest period, or if a
+    signal ends too early.
+    """
+    count = whole_steps(duration, step)
+    for signal in signals:
+        if signal is not None:
+            _check_step(signal, step, start + duration)
+    grid = start + step * np.arange(count + 1)
+    broken = [
+        np.zeros(0) if s is None else s.breaks(grid[0] - d, grid[-1] - d) + d
+        for s, d in zip(signals, delays, strict=True)
+    ]
+    between = np.unique(np.concatenate([np.zeros(0), *broken]))
+    between = between[np.abs((between - start) / step - np.rint((between - start) / step)) > _SAME]
+    between = between[np.concatenate([[True], np.diff(between) > _SAME * step])[: between.size]]
+    slot = np.full(count + 1, -1)
+    slot[::every] = np.arange(slot[::every].size)
+    time = grid
+    if between.size:
+        order = np.argsort(np.concatenate([grid, between]), kind="stable")
+        time = np.concatenate([grid, between])[order]
+        slot = np.concatenate([slot, np.full(between.size, -1)])[order]
+    shape = (time.size, len(signals))
+    value, slope = np.zeros(shape), np.zeros(shape)
+    jumped, before = np.zeros(time.size, dtype=bool), []
+    for i, (signal, delay) in enumerate(zip(signals, delays, strict=True)):
+        if signal is None:
+            continue
+        if between.size:
+            value[:, i], slope[:, i] = signal.sample(time - delay)
+        else:
+            value[:, i], slope[:, i] = signal.grid(start - delay, step, count + 1)
+        if broken[i].size:
+            before.append((i, *_from_the_left(signal, delay, broken[i], time, step)))
+    value_before, slope_before = value, slope
+    if before:
+        value_before, slope_before = value.copy(), slope.copy()
+        for i, at, left, left_slope in before:
+            slope_before[at, i] = left_slope
+            leaps = np.abs(left - value[at, i]) > 1e-12 * max(float(np.abs(value[:, i]).max()), 1e-300)
+            value_before[at[leaps], i] = left[leaps]
+            jumped[at[leaps]] = True
+    odd = np.abs(np.diff(time) - step) > _SAME * step
+    odd |= jumped[:-1]
+    return InputTable(
+        step=step,
+        time=time,
+        value=value,
+        slope=slope,
+        value_before=value_before,
+        slope_before=slope_before,
+        special=np.append(np.flatnonzero(odd), time.size + 1).astype(np.int64),
+        slot=slot.astype(np.int64),
+        samples=int(slot.max()) + 1,
+    )
+
+
+def _from_the_left(
+    signal: Signal, delay: float, breaks: Matrix, time: Matrix, step: float
+) -> tuple[NDArray[np.intp], Matrix, Matrix]:
+    """Knots at which a signal breaks, with its value and slope just before them."""
+    at = np.searchsorted(time, breaks - 0.5 * _SAME * step)
+    at = at[np.abs(time[np.minimum(at, time.size - 1)] - breaks) <= 2.0 * _SAME * step]
+    aside = 1e-7 * min(step, signal.interval or step)
+    left, slope = signal.sample(time[at] - delay - aside)
+    return at, left + aside * slope, slope
+
+
+def whole_steps(duration: float, step: float) -> int:
+    """The number of steps in a duration.
+
+    Raises `SimulationError` unless it is a whole number, at least one.
+    """
+    check_positive(SimulationError, "The duration of a simulation", duration, "s")
+    check_positive(SimulationError, "The step of a simulation", step, "s")
+    count = duration / step
+    if count > 1e9:
+        raise SimulationError(f"{duration:g} s in steps of {step:g} s are {count:.3g} steps; at most 1e9 are possible.")
+    if round(count) < 1 or abs(count - round(count)) > 1e-6:
+        raise SimulationError(
+            f"The duration must be a whole number of steps, got {duration:g} s in steps of {step:g} s. "
+            f"Try step = {duration / max(1, math.ceil(count)):.9g}."
+        )
+    return round(count)
+
+
+def _check_step(signal: Signal, step: float, end: float) -> None:
+    shortest = None if signal.highest_frequency is None else 0.5 / signal.highest_frequency
+    if shortest is not None and step > shortest * (1.0 + _SAME):
+        raise SimulationError(
+            f"A step of {step:g} s is too long for {signal.label!r}, which goes up to {signal.highest_frequency:g} Hz. "
+            f"Take {shortest:.3g} s or less."
+        )
+    if signal.interval is not None and step > signal.interval * (1.0 + _SAME):
+        raise SimulationError(
+            f"A step of {step:g} s is too long for {signal.label!r}, whose samples are {signal.interval:g} s apart. "
+            f"Take {signal.interval:.3g} s or less."
+        )
+    if signal.duration is not None and end > signal.duration * (1.0 + _SAME):
+        raise SimulationError(
+            f"The signal {signal.label!r} lasts {signal.duration:g} s, but the simulation goes on until {end:g} s."
+        )

@@ -1,0 +1,180 @@
+"""Results of a simulation: outputs by name, events, energy, and how far they can be trusted."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import SimulationError, Status
+from inerter.systems.outputs import Output
+
+if TYPE_CHECKING:
+    import xarray
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Event:
+    """An element's change of state: friction `slip up`, `slip down`, `stick`; gap `open`, `upper` or `lower` contact."""
+
+    time: float  # [s]
+    element: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Where the energy went [J]: what the inputs put in is stored, or dissipated in dampers or in friction."""
+
+    inputs: Mapping[str, float]  # work of each road and force
+    stored: float  # gained by masses, inerters and springs
+    dampers: Mapping[str, float]
+    friction: Mapping[str, float]
+
+    @property
+    def put_in(self) -> float:
+        """Work of all inputs [J]."""
+        return sum(self.inputs.values())
+
+    @property
+    def residual(self) -> float:
+        """What the account is short of [J]."""
+        return self.put_in - self.stored - sum(self.dampers.values()) - sum(self.friction.values())
+
+    @property
+    def relative_residual(self) -> float:
+        """The residual over the largest of the account's sums; zero if nothing moved."""
+        dissipated = sum(self.dampers.values()) + sum(self.friction.values())
+        size = max(sum(abs(w) for w in self.inputs.values()), abs(self.stored), dissipated)
+        return abs(self.residual) / size if size > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class Repetition:
+    """How well a periodic response repeats: over how many periods it settled, and what is left."""
+
+    period: float  # [s]
+    periods: int
+    mismatch: float  # largest change of the state over one period, relative to its largest value
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A simulated motion; `run["name"]` is an output along `time`.
+
+    `outputs` lists all names with units. If the integration had to stop, `status` says why and `time` ends there.
+    """
+
+    time: Matrix  # [s]
+    events: tuple[Event, ...]
+    status: Status
+    outputs: Mapping[str, Output]
+    states: Mapping[str, str]  # state of every nonlinear element at the start
+    energy: Energy | None = None  # if it was asked for
+    repetition: Repetition | None = None  # of a periodic steady state
+    final_state: Matrix = field(default_factory=lambda: np.zeros(0))  # to go on from: simulate(..., initial=...)
+    end: float = 0.0  # [s] when that is
+    label: str = ""  # of the signals
+    _evaluate: Callable[[Output], Matrix] = field(repr=False, default=lambda output: np.zeros(0))
+    _known: dict[str, Matrix] = field(repr=False, default_factory=dict)
+
+    def __getitem__(self, name: str) -> Matrix:
+        """The output `name` at `time`.
+
+        Raises `SimulationError` for a name that is not there.
+        """
+        if name not in self.outputs:
+            close = get_close_matches(str(name), self.outputs, n=3)
+            hint = f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join(self.outputs)}."
+            raise SimulationError(f"There is no output named {name!r}. {hint}")
+        if name not in self._known:
+            self._known[name] = self._evaluate(self.outputs[name])
+        return self._known[name]
+
+    def rms(self, name: str) -> float:
+        """Root of the mean square of an output over all samples."""
+        return float(np.sqrt(np.mean(self[name] ** 2)))
+
+    def unit(self, name: str) -> str:
+        """Unit of an output."""
+        self[name]
+        return self.outputs[name].unit
+
+    def intervals(self, element: str, state: str) -> list[tuple[float, float]]:
+        """The times [s] between which a nonlinear element was in a state.
+
+        Raises `SimulationError` if there is no such element.
+        """
+        if element not in self.states:
+            known = ", ".join(self.states) or "none"
+            raise SimulationError(f"There is no friction or gap named {element!r} (there are: {known}).")
+        found: list[tuple[float, float]] = []
+        since, now = float(self.time[0]), self.states[element]
+        for event in self.events:
+            if event.element == element:
+                if now == state and event.time > since:
+                    found.append((since, event.time))
+                since, now = event.time, event.after
+        if now == state:
+            found.append((since, float(self.time[-1])))
+        return found
+
+    def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
+        """The named outputs, or all, as a dataset over `time` with units and long names."""
+        import xarray
+
+        chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
+        data = {
+            name: ("time", self[name], {"units": self.outputs[name].unit, "long_name": self.outputs[name].title})
+            for name in chosen
+        }
+        coords = {"time": ("time", self.time, {"units": "s", "long_name": "time"})}
+        return xarray.Dataset(data, coords, {"signal": self.label, "status": str(self.status)})
+
+    def to_csv(self, path: str | Path, names: Sequence[str] | None = None) -> None:
+        """Write the named outputs, or all, with a header `name [unit]`; numbers read back to the last bit."""
+        chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
+        columns = [self.time, *(self[name] for name in chosen)]
+        with _opened(path) as file:
+            writer = csv.writer(file)
+            writer.writerow(["time [s]", *(f"{name} [{self.outputs[name].unit}]" for name in chosen)])
+            writer.writerows(map(repr, row) for row in np.column_stack(columns).tolist())
+
+    def events_to_csv(self, path: str | Path) -> None:
+        """Write the table of events."""
+        with _opened(path) as file:
+            writer = csv.writer(file)
+            writer.writerow(["time [s]", "element", "from", "to"])
+            writer.writerows([repr(e.time), e.element, e.before, e.after] for e in self.events)
+
+    def to_mat(self, path: str | Path, names: Sequence[str] | None = None) -> None:
+        """Write a MATLAB 5 file with `time`, the named outputs, or all, a struct `units`, and the events."""
+        from scipy.io import savemat
+
+        chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
+        data: dict[str, Any] = {name[:31]: self[name] for name in chosen}
+        data["time"] = self.time
+        data["units"] = {name[:31]: self.outputs[name].unit for name in chosen}
+        data["events"] = {
+            "time": np.array([e.time for e in self.events]),
+            "element": np.array([e.element for e in self.events], dtype=object),
+            "before": np.array([e.before for e in self.events], dtype=object),
+            "after": np.array([e.after for e in self.events], dtype=object),
+        }
+        savemat(path, data, oned_as="column", long_field_names=True)
+
+
+def _opened(path: str | Path) -> Any:
+    try:
+        return Path(path).open("w", newline="", encoding="utf-8")
+    except OSError as error:
+        raise SimulationError(f"Cannot write {str(path)!r}: {error.strerror}.") from None

@@ -1,0 +1,82 @@
+"""Measured road profiles from CSV files, and what is said of files that are none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from inerter.errors import SignalError
+from inerter.signals.records import profile
+
+
+@pytest.fixture
+def road_file(tmp_path):
+    def write(text, encoding="utf-8"):
+        path = tmp_path / "road.csv"
+        path.write_text(text, encoding=encoding)
+        return path
+
+    return write
+
+
+def test_a_profile_is_driven_from_its_first_point(road_file):
+    road = profile(road_file("distance [m], height [mm]\n100, 0\n110, 5\n\n120, -2\n150, 1.5e0\n"), speed=20.0)
+    np.testing.assert_allclose(road([-1.0, 0.0, 0.5, 1.0, 2.5]), [0.0, 0.0, 5e-3, -2e-3, 1.5e-3], atol=1e-15)
+    assert (road.speed, road.duration, road.hold, road.interval) == (20.0, 2.5, "cubic", 0.5)
+    assert road.label == "profile road.csv"
+
+
+def test_columns_in_either_order_and_any_unit_of_length(road_file):
+    one = profile(road_file("Height [cm],Distance [km]\n1,0\n2,0.01\n0,0.02\n"), 10.0)
+    two = profile(str(road_file("distance [m],height [m]\r\n0,0.01\r\n10,0.02\r\n20,0\r\n", "utf-8-sig")), 10.0)
+    times = np.linspace(0.0, 2.0, 9)
+    np.testing.assert_allclose(one(times), two(times), atol=1e-15)
+
+
+HEADER = "distance [m], height [mm]\n"
+BAD = {
+    "no units": ("distance, height\n0,0\n1,1\n", "line 1: expected a header with units, such as"),
+    "no header": ("0,0\n1,1\n", 'line 1: expected a header with units, .* got "0,0"'),
+    "one unit": ("distance [m], height\n0,0\n1,1\n", "line 1: expected a header with units"),
+    "twice the same": ("height [m], height [mm]\n0,0\n1,1\n", "line 1: expected a header"),
+    "unknown unit": ("distance [m], height [furl]\n0,0\n1,1\n", 'line 1: .*the unit "furl" is not known'),
+    "unit of another kind": ("distance [s], height [mm]\n0,0\n1,1\n", "line 1: .*unit of another kind"),
+    "a word": (HEADER + "0, 0\n1, one\n2, 1\n", 'line 3: expected a finite number .* got " one"'),
+    "not a number": (HEADER + "0, 0\n1, nan\n", "line 3: expected a finite number"),
+    "an empty cell": (HEADER + "0,\n1, 1\n", "line 2: expected a finite number"),
+    "a third cell": (HEADER + "0, 0, 5\n", "line 2: expected two cells with a comma between them, got 3"),
+    "semicolons": ("distance [m]; height [mm]\n0; 0\n", "line 1: expected two cells .* got 1"),
+    "decimal comma": (HEADER + "0,5, 1,2\n", "line 2: expected two cells .* got 4"),
+    "backwards": (HEADER + "0, 0\n\n2, 0\n1, 0\n", "line 5: the distances .* must increase, got 1 m after 2 m"),
+    "one point": (HEADER + "0, 0\n", "needs at least two points, got 1"),
+    "nothing": ("\n\n", "is empty: expected a header"),
+    "an open quote": (HEADER + '"0, 0\n', "cannot be read as a CSV file"),
+}
+
+
+@pytest.mark.parametrize(("text", "sentence"), BAD.values(), ids=BAD.keys())
+def test_bad_files(road_file, text, sentence):
+    with pytest.raises(SignalError, match=sentence):
+        profile(road_file(text), 20.0)
+
+
+def test_no_file(tmp_path):
+    with pytest.raises(SignalError, match=r"There is no file '.*absent\.csv', looked for in"):
+        profile(tmp_path / "absent.csv", 20.0)
+    with pytest.raises(SignalError, match="cannot be read"):
+        profile(tmp_path, 20.0)
+    with pytest.raises(SignalError, match="cannot be read"):
+        profile("a\0b", 20.0)
+
+
+def test_not_text(tmp_path):
+    (tmp_path / "road.csv").write_bytes(b"\xff\xfe\x00\x81")
+    with pytest.raises(SignalError, match="cannot be read as a CSV file"):
+        profile(tmp_path / "road.csv", 20.0)
+
+
+def test_bad_arguments(road_file):
+    with pytest.raises(SignalError, match=r"speed over a profile must be a positive number of m/s, got 0\.0"):
+        profile(road_file(HEADER + "0,0\n1,1\n"), 0.0)
+    with pytest.raises(SignalError, match="read from the path of a CSV file, got 5"):
+        profile(5, 20.0)

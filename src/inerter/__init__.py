@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from inerter.signals.transients import bump as bump
     from inerter.signals.transients import chirp as chirp
     from inerter.signals.transients import step as step
+    from inerter.simulation.batch import Batch as Batch
+    from inerter.simulation.batch import simulate_many as simulate_many
     from inerter.simulation.simulate import simulate as simulate
     from inerter.simulation.trajectory import Trajectory as Trajectory
     from inerter.study.file import load_study as load_study
@@ -67,6 +69,7 @@ __version__ = version("inerter")
 __all__ = [
     "GROUND",
     "LAYOUTS",
+    "Batch",
     "Coordinate",
     "Damper",
     "Estimate",
@@ -115,11 +118,14 @@ __all__ = [
     "optimise",
     "profile",
     "simulate",
+    "simulate_many",
     "sine",
     "step",
 ]
 
 _HOME = {
+    "Batch": "simulation.batch",
+    "simulate_many": "simulation.batch",
     "profile": "signals.records",
     "held_noise": "signals.records",
     "bump": "signals.transients",

@@ -13,7 +13,7 @@ from scipy.signal import lsim
 from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Spring, assemble, free
 from inerter.errors import SimulationError
 from inerter.networks.elements import Network
-from inerter.simulation.time_stepping import Histories, InputTable, Start, step_through
+from inerter.simulation.time_stepping import Histories, StepTable, Start, step_through
 from inerter.systems.graph import full_graph
 from inerter.vehicle.cars import Rig, Vehicle
 from inerter.vehicle.mechanism import GROUND, Coordinate, Force, Strut
@@ -52,7 +52,7 @@ def run(
     delays = [0.05 * i for i in range(len(mechanism.roads))]
     roads = [road or np.zeros_like for _ in delays]
     forces = [force or np.zeros_like for _ in mechanism.forces]
-    table = InputTable(
+    table = StepTable(
         time,
         np.array([z(time - d) for z, d in zip(roads, delays, strict=True)]).reshape(-1, time.size),
         np.array([rate(z, time - d) for z, d in zip(roads, delays, strict=True)]).reshape(-1, time.size),

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from inerter.kernels import compiled, typed
-from inerter.kernels.flow import first_root, inputs_from, knot_numbers, series
+from inerter.kernels.flow import first_root, inputs_from, knot_numbers, series, slope_at
 from inerter.kernels.modes import ENTRY, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N, is_locked
 
 Array = Any
@@ -16,7 +16,7 @@ ACCEPTED, STRUCK, STRANDED = -1, -2, -3
 SEGMENT, MODE, EVENTS, SPECIAL, JUMPED, SWITCHES, WANTED, SETTLED, ACCOUNT, INPUTS, KNOWN = range(
     11
 )  # places in `place`
-TRIAL, TOUCH, SIDE = range(3)  # rows of `flags`
+TRIAL, TOUCH, SIDE, CROSSED = range(4)  # rows of `flags`
 ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
 STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, then those of these sizes
 RESIDUAL, POLYNOMIAL, U, SIZE, X = 7, 8, 11, 19, 19 + ORDERS
@@ -30,7 +30,7 @@ class Work(NamedTuple):
     """Where an integration is, and what it works with; it can be taken up again at any point."""
 
     work: Array  # (ROWS, enough): state, its largest size so far, a state on trial, the clock within a segment, ...
-    flags: Array  # (3, k) states on trial; leading coefficients of each guard that are zero just now; at which limit
+    flags: Array  # (4, k) states on trial; leading zero coefficients of each guard just now; its limit; see `_crossing`
     place: Array  # see SEGMENT, ...
     sizes: Array  # as in `Mechanics`, and so the next two
     elements: Array
@@ -179,7 +179,8 @@ def cross(now: Work, events: Array, branch_road: Array, gauss: Array, start: flo
         d = min(length - t, now.reach[m])
         inputs_from(work[NUMBERS], nr, nu, length, t, d, coefficients)
         count = series(now.maps[m], work[STATE], coefficients, n, nu, d, state)
-        best, who = 2.0, np.int64(-1)
+        best = 2.0
+        who: Any = np.int64(-1)  # a plain -1 would be a type of its own
         for e in range(elements):
             if now.flags[TOUCH, e] < ORDERS:
                 s = _crossing(now.maps[m, guard + e], now.limits[m, e], now.flags, e, n, nu, count, work)
@@ -219,7 +220,10 @@ def _polynomial(state: Array, count: int, i: int, s: float) -> float:
 
 @typed("float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1])")
 def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array) -> float:
-    """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not."""
+    """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
+
+    CROSSED is then the limit, if it is crossed with a slope beyond all rounding, else 0.
+    """
     if limits[0] == -np.inf and limits[1] == np.inf:
         return 2.0
     c, g = work[POLYNOMIAL], work[POLYNOMIAL + 1]
@@ -245,7 +249,10 @@ def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, 
             g[k - zeros] = -side * c[k]
         if zeros == 0:
             g[0] += side * limit
-        best = min(best, first_root(g, count - zeros, work[POLYNOMIAL + 2]))
+        root = first_root(g, count - zeros, work[POLYNOMIAL + 2])
+        if root < best:
+            best = root
+            flags[CROSSED, e] = side if slope_at(g, count - zeros, root) < -1e-6 * swing else 0
     return best
 
 
@@ -263,6 +270,8 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
         return EVENTS_FULL
     for e in range(elements):
         trial[e] = now.state[before, e] if before >= 0 else (0 if now.limit[e] > 0.0 else 1)
+    if who >= 0 and now.flags[CROSSED, who] != 0:
+        trial[who] = now.flags[CROSSED, who] if trial[who] == 0 else 0
     verdict, struck, m = 0, False, -1
     for _ in range(20 + 8 * elements):
         m = mode_number(now.number, trial)
@@ -273,7 +282,7 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
             break
         trial[verdict] = place[WANTED]
     codes = 1
-    for e in range(min(elements, 6)):
+    for _ in range(min(elements, 6)):
         codes *= 3
     code = 0
     while verdict != ACCEPTED and code < codes:

@@ -6,7 +6,7 @@ from functools import cache
 from typing import Any
 
 from numba import types
-from numba.experimental.function_type import _get_wrapper_address
+from numba.experimental import function_type
 
 from inerter.kernels import compiled
 
@@ -16,7 +16,7 @@ SIGNATURE = types.int64(
     _TABLE,  # steps of the mode
     _TABLE,  # limits of the guards
     _FLOATS,  # state, changed in place
-    _FLOATS,  # work space: columns and rows of steps
+    _FLOATS,  # work space: columns and rows of steps, and elements
     _TABLE,  # values of the inputs at the knots
     _TABLE,  # slopes
     _TABLE,  # values from the left
@@ -33,15 +33,16 @@ SIGNATURE = types.int64(
 )
 
 
-class March(types.WrapperAddressProtocol):  # type: ignore[misc]
+class March(types.WrapperAddressProtocol):
     """A march as an argument of other compiled code, which so need not be compiled anew for each."""
 
     def __init__(self, function: Any) -> None:
         self.function = function
-        self.address = _get_wrapper_address(function, SIGNATURE)
+        address_of: Any = function_type._get_wrapper_address
+        self.address = int(address_of(function, SIGNATURE))
 
     def __wrapper_address__(self) -> int:
-        return int(self.address)
+        return self.address
 
     def signature(self) -> Any:
         return SIGNATURE
@@ -60,7 +61,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
         steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
         h, mode, first, stop, settled,
     ):  # fmt: skip
-        v, y = work[:columns], work[columns:]
+        v, y, before = work[:columns], work[columns : columns + rows], work[columns + rows :]
         for i in range(n):
             v[i] = x[i]
         v[columns - 1] = 1.0
@@ -76,7 +77,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
                     v[n + j] = h * slope[k, c]
                 else:
                     v[n + j] = h * slope_before[k + 1, c]
-            for i in range(rows):
+            for i in range(n + elements):
                 total = 0.0
                 for j in range(columns):
                     total += steps[i, j] * v[j]
@@ -86,9 +87,14 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
                 sway = 0.0
                 for j in range(columns):
                     sway += steps[rows + e, j] * abs(v[j])
-                at_end, at_start = y[n + e], y[n + elements + e]
+                at_end, at_start = y[n + e], before[e]
+                if k == first or limits[e, 2] != 0.0:
+                    at_start = 0.0
+                    for j in range(columns):
+                        at_start += steps[n + elements + e, j] * v[j]
                 if not (min(at_start, at_end) - sway > limits[e, 0] and max(at_start, at_end) + sway < limits[e, 1]):
                     safe = False
+                before[e] = at_end
             if not safe:
                 break
             if outputs > 0 and k >= settled and slot[k + 1] >= 0:
@@ -109,4 +115,4 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
             x[i] = v[i]
         return k
 
-    return March(compiled(march, SIGNATURE))
+    return March(compiled(march, SIGNATURE, fused=True))

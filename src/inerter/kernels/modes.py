@@ -49,7 +49,7 @@ class Modes(NamedTuple):
     state: Array  # (capacity, k + 3): -1, 0, 1 of each element; numbers of conditions on velocity, springs, the loose
     maps: Array  # (capacity, rows, width): rate of the state, guards, (a', w, F), entry conditions, outputs
     reaction: Array  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
-    limits: Array  # (capacity, k, 2): interval of the guards
+    limits: Array  # (capacity, k, 3): interval of the guards, and whether they change at once with a road's slopes
     steps: Array  # (capacity, rows, columns): next state, guards at the end and the start, their sway, outputs
     reach: Array  # (capacity,) how far a Taylor series of the flow serves [s]
 
@@ -152,7 +152,7 @@ def is_locked(kind: int, state: int) -> bool:
 
 @typed("int64[::1](float64[:,::1], int64[:,::1], int64[::1])")
 def independent_locks(locks: Array, elements: Array, state: Array) -> Array:
-    """Numbers of locked elements whose rows are independent; what depends on them is locked with them, without force."""
+    """Numbers of locked elements whose rows are independent; those that depend on them are locked without force."""
     k, columns = locks.shape
     basis, row = np.zeros((k, columns)), np.zeros(columns)
     chosen = np.zeros(k, np.int64)
@@ -339,6 +339,10 @@ def build(
             add(maps, guard + e, 0, block(locks, e, e + 1, 0, na), 1.0)
             add(maps, guard + e, n + nr, block(locks, e, e + 1, nv, columns), 1.0)
             add(maps, guard + e, 0, product(block(locks, e, e + 1, na, nv), massless), 1.0)
+        limits[e, 2] = 0.0
+        for j in range(n + nr, n + 3 * nr):
+            if maps[guard + e, j] != 0.0:
+                limits[e, 2] = 1.0
     inputs = width - 1
     add(maps, sizes[OUTPUT], 0, block(over, 0, over.shape[0], 0, inputs), 1.0)
     on_eta = block(over, 0, over.shape[0], inputs, over.shape[1])

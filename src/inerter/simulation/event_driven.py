@@ -165,11 +165,11 @@ def start(
         state=np.zeros((capacity, k + 3), np.int64),
         maps=np.zeros((capacity, int(starts[5]), width)),
         reaction=np.zeros((capacity, n + k, nw + k)),
-        limits=np.zeros((capacity, k, 2)),
+        limits=np.zeros((capacity, k, 3)),
         steps=np.zeros((capacity, n + 3 * k + len(outputs), n + used.size + 1)),
         reach=np.zeros(capacity),
     )
-    flags = np.zeros((3, k), np.int64)
+    flags = np.zeros((4, k), np.int64)
     return Integration(system, table, march, mechanics, modes, used, work, flags, place, record, account)
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inerter.checks import check_positive
 from inerter.errors import SimulationError
 from inerter.signals.signal import Signal
+from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
@@ -116,10 +117,8 @@ def tabulate(
     signal ends too early.
     """
     count = whole_steps(duration, step)
-    for signal in signals:
-        if signal is not None:
-            _check_step(signal, step, start + duration)
-    grid = start + step * np.arange(count + 1)
+    check_steps(signals, step, start + duration)
+    grid: Matrix = start + step * np.arange(count + 1, dtype=np.float64)
     broken = [
         np.zeros(0) if s is None else s.breaks(grid[0] - d, grid[-1] - d) + d
         for s, d in zip(signals, delays, strict=True)
@@ -129,7 +128,7 @@ def tabulate(
     between = between[np.concatenate([[True], np.diff(between) > _SAME * step])[: between.size]]
     slot = np.full(count + 1, -1)
     slot[::every] = np.arange(slot[::every].size)
-    time = grid
+    time: Matrix = grid
     if between.size:
         order = np.argsort(np.concatenate([grid, between]), kind="stable")
         time = np.concatenate([grid, between])[order]
@@ -198,6 +197,13 @@ def whole_steps(duration: float, step: float) -> int:
     return round(count)
 
 
+def check_steps(signals: Sequence[Signal | None], step: float, end: float) -> None:
+    """Raises `SimulationError` if a step is too long for a signal, or a signal ends before `end` [s]."""
+    for signal in signals:
+        if signal is not None:
+            _check_step(signal, step, end)
+
+
 def _check_step(signal: Signal, step: float, end: float) -> None:
     shortest = None if signal.highest_frequency is None else 0.5 / signal.highest_frequency
     if shortest is not None and step > shortest * (1.0 + _SAME):
@@ -214,3 +220,20 @@ def _check_step(signal: Signal, step: float, end: float) -> None:
         raise SimulationError(
             f"The signal {signal.label!r} lasts {signal.duration:g} s, but the simulation goes on until {end:g} s."
         )
+
+
+def check_holds(system: PiecewiseSystem, signals: Sequence[Signal | None]) -> None:
+    """Raises `SimulationError` for a motion without velocity or acceleration where an element needs it."""
+    for i, (road, signal) in enumerate(zip(system.mechanism.roads, signals, strict=False)):
+        if signal is None or signal.hold == "cubic":
+            continue
+        if system.needs_acceleration[i]:
+            raise SimulationError(
+                f"An inerter or a lock follows the acceleration of {road.name!r}, which {signal.label!r} does not "
+                f'have between its samples. Use hold="cubic".'
+            )
+        if signal.hold == "zero" and system.needs_velocity[i]:
+            raise SimulationError(
+                f"A damper follows the velocity of {road.name!r}, which {signal.label!r} does not have where it "
+                f'jumps. Use hold="cubic" or "linear".'
+            )

@@ -13,17 +13,16 @@ from inerter.errors import SimulationError, Status, StatusKind
 from inerter.kernels.events import ENERGY, EVENTS, SEGMENT, SPECIAL, evaluate
 from inerter.networks.elements import Damper, Friction, Spring
 from inerter.signals.signal import Signal
-from inerter.simulation import event_driven
-from inerter.simulation.equilibrium import equilibrium
+from inerter.simulation import event_driven, stepped
 from inerter.simulation.event_driven import Integration
-from inerter.simulation.inputs import MEMORY_LIMIT, InputTable, assign, tabulate, whole_steps
+from inerter.simulation.inputs import MEMORY_LIMIT, InputTable, assign, check_holds, tabulate, whole_steps
+from inerter.simulation.start import Initial, initial_state
 from inerter.simulation.trajectory import Energy, Event, Repetition, Trajectory
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem, output_rows, piecewise
 from inerter.vehicle.cars import Vehicle
 
 Matrix = NDArray[np.float64]
-Initial = Literal["rest", "preload", "periodic"] | Trajectory | Matrix
 _CHUNK = 200_000  # segments between two looks at the keyboard
 _PERIODS = 300
 _REPEATS, _ENOUGH = 1e-10, 1e-6
@@ -80,15 +79,17 @@ def simulate(
             f"A periodic steady state is recorded over one period, {length:g} s; got duration = {duration:g} s."
         )
     _check_memory(system, whole_steps(length, step), int(every), memory_limit)
-    if integrator == "time-stepping":
-        from inerter.simulation import stepped
-
-        return stepped.run(system, signals, delays, length, step, initial, int(every), energy)
-    if integrator != "event-driven":
+    if integrator not in ("event-driven", "time-stepping"):
         raise SimulationError(f'The integrator is "event-driven" or "time-stepping", got {integrator!r}.')
-    table = tabulate(signals, delays, length, step, int(every), _start_time(initial))
-    _check_holds(system, signals)
-    state, steady = initial_state(system, table, initial), None
+    check_holds(system, signals)
+    begin = initial.end if isinstance(initial, Trajectory) else 0.0
+    if integrator == "time-stepping":
+        if periodic or energy:
+            raise SimulationError("A periodic steady state and the energy account need the event-driven integrator.")
+        at = np.array([0.0 if s is None else s(begin - d) for s, d in zip(signals, delays, strict=True)])
+        return stepped.run(system, signals, delays, initial_state(system, at, initial), begin, length, step, int(every))
+    table = tabulate(signals, delays, length, step, int(every), begin)
+    state, steady = initial_state(system, table.value[0], initial), None
     integration = event_driven.start(system, table, state, account=energy)
     if periodic:
         integration, steady = _settle(system, table, state, energy)
@@ -122,34 +123,6 @@ def common_period(signals: Sequence[Signal | None]) -> float:
                 f"The periods of {', '.join(f'{s.period:g}' for s in moving)} s are not multiples of each other."
             )
     return period
-
-
-def initial_state(system: PiecewiseSystem, table: InputTable, initial: Initial) -> Matrix:
-    """The state at the first knot.
-
-    Raises `SimulationError` for a request that is not known, or a state that does not fit.
-    """
-    roads, n = len(system.mechanism.roads), system.order
-    if isinstance(initial, Trajectory):
-        given = initial.final_state
-    elif isinstance(initial, str):
-        if initial not in ("rest", "preload", "periodic"):
-            raise SimulationError(
-                f'The initial state is "rest", "preload", "periodic", a trajectory or an array, got {initial!r}.'
-            )
-        z, force = table.value[0, :roads], table.value[0, roads:]
-        d = equilibrium(system, z, force if initial == "preload" else np.zeros_like(force))
-        given = np.concatenate([np.zeros(n - system.positions.shape[0]), system.positions @ d + system.heights @ z])
-    else:
-        try:
-            given = np.array(initial, dtype=float)
-        except (TypeError, ValueError):
-            raise SimulationError(f"The initial state is an array of {n} numbers, got {initial!r}.") from None
-    if given.shape != (n,) or not np.all(np.isfinite(given)):
-        raise SimulationError(
-            f"The initial state needs {n} finite numbers ({', '.join(system.states)}), got {given.tolist()}."
-        )
-    return np.asarray(given)
 
 
 def _settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
@@ -261,10 +234,6 @@ def _stored(system: PiecewiseSystem, table: InputTable, state: Matrix, knot: int
     return float(0.5 * system.inertia @ speeds**2 + 0.5 * k @ lengths**2)
 
 
-def _start_time(initial: Initial) -> float:
-    return initial.end if isinstance(initial, Trajectory) else 0.0
-
-
 def _check_memory(system: PiecewiseSystem, steps: int, every: int, limit: float) -> None:
     channels = len(system.mechanism.roads) + len(system.mechanism.forces)
     needed = 8.0 * (steps * (2 + 6 * channels) + steps / every * (system.order + 3 * channels + 4))
@@ -274,20 +243,3 @@ def _check_memory(system: PiecewiseSystem, steps: int, every: int, limit: float)
             f"{limit / 2**30 if is_number(limit) else limit:.3g} GiB. Take a longer step, a shorter duration, "
             f"every = {2 * every} or more, simulate_many(...) for mean squares alone, or a higher memory_limit."
         )
-
-
-def _check_holds(system: PiecewiseSystem, signals: Sequence[Signal | None]) -> None:
-    """Raises `SimulationError` for a motion without velocity or acceleration where an element needs it."""
-    for i, (road, signal) in enumerate(zip(system.mechanism.roads, signals, strict=False)):
-        if signal is None or signal.hold == "cubic":
-            continue
-        if system.needs_acceleration[i]:
-            raise SimulationError(
-                f"An inerter or a lock follows the acceleration of {road.name!r}, which {signal.label!r} does not "
-                f'have between its samples. Use hold="cubic".'
-            )
-        if signal.hold == "zero" and system.needs_velocity[i]:
-            raise SimulationError(
-                f"A damper follows the velocity of {road.name!r}, which {signal.label!r} does not have where it "
-                f'jumps. Use hold="cubic" or "linear".'
-            )

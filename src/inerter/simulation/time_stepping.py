@@ -39,7 +39,7 @@ SAME = 1e-9  # size below which a direction or a row of order 1 is taken for zer
 
 
 @dataclass(frozen=True, eq=False)
-class InputTable:
+class StepTable:
     """Roads and external forces at the instants `time` [s], a constant step apart.
 
     `road` and `road_rate` [m, m/s] are of shape (roads, instants), `force` and `force_rate` [N, N/s] of (forces,
@@ -84,7 +84,7 @@ class Histories:
     status: Status
 
 
-def step_through(mechanism: Mechanism, graph: Graph, table: InputTable, start: Start, every: int = 1) -> Histories:
+def step_through(mechanism: Mechanism, graph: Graph, table: StepTable, start: Start, every: int = 1) -> Histories:
     """Integrate with one step for each interval of `table`, and keep every `every`-th instant, the first one included.
 
     `graph` is `full_graph(mechanism)`. Second order in the step while nothing slides or touches, first order else.
@@ -241,7 +241,7 @@ def _reaction_rows(parts: _Parts) -> tuple[Matrix, Matrix]:
 # ---------------------------------------------------------------------------------------------- checks
 
 
-def _check_table(table: InputTable, every: int) -> float:
+def _check_table(table: StepTable, every: int) -> float:
     """The step [s]; raises `SimulationError` unless the table has one, is finite and has a known hold everywhere."""
     time = table.time
     if time.ndim != 1 or time.size < 2 or every < 1:
@@ -286,7 +286,7 @@ def _check_gaps(parts: _Parts) -> None:
 # ---------------------------------------------------------------------------------------------- start
 
 
-def _offsets(parts: _Parts, table: InputTable, start: Start) -> Matrix:
+def _offsets(parts: _Parts, table: StepTable, start: Start) -> Matrix:
     """Elongations where all displacements and roads are zero."""
     for what, values in (("displacement", start.displacement), ("velocity", start.velocity)):
         if values.shape != (parts.nodes,) or not np.isfinite(values).all():
@@ -298,7 +298,7 @@ def _offsets(parts: _Parts, table: InputTable, start: Start) -> Matrix:
     return np.asarray(start.elongations - parts.E @ start.displacement - parts.R @ table.road[:, 0])
 
 
-def _settled(parts: _Parts, table: InputTable, start: Start, offsets: Matrix) -> Matrix:
+def _settled(parts: _Parts, table: StepTable, start: Start, offsets: Matrix) -> Matrix:
     """Displacements at the start, in which nodes that only springs hold are in balance.
 
     Massless and undamped, they are there at once; the step's mean force would let them swing about that place.
@@ -323,7 +323,7 @@ def _settled(parts: _Parts, table: InputTable, start: Start, offsets: Matrix) ->
     return displacement
 
 
-def _initial(parts: _Parts, scheme: _Scheme, table: InputTable, start: Start, offsets: Matrix) -> Matrix:
+def _initial(parts: _Parts, scheme: _Scheme, table: StepTable, start: Start, offsets: Matrix) -> Matrix:
     """What the first step knows: displacements and momenta, and a one."""
     at = scheme.at
     known = np.zeros(at.total)
@@ -375,7 +375,7 @@ class _Rows:
     balance: Matrix  # of forces on the nodes, without reactions
 
 
-def _rows(parts: _Parts, inertia: _Inertia, table: InputTable, offsets: Matrix, at: _Places, h: float) -> _Rows:
+def _rows(parts: _Parts, inertia: _Inertia, table: StepTable, offsets: Matrix, at: _Places, h: float) -> _Rows:
     """The scheme itself, in the words of the module's first lines."""
     E, R, M, B = parts.E, parts.R, inertia.M, inertia.B
     unit = np.eye(at.total)
@@ -422,7 +422,7 @@ class _Scheme:
     law: Matrix
 
 
-def _scheme(parts: _Parts, table: InputTable, offsets: Matrix, h: float) -> _Scheme:
+def _scheme(parts: _Parts, table: StepTable, offsets: Matrix, h: float) -> _Scheme:
     """Mean velocities, rates and aims without reactions, and what reactions change in them."""
     inertia, (E, R) = _inertia(parts), _reaction_rows(parts)
     if np.any(inertia.B[:, [hold == "zero" for hold in table.road_hold]]):
@@ -540,7 +540,7 @@ def _observed(parts: _Parts, inertia: _Inertia, rows: _Rows, at: _Places, h: flo
 # ---------------------------------------------------------------------------------------------- all steps
 
 
-def _inputs(parts: _Parts, table: InputTable, first: int, last: int) -> Matrix:
+def _inputs(parts: _Parts, table: StepTable, first: int, last: int) -> Matrix:
     """What steps `first` to `last` - 1 are given, one row each: roads, growths, mean forces, rates at both ends."""
     h = float(table.time[-1] - table.time[0]) / (table.time.size - 1)
     z0, z1 = table.road[:, first:last], table.road[:, first + 1 : last + 1]
@@ -561,7 +561,7 @@ def _inputs(parts: _Parts, table: InputTable, first: int, last: int) -> Matrix:
     return np.ascontiguousarray(np.vstack(columns).T)
 
 
-def _march(scheme: _Scheme, parts: _Parts, table: InputTable, known: Matrix, every: int) -> tuple[Matrix, int, int]:
+def _march(scheme: _Scheme, parts: _Parts, table: StepTable, known: Matrix, every: int) -> tuple[Matrix, int, int]:
     """All samples, how the march ended, and the step that it reached."""
     steps, count, shared = table.time.size - 1, scheme.G.shape[0], sum(scheme.Z.shape)
     samples = np.zeros((steps // every + 1, scheme.starts.shape[0]))
@@ -588,7 +588,7 @@ _ENDED = {
 }
 
 
-def _histories(parts: _Parts, table: InputTable, marched: tuple[Matrix, int, int], every: int) -> Histories:
+def _histories(parts: _Parts, table: StepTable, marched: tuple[Matrix, int, int], every: int) -> Histories:
     samples, ended, reached = marched
     n, status = parts.nodes, OK
     if ended != DONE:

@@ -23,7 +23,7 @@ Matrix = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Event:
-    """An element's change of state: friction `slip up`, `slip down`, `stick`; gap `open`, `upper` or `lower` contact."""
+    """An element's change of state: friction `slip up`, `stick`, `slip down`; gap `open`, `upper contact`, ..."""
 
     time: float  # [s]
     element: str

@@ -45,10 +45,10 @@ def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
     found: list[Output] = []
     roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
     found += [Output(r.name, "m", f"{_said(r.name)}", road=row) for r, row in zip(mechanism.roads, roads, strict=True)]
-    for force, row in zip(mechanism.forces, forces, strict=True):
-        angles = {c.name for c in mechanism.coordinates if c.angle}
-        unit = "N m" if set(force.port) <= angles else "N"
-        found.append(Output(force.name, unit, _said(force.name), external=row))
+    angles = {c.name for c in mechanism.coordinates if c.angle}
+    for given, row in zip(mechanism.forces, forces, strict=True):
+        unit = "N m" if set(given.port) <= angles else "N"
+        found.append(Output(given.name, unit, _said(given.name), external=row))
     for coordinate, row in zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False):
         unit, said = "rad" if coordinate.angle else "m", _said(coordinate.name)
         found += [

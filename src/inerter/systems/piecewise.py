@@ -195,7 +195,7 @@ def _felt(resistance: Matrix, by_road: Matrix, na: int) -> Matrix:
 def _locked_to(E_a: Matrix, E_w: Matrix, E_z: Matrix, special: list[int]) -> NDArray[np.bool_]:
     """Roads that a friction that sticks, or a gap that touches, may tie an inertia to."""
     together = null_space(E_w[special].T).T
-    return np.any(np.abs(together @ E_z[special]) > 1e-9, axis=0)
+    return np.asarray(np.any(np.abs(together @ E_z[special]) > 1e-9, axis=0))
 
 
 def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix, Matrix]:

@@ -1,7 +1,8 @@
 """A mechanism: coordinates with masses, and networks mounted between ports and on roads.
 
-Vertical up is positive. A port is a linear combination of coordinates, such as body height + lever x pitch; a
-strut's may hold roads too, which are motions given from outside. A mounted network's elongation is the displacement of its upper end less that of its lower end; its force is positive in tension.
+Vertical up is positive. A port is a linear combination of coordinates, such as body height + lever x pitch; a strut's
+may hold roads too, which are motions given from outside. A mounted network's elongation is the displacement of its
+upper end less that of its lower end; its force is positive in tension.
 """
 
 from __future__ import annotations

@@ -1,18 +1,49 @@
-"""Static equilibrium of a mechanism over roads at rest, as a place to start from."""
+"""Where a simulation starts: given, or in static equilibrium over roads at rest."""
 
 from __future__ import annotations
 
 from itertools import product
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
 from inerter.networks.elements import Gap, Spring
+from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
+Initial = Literal["rest", "preload", "periodic"] | Trajectory | Matrix
 _BALANCED = 1e-8  # of the largest force
+
+
+def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial) -> Matrix:
+    """The state to start from, over these heights of the roads [m] and forces [N].
+
+    Raises `SimulationError` for a request that is not known, or a state that does not fit.
+    """
+    roads, n = len(system.mechanism.roads), system.order
+    if isinstance(initial, Trajectory):
+        given = initial.final_state
+    elif isinstance(initial, str):
+        if initial not in ("rest", "preload", "periodic"):
+            raise SimulationError(
+                f'The initial state is "rest", "preload", "periodic", a trajectory or an array, got {initial!r}.'
+            )
+        z, force = inputs[:roads], inputs[roads:]
+        d = equilibrium(system, z, force if initial == "preload" else np.zeros_like(force))
+        given = np.concatenate([np.zeros(n - system.positions.shape[0]), system.positions @ d + system.heights @ z])
+    else:
+        try:
+            given = np.array(initial, dtype=float)
+        except (TypeError, ValueError):
+            raise SimulationError(f"The initial state is an array of {n} numbers, got {initial!r}.") from None
+    if given.shape != (n,) or not np.all(np.isfinite(given)):
+        raise SimulationError(
+            f"The initial state needs {n} finite numbers ({', '.join(system.states)}), got {given.tolist()}."
+        )
+    return np.asarray(given)
 
 
 def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:

@@ -1,0 +1,146 @@
+"""Many designs on many signals at once, keeping mean squares instead of histories."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import SimulationError, Status
+from inerter.kernels.events import EVENTS
+from inerter.signals.signal import Signal
+from inerter.simulation import event_driven
+from inerter.simulation.inputs import InputTable, assign, check_holds, tabulate, whole_steps
+from inerter.simulation.start import Initial, initial_state
+from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.vehicle.cars import Vehicle
+
+if TYPE_CHECKING:
+    import xarray
+
+Matrix = NDArray[np.float64]
+_WAITING = 3  # signals laid out ahead of the cores
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Mean squares over time of every design on every signal; nan where a run could not go to its end."""
+
+    outputs: tuple[str, ...]
+    units: tuple[str, ...]
+    mean_square: Matrix  # (designs, signals, outputs)
+    events: NDArray[np.int64]  # (designs, signals)
+    status: tuple[tuple[Status, ...], ...]  # designs x signals
+
+    @property
+    def rms(self) -> Matrix:
+        """Roots of the mean squares, (designs, signals, outputs)."""
+        return np.sqrt(self.mean_square)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """R.m.s. values and numbers of events over `design` and `signal`."""
+        import xarray
+
+        dims = ("design", "signal")
+        data = {
+            name: (dims, self.rms[..., i], {"units": unit, "long_name": f"r.m.s. {name.replace('_', ' ')}"})
+            for i, (name, unit) in enumerate(zip(self.outputs, self.units, strict=True))
+        }
+        status = np.array([[str(s) for s in row] for row in self.status])
+        return xarray.Dataset({**data, "events": (dims, self.events), "status": (dims, status)})
+
+
+def simulate_many(
+    vehicles: Sequence[Vehicle],
+    *,
+    outputs: Sequence[str],
+    road: Sequence[Signal] | None = None,
+    forces: Sequence[Mapping[str, Signal]] | None = None,
+    displacement: Sequence[Signal] | None = None,
+    duration: float,
+    step: float = 2e-4,
+    settled: float = 0.0,
+    initial: Initial = "rest",
+    speed: float | None = None,
+    jobs: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Batch:
+    """Simulate every vehicle on every signal, and keep the mean squares of `outputs` from `settled` [s] on.
+
+    Sequences of signals are gone through together: the j-th run of a vehicle takes the j-th of each. `jobs` threads
+    (all cores by default) share the work; results do not depend on how many. See `simulate` for the rest.
+
+    Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
+    """
+    systems = [piecewise(vehicle) for vehicle in vehicles]
+    count = _count(road, forces, displacement)
+    knots, skipped = whole_steps(duration, step), round(settled / step)
+    if not 0 <= skipped < knots:
+        raise SimulationError(f"The part that does not count, {settled:g} s, must be shorter than {duration:g} s.")
+    for system in systems:
+        for name in outputs:
+            if name not in system.outputs:
+                raise SimulationError(f"There is no output named {name!r} (there are: {', '.join(system.outputs)}).")
+    squares = np.full((len(systems), count, len(outputs)), np.nan)
+    events, status = np.zeros((len(systems), count), np.int64), np.empty((len(systems), count), dtype=object)
+
+    def run(i: int, j: int, table: InputTable) -> None:
+        state = initial_state(systems[i], table.value[0], initial)
+        integration = event_driven.start(systems[i], table, state, list(outputs), keep=False, settled=skipped)
+        integration.advance(table.time.size - 1)
+        events[i, j], status[i, j] = integration.place[EVENTS], integration.status
+        if integration.status.ok:
+            squares[i, j] = integration.record.sums / (knots - skipped)
+
+    workers, done, waiting = jobs or os.cpu_count() or 1, 0, set[Future[None]]()
+    with ThreadPoolExecutor(workers) as pool:
+        for j in range(count):
+            tables: dict[tuple[object, ...], InputTable] = {}
+            for i, system in enumerate(systems):
+                table = _table(system, tables, j, road, forces, displacement, speed, duration, step)
+                waiting.add(pool.submit(run, i, j, table))
+            while waiting and (len(waiting) > _WAITING * max(workers, len(systems)) or j == count - 1):
+                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    future.result()
+                done += len(finished)
+                if progress is not None:
+                    progress(done / (count * len(systems)))
+    units = tuple(systems[0].outputs[name].unit for name in outputs) if systems else ("",) * len(outputs)
+    return Batch(tuple(outputs), units, squares, events, tuple(tuple(row) for row in status))
+
+
+def _count(*given: Sequence[object] | None) -> int:
+    """The number of runs of each vehicle."""
+    lengths = {len(g) for g in given if g is not None}
+    if any(isinstance(g, Signal | Mapping) for g in given) or len(lengths) != 1:
+        raise SimulationError(
+            "simulate_many takes sequences of signals, all of one length: road=[multisine(...), ...] or forces=[{...}]."
+        )
+    return lengths.pop()
+
+
+def _table(
+    system: PiecewiseSystem,
+    tables: dict[tuple[object, ...], InputTable],
+    j: int,
+    road: Sequence[Signal] | None,
+    forces: Sequence[Mapping[str, Signal]] | None,
+    displacement: Sequence[Signal] | None,
+    speed: float | None,
+    duration: float,
+    step: float,
+) -> InputTable:
+    """The inputs of a system's j-th run; systems whose inputs agree share one table."""
+    moved, pushed, shaken = (None if g is None else g[j] for g in (road, forces, displacement))
+    signals, delays = assign(system.mechanism, moved, pushed, shaken, speed)
+    check_holds(system, signals)
+    key = (tuple(map(id, signals)), tuple(delays))
+    if key not in tables:
+        tables[key] = tabulate(signals, delays, duration, step)
+    return tables[key]

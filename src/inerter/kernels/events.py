@@ -8,7 +8,7 @@ import numpy as np
 
 from inerter.kernels import compiled, typed
 from inerter.kernels.flow import first_root, inputs_from, knot_numbers, series, slope_at
-from inerter.kernels.modes import ENTRY, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N, is_locked
+from inerter.kernels.modes import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
 
 Array = Any
 DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE = range(7)
@@ -22,6 +22,7 @@ STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, 
 RESIDUAL, POLYNOMIAL, U, SIZE, X = 7, 8, 11, 19, 19 + ORDERS
 ROWS = X + 32
 _ROUNDING = 1e-13  # relative to the largest state so far
+_MET = 1e-9  # the same where a guard has just been met
 _PAUSES = 200  # switches without any time between them
 _SWITCHES = 20000  # switches within one segment
 
@@ -32,9 +33,10 @@ class Work(NamedTuple):
     work: Array  # (ROWS, enough): state, its largest size so far, a state on trial, the clock within a segment, ...
     flags: Array  # (4, k) states on trial; leading zero coefficients of each guard just now; its limit; see `_crossing`
     place: Array  # see SEGMENT, ...
-    sizes: Array  # as in `Mechanics`, and so the next two
+    sizes: Array  # as in `Mechanics`, and so the next three
     elements: Array
     limit: Array
+    lengths: Array
     number: Array  # as in `Modes`, and so the next four
     state: Array
     maps: Array
@@ -128,7 +130,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
             if place[SEGMENT] > k:
                 continue
         if place[JUMPED] == 0:
-            _jump(now.maps[m], sizes, work, value, value_before, record.branch_road, k, nu)
+            _jump(now.maps[m], sizes, work, record, place, k, nu)
         place[JUMPED] = 1
         code = cross(now, record.events, record.branch_road, record.gauss, record.time[k], length)
         if code != DONE:
@@ -329,6 +331,17 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     for i in range(n):
         work[GUESS, i] = work[STATE, i]
         work[SIZE, i] = max(work[SCALE, i], abs(work[STATE, i]))
+    for e in range(elements):  # only a gap that is at its limit can touch
+        if now.elements[e, KIND] != FRICTION and trial[e] != 0 and now.limit[e] > 0.0:
+            beyond, size = -trial[e] * now.limit[e], now.limit[e]
+            for j in range(now.lengths.shape[1]):
+                at = j + sizes[NA]
+                term = now.lengths[e, j] * (work[STATE, at] if at < n else work[U, at - n])
+                beyond += term
+                size += abs(term)
+            if abs(beyond) > 1e-9 * size:
+                now.place[WANTED] = 0
+                return e
     first = 0
     for group in range(3):
         last = first + now.state[m, elements + group]
@@ -345,7 +358,7 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
                 s = _asked(reaction, n + e, residual, first, last)
                 if now.limit[e] == 0.0 or abs(s) <= 1e-9 * largest:
                     continue
-                if trial[e] == 0 and (group == 0) == is_locked(now.elements[e, KIND], trial[e]):
+                if trial[e] == 0 and group == 0 and now.elements[e, KIND] == FRICTION:
                     now.place[WANTED] = 1 if s > 0.0 else -1
                     return e
                 if trial[e] * s < 0.0:
@@ -411,12 +424,12 @@ def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) ->
 def _violated(now: Work, m: int, e: int, d: float, met: bool) -> int:
     """At which limit (-1, 1) the guard of element e is violated at once, else 0; notes how long it stays on a limit.
 
-    `met`: the guard has just been found to be at its nearer limit.
+    `met`: the guard has just been found to be at a limit.
     """
     n, nu, work, row = now.sizes[N], now.place[INPUTS], now.work, now.maps[m, now.sizes[GUARD] + e]
     now.flags[TOUCH, e] = 0
     for at in range(2):
-        side, limit, opposite = 2 * at - 1, now.limits[m, e, at], now.limits[m, e, 1 - at]
+        side, limit = 2 * at - 1, now.limits[m, e, at]
         if abs(limit) == np.inf:
             continue
         for order in range(ORDERS):
@@ -430,8 +443,7 @@ def _violated(now: Work, m: int, e: int, d: float, met: bool) -> int:
                 size += abs(limit)
             else:
                 total -= row[n + nu]
-            zero = abs(total) <= _ROUNDING * size
-            if zero or (order == 0 and met and abs(total) < 0.5 * abs(limit - opposite)):
+            if abs(total) <= (_MET if order == 0 and met else _ROUNDING) * size:
                 now.flags[TOUCH, e], now.flags[SIDE, e] = order + 1, side
             elif side * total > 0.0:
                 return side
@@ -441,30 +453,42 @@ def _violated(now: Work, m: int, e: int, d: float, met: bool) -> int:
 
 
 @compiled
-def _jump(
-    maps: Array, sizes: Array, work: Array, value: Array, value_before: Array, branch_road: Array, k: int, nu: int
-) -> None:
-    """A held road moves at once: positions follow, and the mean force does the work."""
-    n, nr, branches = sizes[N], sizes[NR], branch_road.shape[0]
+def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> None:
+    """A held road moves at once: positions follow, the mean force does the work, and the sample here is taken anew."""
+    n, nr, branches = sizes[N], sizes[NR], record.branch_road.shape[0]
     first, u = sizes[OUTPUT] + sizes[OUTPUTS] + branches, work[U]
+    leaps = 0.0
     for c in range(nr):
-        rise = value[k, c] - value_before[k, c]
-        if rise == 0.0:
-            continue
-        for i in range(nr):
-            u[i] = value[k, i] if i < c else value_before[k, i]
-            u[nr + i] = u[2 * nr + i] = 0.0
-        for i in range(3 * nr, nu):
-            u[i] = value[k, i - 2 * nr]
+        leaps += abs(record.value[k, c] - record.value_before[k, c])
+    if leaps == 0.0:
+        return
+    counted = record.slot[k] >= 0 and k > place[SETTLED]
+    for i in range(nr):
+        u[i], u[nr + i], u[2 * nr + i] = record.value_before[k, i], record.slope_before[k, i], 0.0
+    for i in range(3 * nr, nu):
+        u[i] = record.value_before[k, i - 2 * nr]
+    for o in range(sizes[OUTPUTS]):
+        if counted:
+            record.sums[o] -= over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
+    for c in range(nr):
+        rise = record.value[k, c] - record.value_before[k, c]
         for half in range(2):
             for b in range(branches):
-                if branch_road[b, c] != 0.0:
+                if record.branch_road[b, c] != 0.0:
                     force = over_columns(maps[first + b], work[STATE], u, n, nu)
-                    work[ENERGY, c] += 0.5 * force * branch_road[b, c] * rise
+                    work[ENERGY, c] += 0.5 * force * record.branch_road[b, c] * rise
             if half == 0:
-                u[c] = value[k, c]
+                u[c] = record.value[k, c]
                 for i in range(n):
                     work[STATE, i] += maps[i, n + nr + c] * rise
+    for i in range(nr):
+        u[nr + i] = record.slope[k, i]
+    for i in range(3 * nr, nu):
+        u[i] = record.value[k, i - 2 * nr]
+    for o in range(sizes[OUTPUTS]):
+        if counted:
+            record.sums[o] += over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
+    _sample(record, record.slot[k], place[MODE], work, n)
 
 
 @compiled

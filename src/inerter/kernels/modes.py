@@ -25,6 +25,7 @@ from inerter.kernels.linalg import factor, solve
 
 Array = Any
 RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one
+ROUNDING = 1e-11  # of a sum, relative to its largest terms
 FRICTION, GAP = 0, 1
 KIND, OWN_POSITION = 0, 1  # columns of `Mechanics.elements`
 NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT = range(11)  # places in `sizes`, see `Mechanics`
@@ -234,6 +235,25 @@ def block(A: Array, top: int, bottom: int, left: int, right: int) -> Array:
     return out
 
 
+@typed("float64[:,::1](float64[:,::1])")
+def sizes_of(A: Array) -> Array:
+    """Absolute values."""
+    out = np.zeros(A.shape)
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            out[i, j] = abs(A[i, j])
+    return out
+
+
+@typed("void(float64[:,::1], float64[:,::1])")
+def drop_rounding(A: Array, bound: Array) -> None:
+    """Set to zero what is rounding of sums of terms as large as `bound`: what cannot move must not creep."""
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            if abs(A[i, j]) < ROUNDING * bound[i, j]:
+                A[i, j] = 0.0
+
+
 @compiled
 def build(
     sizes: Array,
@@ -308,17 +328,30 @@ def build(
     velocity = inner(L, H_a)
     add(S, row, 0, velocity, 1.0)
     add(right, row, n + 2 * nr, inner(L, H_z), -1.0)
-    if not solve_rows(S, right):
+    solved = np.zeros((nv + nl, width + nv + nl))
+    add(solved, 0, 0, right, 1.0)
+    add(solved, 0, width, unit(nv + nl), 1.0)
+    if not solve_rows(S, solved):
         return False
+    bound = product(sizes_of(block(solved, 0, nv + nl, width, width + nv + nl)), sizes_of(right))
+    right = block(solved, 0, nv + nl, 0, width)
+    drop_rounding(right, bound)
 
     for i in range(maps.shape[0]):
         for j in range(width):
             maps[i, j] = 0.0
-    massless = block(right, na, nv, 0, width)
+    massless, massless_bound = block(right, na, nv, 0, width), block(bound, na, nv, 0, width)
     add(maps, 0, 0, block(right, 0, na, 0, width), 1.0)
     add(maps, na, 0, product(block(motion, 0, ng, na, nv), massless), 1.0)
     add(maps, na, 0, block(motion, 0, ng, 0, na), 1.0)
     add(maps, na, n + nr, block(motion, 0, ng, nv, columns), 1.0)
+    grown = block(maps, na, n, 0, width)
+    bound = sizes_of(grown)
+    add(bound, 0, 0, product(sizes_of(block(motion, 0, ng, na, nv)), massless_bound), 1.0)
+    drop_rounding(grown, bound)
+    for i in range(ng):
+        for j in range(width):
+            maps[na + i, j] = grown[i, j]
     eta, guard = sizes[ETA], sizes[GUARD]
     add(maps, eta, 0, block(right, 0, nv, 0, width), 1.0)
     for i in range(nl):
@@ -339,6 +372,12 @@ def build(
             add(maps, guard + e, 0, block(locks, e, e + 1, 0, na), 1.0)
             add(maps, guard + e, n + nr, block(locks, e, e + 1, nv, columns), 1.0)
             add(maps, guard + e, 0, product(block(locks, e, e + 1, na, nv), massless), 1.0)
+            slip = block(maps, guard + e, guard + e + 1, 0, width)
+            bound = sizes_of(slip)
+            add(bound, 0, 0, product(sizes_of(block(locks, e, e + 1, na, nv)), massless_bound), 1.0)
+            drop_rounding(slip, bound)
+            for j in range(width):
+                maps[guard + e, j] = slip[0, j]
         limits[e, 2] = 0.0
         for j in range(n + nr, n + 3 * nr):
             if maps[guard + e, j] != 0.0:

@@ -46,7 +46,7 @@ class Integration:
         while self.status.ok:
             m, c = self.modes, self.mechanics
             now = kernel.Work(
-                self.work, self.flags, self.place, c.sizes, c.elements, c.limit,
+                self.work, self.flags, self.place, c.sizes, c.elements, c.limit, c.lengths,
                 m.number, m.state, m.maps, m.reaction, m.limits, m.reach,
             )  # fmt: skip
             code = kernel.integrate(self.march, m.steps, now, self.record, self.table.step, stop)

@@ -120,7 +120,7 @@ def tabulate(
     check_steps(signals, step, start + duration)
     grid: Matrix = start + step * np.arange(count + 1, dtype=np.float64)
     broken = [
-        np.zeros(0) if s is None else s.breaks(grid[0] - d, grid[-1] - d) + d
+        np.zeros(0) if s is None else _breaks(s, d, grid[0], grid[-1], step)
         for s, d in zip(signals, delays, strict=True)
     ]
     between = np.unique(np.concatenate([np.zeros(0), *broken]))
@@ -149,7 +149,8 @@ def tabulate(
     if before:
         value_before, slope_before = value.copy(), slope.copy()
         for i, at, left, left_slope in before:
-            slope_before[at, i] = left_slope
+            kinks = np.abs(left_slope - slope[at, i]) > 1e-9 * float(np.abs(slope[:, i]).max())
+            slope_before[at[kinks], i] = left_slope[kinks]
             leaps = np.abs(left - value[at, i]) > 1e-12 * max(float(np.abs(value[:, i]).max()), 1e-300)
             value_before[at[leaps], i] = left[leaps]
             jumped[at[leaps]] = True
@@ -168,6 +169,12 @@ def tabulate(
     )
 
 
+def _breaks(signal: Signal, delay: float, first: float, last: float, step: float) -> Matrix:
+    """The times after `first` and up to `last`, included, at which a delayed signal breaks."""
+    times = signal.breaks(first - delay, last - delay + 0.5 * step) + delay
+    return times[times <= last + _SAME * step]
+
+
 def _from_the_left(
     signal: Signal, delay: float, breaks: Matrix, time: Matrix, step: float
 ) -> tuple[NDArray[np.intp], Matrix, Matrix]:
@@ -175,8 +182,8 @@ def _from_the_left(
     at = np.searchsorted(time, breaks - 0.5 * _SAME * step)
     at = at[np.abs(time[np.minimum(at, time.size - 1)] - breaks) <= 2.0 * _SAME * step]
     aside = 1e-7 * min(step, signal.interval or step)
-    left, slope = signal.sample(time[at] - delay - aside)
-    return at, left + aside * slope, slope
+    (left, slope), (_, further) = (signal.sample(time[at] - delay - i * aside) for i in (1, 2))
+    return at, left + aside * slope, 2.0 * slope - further
 
 
 def whole_steps(duration: float, step: float) -> int:

@@ -206,7 +206,10 @@ def sampled_inputs(system: PiecewiseSystem, table: InputTable) -> Matrix:
         6.0 * (z1 - z0) / length**2 - (4.0 * s0 + 2.0 * s1) / length,
         -6.0 * (z1 - z0) / length**2 + (2.0 * s0 + 4.0 * s1) / length,
     )
-    return np.hstack([table.value[at, :roads], table.slope[at, :roads], bend, table.value[at, roads:]])
+    last = (at == table.time.size - 1)[:, None]
+    value = np.where(last, table.value_before[at], table.value[at])
+    slope = np.where(last, table.slope_before[at], table.slope[at])
+    return np.hstack([value[:, :roads], slope[:, :roads], bend, value[:, roads:]])
 
 
 def _energy(integration: Integration, start: Matrix) -> Energy:

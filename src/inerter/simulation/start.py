@@ -56,6 +56,8 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:
     """
     branches, coordinates = system.graph.branches, system.mechanism.coordinates
     nodes = len(system.graph.nodes)
+    if nodes == 0:
+        return np.zeros(0)
     E = np.array([b.nodes for b in branches]).reshape(-1, nodes)
     offset = np.array([b.roads for b in branches]).reshape(len(branches), -1) @ road
     k = np.array([_size(b.element) if isinstance(b.element, Spring) else 0.0 for b in branches])

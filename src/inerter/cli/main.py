@@ -19,6 +19,7 @@ EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
   inerter run examples/stiffness-sweep.toml -o sweep -j 2
   inerter check my-study.toml
+  inerter simulate examples/stick_slip.toml
   inerter reproduce wang-su-2008 --only linear -o paper
 
 Exit codes: 0 done, 1 the work failed or was interrupted, 2 the request was wrong."""
@@ -85,6 +86,38 @@ def check(study: Path, /) -> int:
     from inerter.cli.commands import check as command
 
     return command(study)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter simulate examples/backlash_rattle.toml
+  inerter simulate my-car.toml -o motion --force
+  inerter simulate my-car.toml --window 2:4    zooms the figure to 2 to 4 s"""
+)
+def simulate(
+    file: Path,
+    /,
+    *,
+    output: Output = None,
+    window: Annotated[
+        str | None, Parameter(help="Seconds that the figure shows, FROM:TO; as much as can be read if left out.")
+    ] = None,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Simulate one motion with dry friction and backlash, and write it as tables and a figure.
+
+    The folder, by default FILE-results, then holds trajectory.csv,
+    trajectory.nc, events.csv, simulation.toml and figures.
+
+    Parameters
+    ----------
+    file
+        The simulation file (TOML): a vehicle or rig, its strut and a signal. examples/stick_slip.toml is one.
+    """
+    from inerter.cli.simulation import simulate as command
+
+    return command(file, output, window, force=force, as_json=json)
 
 
 @app.command(help_epilogue="Example: inerter reproduce wang-su-2008 --only linear -o paper")

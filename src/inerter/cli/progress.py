@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 from inerter.study.cases import Outcome
-from inerter.study.run import Progress as Callback
+from inerter.study.run import Progress as Report
 
 
 @contextmanager
-def progress(what: str) -> Iterator[Callback]:
+def progress(what: str) -> Iterator[Report]:
     """A callback that shows how many cases are done, and which one was last."""
     if not sys.stderr.isatty():
         yield lambda done, total, outcome: _line(what, done, total, outcome)
@@ -35,6 +45,31 @@ def progress(what: str) -> Iterator[Callback]:
             bar.update(task, completed=done, total=total, description=name)
 
         yield show
+
+
+@contextmanager
+def fraction(what: str) -> Iterator[Callable[[float], None]]:
+    """A callback that shows what part of one long piece of work is done."""
+    if not sys.stderr.isatty():
+        yield _Every(what)
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=1.0)
+        yield lambda done: bar.update(task, completed=done)
+
+
+@dataclass
+class _Every:
+    """A line whenever ten seconds have gone by since the last."""
+
+    what: str
+    last: float = field(default_factory=time.monotonic)
+
+    def __call__(self, done: float) -> None:
+        if time.monotonic() - self.last > 10.0:
+            self.last = time.monotonic()
+            print(f"{self.what}: {100 * done:.0f} % done", file=sys.stderr, flush=True)
 
 
 def _line(what: str, done: int, total: int, outcome: Outcome | None) -> None:

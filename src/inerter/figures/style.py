@@ -86,6 +86,11 @@ def layout_styles(names: Iterable[str], baseline: str) -> dict[str, LayoutStyle]
     return styles
 
 
+def colour(number: int) -> str:
+    """The colour of a curve by its place among others."""
+    return _COLOURS[number % len(_COLOURS)]
+
+
 @contextmanager
 def styled() -> Iterator[None]:
     """What is created and drawn inside has the style of the package; settings of the caller are back afterwards."""

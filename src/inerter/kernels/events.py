@@ -258,6 +258,14 @@ def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, 
     return best
 
 
+@typed("int64(int64[:,::1])")
+def _unknown(flags: Array) -> int:
+    """Leave to have a mode built; what has been found out about modes on trial must not stay."""
+    for e in range(flags.shape[1]):
+        flags[TOUCH, e] = 0
+    return MODE_UNKNOWN
+
+
 @compiled
 def switch(now: Work, events: Array, start: float, length: float, who: int) -> int:
     """Find the mode that goes on from here, after the guard of element `who` (or nothing, -1) was met.
@@ -278,7 +286,7 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
     for _ in range(20 + 8 * elements):
         m = mode_number(now.number, trial)
         if m < 0:
-            return MODE_UNKNOWN
+            return _unknown(now.flags)
         verdict = judge(now, m, length, who)
         if verdict < 0:
             break
@@ -298,7 +306,7 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
         if possible:
             m = mode_number(now.number, trial)
             if m < 0:
-                return MODE_UNKNOWN
+                return _unknown(now.flags)
             verdict = judge(now, m, length, who)
     if verdict != ACCEPTED:
         return IMPACT if struck else NO_MODE
@@ -328,9 +336,16 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     n, nu, elements, d = sizes[N], now.place[INPUTS], sizes[K], min(now.reach[m], length)
     coefficients, residual = work[U : U + 8], work[RESIDUAL]
     inputs_from(work[NUMBERS], sizes[NR], nu, length, work[CLOCK, 0], d, coefficients)
+    speed, length_scale = 0.0, 0.0  # what has not moved yet is no finer than what has
     for i in range(n):
         work[GUESS, i] = work[STATE, i]
-        work[SIZE, i] = max(work[SCALE, i], abs(work[STATE, i]))
+        size = max(work[SCALE, i], abs(work[STATE, i]))
+        if i < sizes[NA]:
+            speed = max(speed, size)
+        else:
+            length_scale = max(length_scale, size)
+    for i in range(n):
+        work[SIZE, i] = speed if i < sizes[NA] else length_scale
     for e in range(elements):  # only a gap that is at its limit can touch
         if now.elements[e, KIND] != FRICTION and trial[e] != 0 and now.limit[e] > 0.0:
             beyond, size = -trial[e] * now.limit[e], now.limit[e]

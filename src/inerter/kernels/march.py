@@ -56,6 +56,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
     """
     inputs = len(used)
     columns, rows = n + inputs + 1, n + 2 * elements
+    numbers = used or (0,)  # an empty tuple cannot be compiled, even if it is never looked into
 
     def march(  # type: ignore[no-untyped-def]
         steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
@@ -68,7 +69,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
         k = first
         while k < stop:
             for j in range(inputs):
-                c, number = used[j] // 4, used[j] % 4
+                c, number = numbers[j] // 4, numbers[j] % 4
                 if number == 0:
                     v[n + j] = value[k, c]
                 elif number == 1:

@@ -25,7 +25,7 @@ from inerter.kernels.linalg import factor, solve
 
 Array = Any
 RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one
-ROUNDING = 1e-11  # of a sum, relative to its largest terms
+ROUNDING = 1e-14  # of a sum, relative to its terms
 FRICTION, GAP = 0, 1
 KIND, OWN_POSITION = 0, 1  # columns of `Mechanics.elements`
 NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT = range(11)  # places in `sizes`, see `Mechanics`
@@ -328,12 +328,14 @@ def build(
     velocity = inner(L, H_a)
     add(S, row, 0, velocity, 1.0)
     add(right, row, n + 2 * nr, inner(L, H_z), -1.0)
-    solved = np.zeros((nv + nl, width + nv + nl))
+    solved, terms = np.zeros((nv + nl, width + nv + nl)), sizes_of(S)
     add(solved, 0, 0, right, 1.0)
     add(solved, 0, width, unit(nv + nl), 1.0)
     if not solve_rows(S, solved):
         return False
-    bound = product(sizes_of(block(solved, 0, nv + nl, width, width + nv + nl)), sizes_of(right))
+    bound = sizes_of(right)  # of the residual of the solution that elimination finds
+    add(bound, 0, 0, product(terms, sizes_of(block(solved, 0, nv + nl, 0, width))), 1.0)
+    bound = product(sizes_of(block(solved, 0, nv + nl, width, width + nv + nl)), bound)
     right = block(solved, 0, nv + nl, 0, width)
     drop_rounding(right, bound)
 

@@ -11,12 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from inerter.errors import SignalError, UnitError
-from inerter.signals.arguments import generator, positive, whole_number
+from inerter.signals.arguments import Array, generator, positive, whole_number
 from inerter.signals.signal import Sampled, Signal
 from inerter.units import parse_quantity, shown
 
-_HEADING = re.compile(r"\s*(distance|height)\s*\[([^\]]+)\]\s*", re.IGNORECASE)
-_EXAMPLE = 'such as "distance [m], height [mm]"'
+_HEADING = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
 
 
 def held_noise(
@@ -53,24 +52,56 @@ def profile(path: str | os.PathLike[str], speed: float) -> Sampled:
     if not isinstance(path, str | os.PathLike):
         raise SignalError(f"A profile is read from the path of a CSV file, got {path!r}.")
     name = os.fspath(path)
-    heading, *rows = _rows(name)
-    order, scales = _header(name, *heading)
+    distance, height = _columns(name, "profile", {"distance": "m", "height": "m"})
+    return Signal.sampled((distance - distance[0]) / speed, height, speed=speed, label=f"profile {Path(name).name}")
+
+
+def recorded(
+    path: str | os.PathLike[str],
+    unit: str = "m",
+    hold: str = "cubic",
+    *,
+    periodic: bool = False,
+    speed: float | None = None,
+) -> Sampled:
+    """A table of samples over time, as `Signal.sampled` takes it.
+
+    `path` is a CSV file with a column of times and one of values, whose units stand in the header, such as
+    `time [s], value [mm]`; `unit` is that of the signal, m or N.
+
+    Raises `SignalError`, which names the line, for a file that cannot be read as such, and as `Signal.sampled` does.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise SignalError(f"A record is read from the path of a CSV file, got {path!r}.")
+    name = os.fspath(path)
+    time, value = _columns(name, "record", {"time": "s", "value": unit})
+    return Signal.sampled(time, value, hold, periodic=periodic, speed=speed, label=f"record {Path(name).name}")
+
+
+def _columns(name: str, what: str, units: dict[str, str]) -> Array:
+    """(2, points): the two columns of a CSV file whose header names them, in `units`; the first must increase."""
+    first = next(iter(units))
+    heading, *rows = _rows(name, what, units)
+    order, scales = _header(name, units, *heading)
     points: list[list[float]] = []
     for line, cells in rows:
         numbers = [_number(name, line, cell) * scale for cell, scale in zip(cells, scales, strict=True)]
         points.append([numbers[column] for column in order])
         if len(points) > 1 and points[-1][0] <= points[-2][0]:
             raise SignalError(
-                f"{name}, line {line}: the distances of a profile must increase, got {points[-1][0]:.9g} m "
-                f"after {points[-2][0]:.9g} m."
+                f"{name}, line {line}: the {first}s of a {what} must increase, got {points[-1][0]:.9g} {units[first]} "
+                f"after {points[-2][0]:.9g} {units[first]}."
             )
     if len(points) < 2:
-        raise SignalError(f"{name}: a profile needs at least two points, got {len(points)}.")
-    distance, height = np.array(points).T
-    return Signal.sampled((distance - distance[0]) / speed, height, speed=speed, label=f"profile {Path(name).name}")
+        raise SignalError(f"{name}: a {what} needs at least two points, got {len(points)}.")
+    return np.array(points).T
 
 
-def _rows(name: str) -> list[tuple[int, list[str]]]:
+def _example(units: dict[str, str]) -> str:
+    return 'such as "{}"'.format(", ".join(f"{c} [{'mm' if c == 'height' else u}]" for c, u in units.items()))
+
+
+def _rows(name: str, what: str, units: dict[str, str]) -> list[tuple[int, list[str]]]:
     """The lines that are not empty, numbered, each of two cells; at least one."""
     try:
         with open(name, encoding="utf-8-sig", newline="") as file:
@@ -79,7 +110,7 @@ def _rows(name: str) -> list[tuple[int, list[str]]]:
     except FileNotFoundError:
         raise SignalError(f"There is no file {name!r}, looked for in {os.getcwd()!r}.") from None
     except (OSError, ValueError, csv.Error) as problem:
-        raise SignalError(f"The profile {name!r} cannot be read as a CSV file: {problem}.") from None
+        raise SignalError(f"The {what} {name!r} cannot be read as a CSV file: {problem}.") from None
     for line, cells in rows:
         if len(cells) != 2:
             raise SignalError(
@@ -87,23 +118,25 @@ def _rows(name: str) -> list[tuple[int, list[str]]]:
                 f"got {len(cells)} in {shown(','.join(cells))}."
             )
     if not rows:
-        raise SignalError(f"The profile {name!r} is empty: expected a header, {_EXAMPLE}, and at least two points.")
+        raise SignalError(
+            f"The {what} {name!r} is empty: expected a header, {_example(units)}, and at least two points."
+        )
     return rows
 
 
-def _header(name: str, line: int, cells: list[str]) -> tuple[list[int], list[float]]:
-    """The columns of distance and height, and the size of each column's unit [m]."""
+def _header(name: str, units: dict[str, str], line: int, cells: list[str]) -> tuple[list[int], list[float]]:
+    """Where the columns are, and the size of each cell's unit in the wanted one."""
     found = [_HEADING.fullmatch(cell) for cell in cells]
     names = [match[1].lower() if match else "" for match in found]
-    if sorted(names) != ["distance", "height"]:
+    if sorted(names) != sorted(units):
         raise SignalError(
-            f"{name}, line {line}: expected a header with units, {_EXAMPLE}, got {shown(','.join(cells))}."
+            f"{name}, line {line}: expected a header with units, {_example(units)}, got {shown(','.join(cells))}."
         )
     try:
-        scales = [parse_quantity(f"1 {match[2].strip()}", "m") for match in found if match]
+        scales = [parse_quantity(f"1 {match[2].strip()}", units[match[1].lower()]) for match in found if match]
     except UnitError as problem:
         raise SignalError(f"{name}, line {line}: {problem}") from None
-    return [names.index("distance"), names.index("height")], scales
+    return [names.index(column) for column in units], scales
 
 
 def _number(name: str, line: int, cell: str) -> float:

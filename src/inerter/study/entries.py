@@ -37,6 +37,28 @@ def positive(unit: str) -> PlainValidator:
     return PlainValidator(check)
 
 
+def quantity(unit: str) -> PlainValidator:
+    """A quantity of `unit` of either sign."""
+    return PlainValidator(lambda text: parse_quantity(text, unit))
+
+
+def yes_or_no(value: Any) -> bool:
+    """True or false."""
+    if not isinstance(value, bool):
+        raise ValueError(f"Got {shown(value)}; expected true or false, without quotes.")
+    return value
+
+
+def fixed_amount(text: Any) -> Amount:
+    """The value of an element where there is nothing to optimise."""
+    if isinstance(text, dict):
+        raise ValueError(
+            'Got a range; a simulation needs one value. Write one, such as "3 kN s/m", perhaps the best that '
+            "inerter run found (summary.csv)."
+        )
+    return amount(text)
+
+
 def amount(text: Any) -> Amount:
     """The value of an element."""
     unit, value = parse_element(text)

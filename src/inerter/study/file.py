@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -35,13 +35,17 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    tables = _read(path)
+    tables = read_tables(path)
     try:
         shape = StudyFile.model_validate(tables)
     except ValidationError as error:
         raise refusal(path, explain(error)) from None
     study = _resolve(path, shape)
-    problems = [*_layout_problems(study), *_sweep_problems(study), *_setting_problems(study)]
+    problems = [
+        *layout_problems(study.model, study.elements, study.layouts),
+        *_sweep_problems(study),
+        *_setting_problems(study),
+    ]
     if not problems:
         problems = list(_free_value_problems(study))
     if problems:
@@ -49,18 +53,22 @@ def load_study(path: str | Path) -> Study:
     return study
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_tables(path: Path, what: str = "a study file") -> dict[str, Any]:
+    """The tables of a TOML file; `what` it should be is for messages.
+
+    Raises `StudyError` for a file that cannot be read, or is no TOML.
+    """
     if path.is_dir():
-        raise StudyError(f"{path}: this is a folder; expected a study file. Give the path of a .toml file in it.")
+        raise StudyError(f"{path}: this is a folder; expected {what}. Give the path of a .toml file in it.")
     try:
         with path.open("rb") as stream:
             data = stream.read(_LARGEST + 1)
     except FileNotFoundError:
-        raise StudyError(f"{path}: there is no such file; expected a study file. Check the path.") from None
+        raise StudyError(f"{path}: there is no such file; expected {what}. Check the path.") from None
     except OSError as error:
-        raise StudyError(f"{path}: cannot be read ({error.strerror}); expected a study file.") from None
+        raise StudyError(f"{path}: cannot be read ({error.strerror}); expected {what}.") from None
     if len(data) > _LARGEST:
-        raise refusal(path, [f"larger than {_LARGEST} bytes; expected a study file, which is a page of TOML."])
+        raise refusal(path, [f"larger than {_LARGEST} bytes; expected {what}, which is a page of TOML."])
     try:
         return tomllib.loads(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
@@ -69,7 +77,7 @@ def _read(path: Path) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise refusal(path, [_syntax_problem(str(error), data)]) from None
     except (RecursionError, ValueError):  # thousands of brackets, or of digits in a whole number
-        raise refusal(path, ["not a study file: brackets nested too deeply, or a number too long."]) from None
+        raise refusal(path, [f"not {what}: brackets nested too deeply, or a number too long."]) from None
 
 
 def _syntax_problem(message: str, data: bytes) -> str:
@@ -87,7 +95,7 @@ def _syntax_problem(message: str, data: bytes) -> str:
 def _resolve(path: Path, shape: StudyFile) -> Study:
     vehicle = shape.vehicle.model_dump()
     model = vehicle.pop("model")
-    layouts = {name: StrutLayout(_struts(model, entry)) for name, entry in shape.layouts.items()}
+    layouts = {name: StrutLayout(struts_of(model, entry)) for name, entry in shape.layouts.items()}
     settings = shape.study
     baseline = settings.baseline
     if baseline is None and len(layouts) > 1:
@@ -98,7 +106,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         model=model,
         vehicle=vehicle,
         road=Road(roughness=shape.road.roughness, speed=shape.road.speed),
-        elements={name: _element(name, entry) for name, entry in shape.elements.items()},
+        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
         indices=settings.indices,
         conventions=settings.conventions,
@@ -111,40 +119,43 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
     )
 
 
-def _struts(model: str, entry: Axles | str) -> dict[str, str]:
+def struts_of(model: str, entry: Axles | str) -> dict[str, str]:
+    """The network of every mount."""
     return entry.model_dump() if isinstance(entry, Axles) else dict.fromkeys(MOUNTS[model], entry)
 
 
-def _element(name: str, entry: Range | Amount) -> Element:
+def element_of(name: str, entry: Range | Amount) -> Element:
+    """The element that the unit of its value tells."""
     if isinstance(entry, Range):
         return _KINDS[entry.lower.unit](Free(entry.lower.value, entry.upper.value, name), name)
     return _KINDS[entry.unit](entry.value, name)
 
 
-def _sweep(element: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
+def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
     if not isinstance(entry, SweepRange):
-        return Sweep(element, tuple(amount.value for amount in entry), entry[0].unit)
+        return Sweep(name, tuple(amount.value for amount in entry), entry[0].unit)
     space = np.geomspace if entry.spacing == "log" else np.linspace
     values = space(entry.lower.value, entry.upper.value, entry.points)
-    return Sweep(element, tuple(float(value) for value in values), entry.lower.unit)
+    return Sweep(name, tuple(float(value) for value in values), entry.lower.unit)
 
 
-def _layout_problems(study: Study) -> Iterator[str]:
-    for name, layout in study.layouts.items():
-        if tuple(layout.struts) != MOUNTS[study.model]:
+def layout_problems(model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[str]:
+    """What is wrong with layouts: networks that cannot be, and elements that are not there."""
+    for name, layout in layouts.items():
+        if tuple(layout.struts) != MOUNTS[model]:
             yield at(
                 ("layouts", name),
-                "got a table; a quarter car has one strut, so expected its network in quotes, such as "
-                f"{shown(next(iter(layout.struts.values())))}.",
+                f"got a table; a {model.replace('-', ' ')} has one {MOUNTS[model][0]}, so expected its network in "
+                f"quotes, such as {shown(next(iter(layout.struts.values())))}.",
             )
             continue
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
             place = ("layouts", name) if alike else ("layouts", name, mount)
-            yield from (at(place, problem) for problem in _network_problems(expression, study.elements))
+            yield from (at(place, problem) for problem in _network_problems(expression, elements))
 
 
-def _network_problems(expression: str, elements: dict[str, Element]) -> Iterator[str]:
+def _network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:

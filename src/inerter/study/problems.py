@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,15 @@ if TYPE_CHECKING:
     from pydantic import ValidationError
     from pydantic_core import ErrorDetails
 
+Shapes = Mapping[tuple[str, ...], type[Shape]]
+
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_TELLING = {"vehicle": "model", "signal": "kind"}  # the key that decides which others a section has
+_OTHERS = {
+    "study": "It is a section of study files, for: inerter run.",
+    "signal": "It is a section of simulation files, for: inerter simulate.",
+    "simulation": "It is a section of simulation files, for: inerter simulate.",
+}
 
 
 def refusal(path: Path, problems: Iterable[str]) -> StudyError:
@@ -30,49 +38,52 @@ def at(place: Iterable[str], sentence: str) -> str:
     return f"{keys}: {sentence[0].lower()}{sentence[1:]}"
 
 
-def explain(error: ValidationError) -> Iterator[str]:
-    """The problems that the shape of the file has."""
+def explain(error: ValidationError, shapes: Shapes = SHAPES) -> Iterator[str]:
+    """The problems that the shape of the file has; `shapes` are all its tables, by their place."""
     for detail in error.errors(include_url=False):
         place = tuple(str(part) for part in detail["loc"])
-        yield at([key for key in place if not _is_tag(key)], _sentence(detail, place))
+        yield at([key for key in place if not _is_tag(key)], _sentence(detail, place, shapes))
 
 
-def _sentence(detail: ErrorDetails, place: tuple[str, ...]) -> str:
+def _sentence(detail: ErrorDetails, place: tuple[str, ...], shapes: Shapes) -> str:
     match detail["type"]:
         case "value_error":
             return str(detail["ctx"]["error"])
         case "missing":
-            return f"missing; expected {_example(place)}."
+            return f"missing; expected {_example(place, shapes)}."
         case "extra_forbidden":
-            return _unknown_key(place)
+            return _unknown_key(place, shapes)
         case "too_short":
-            return f"none given; expected {_example(place)}."
+            return f"none given; expected {_example(place, shapes)}."
         case _:  # model_type, dict_type: everything else is checked by validators of our own
-            return f"got {shown(detail['input'])}: not a table; expected {_example(place)}."
+            return f"got {shown(detail['input'])}: not a table; expected {_example(place, shapes)}."
 
 
-def _unknown_key(place: tuple[str, ...]) -> str:
-    key, known = place[-1], _keys(_shape(place[:-1]))
+def _unknown_key(place: tuple[str, ...], shapes: Shapes) -> str:
+    key, known = place[-1], _keys(_shape(place[:-1], shapes))
     sentence = f"unknown key; expected one of {', '.join(known)}."
-    elsewhere = [path for path, shape in SHAPES.items() if path != () and "*" not in path and key in _keys(shape)]
+    if len(place) == 1 and key in _OTHERS:
+        return f"{sentence} {_OTHERS[key]}"
+    elsewhere = [path for path, shape in shapes.items() if path != () and "*" not in path and key in _keys(shape)]
     for path in elsewhere:
-        if path[0] == "vehicle" == place[0]:
-            return f'{sentence} It is a key of model = "{path[1].strip("<>")}".'
+        if path[0] == place[0] in _TELLING:
+            return f'{sentence} It is a key of {_TELLING[path[0]]} = "{path[1].strip("<>").split()[0]}".'
+    elsewhere = [path for path in elsewhere if path[0] != place[0]]
     return sentence + (f" It belongs in [{elsewhere[0][0]}]." if elsewhere else nearest(key, known))
 
 
-def _example(place: tuple[str, ...]) -> str:
+def _example(place: tuple[str, ...], shapes: Shapes) -> str:
     """The example of the key at `place`; tags at its end are not keys."""
     while _is_tag(place[-1]):
         place = place[:-1]
-    for name, field in _shape(place[:-1]).model_fields.items():
+    for name, field in _shape(place[:-1], shapes).model_fields.items():
         if place[-1] in (name, field.alias) and field.examples:
             return str(field.examples[0])
     raise KeyError(place)
 
 
-def _shape(place: tuple[str, ...]) -> type[Shape]:
-    for path, shape in SHAPES.items():
+def _shape(place: tuple[str, ...], shapes: Shapes) -> type[Shape]:
+    for path, shape in shapes.items():
         if len(path) == len(place) and all(a in ("*", b) for a, b in zip(path, place, strict=True)):
             return shape
     raise KeyError(place)

@@ -118,8 +118,8 @@ def run_study(
     check_study(study)
     with claimed(folder, own=OWN, resume=resume, force=force):
         journal = Journal(folder / journals.NAME, study)
-        _write(folder / RESOLVED, write_resolved(study))
-        _write(folder / VERSIONS, _versions(study))
+        write_text(folder / RESOLVED, write_resolved(study))
+        write_text(folder / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
         done = journal.read() if resume else {}
         if not done:
             journal.start()
@@ -132,7 +132,7 @@ def run_study(
                 done[outcome.case] = outcome
                 progress(len(done), len(everything), outcome)
         data = dataset(study, done)
-        _write(folder / SUMMARY, summary_csv(study, data))
+        write_text(folder / SUMMARY, summary_csv(study, data))
         temporary = folder / f"{DATASET}.part"
         data.to_netcdf(temporary, engine="h5netcdf")
         temporary.replace(folder / DATASET)
@@ -140,8 +140,10 @@ def run_study(
 
 
 @contextmanager
-def claimed(folder: Path, *, own: Sequence[str], resume: bool, force: bool) -> Iterator[None]:
+def claimed(folder: Path, *, own: Sequence[str], resume: bool | None, force: bool) -> Iterator[None]:
     """A folder for results that is ours alone while we write; its files named in `own` may be replaced by `force`.
+
+    `resume` is None for work that is done in one go: the old files stay until each is replaced.
 
     Raises `StudyError` if it is not a folder, cannot be written, is in use, or holds something and neither `resume`
     nor `force` is given.
@@ -162,11 +164,10 @@ def claimed(folder: Path, *, own: Sequence[str], resume: bool, force: bool) -> I
         if not resume and any(path.name != _LOCK for path in folder.iterdir()):
             if not force:
                 ours = any((folder / name).exists() for name in own)
-                kept = (
-                    "Continue with --resume, replace the results with --force" if ours else "Use --force to add to it"
-                )
+                again = "Replace" if resume is None else "Continue with --resume, replace"
+                kept = f"{again} the results with --force" if ours else "Use --force to add to it"
                 raise StudyError(f"{folder}: is not empty. {kept}, or choose another folder with -o.")
-            for name in own:
+            for name in own if resume is not None else ():
                 _remove(folder / name)
         yield
     finally:
@@ -182,13 +183,14 @@ def _remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
-def _versions(study: Study) -> str:
-    versions = {"inerter": inerter.__version__, "python": platform.python_version()}
+def versions() -> dict[str, str]:
+    """The versions of this package, of Python and of the libraries on which numbers depend."""
     libraries = {name: version(name) for name in ("numpy", "scipy", "numba", "xarray")}
-    return json.dumps({**versions, **libraries, "seed": study.seed}, indent=2) + "\n"
+    return {"inerter": inerter.__version__, "python": platform.python_version(), **libraries}
 
 
-def _write(path: Path, text: str) -> None:
+def write_text(path: Path, text: str) -> None:
+    """Write a file that is there as a whole or not at all."""
     temporary = path.with_name(f"{path.name}.part")
     temporary.write_text(text, encoding="utf-8", newline="\n")
     temporary.replace(path)

@@ -22,8 +22,10 @@ from inerter.study.entries import (
     text,
     whole,
 )
+from inerter.units import shown
 
 MODELS = ("quarter-car", "half-car")
+RIG = "rig"
 INDICES = ("J1", "J3", "J5")
 METHODS = ("norm",)
 CONVENTIONS = ("exact", "paper2008")
@@ -88,11 +90,20 @@ SweepEntry = Annotated[
 ]
 
 
+def _car(value: Any) -> str:
+    if value == RIG:
+        raise ValueError(
+            f"Got {shown(RIG)}, which has no road to be judged on; expected {' or '.join(map(shown, MODELS))}. "
+            f"A rig is for: inerter simulate."
+        )
+    return one_of("a vehicle model", MODELS)(value)
+
+
 class AnyCar(Shape):
     """A vehicle whose model is missing or unknown: nothing more can be said about its keys."""
 
     model_config = ConfigDict(extra="ignore")
-    model: Annotated[str, PlainValidator(one_of("a vehicle model", MODELS))] = Field(examples=['model = "quarter-car"'])
+    model: Annotated[str, PlainValidator(_car)] = Field(examples=['model = "quarter-car"'])
 
 
 class QuarterCarShape(Shape):
@@ -118,7 +129,8 @@ class HalfCarShape(Shape):
     distance_rear: Annotated[float, positive("m")] = Field(examples=['distance_rear = "1.265 m"'])
 
 
-def _model_tag(vehicle: Any) -> str:
+def model_tag(vehicle: Any) -> str:
+    """Which shape the table [vehicle] has."""
     model = vehicle.get("model") if isinstance(vehicle, dict) else None
     return f"<{model}>" if isinstance(model, str) and model in MODELS else "<any>"
 
@@ -127,7 +139,7 @@ VehicleEntry = Annotated[
     Annotated[QuarterCarShape, Tag("<quarter-car>")]
     | Annotated[HalfCarShape, Tag("<half-car>")]
     | Annotated[AnyCar, Tag("<any>")],
-    Discriminator(_model_tag),
+    Discriminator(model_tag),
 ]
 
 
@@ -155,6 +167,11 @@ LayoutEntry = Annotated[
     Annotated[Axles, Tag("<axles>")] | Annotated[str, PlainValidator(expression), Tag("<strut>")],
     Discriminator(lambda value: "<axles>" if isinstance(value, dict) else "<strut>"),
 ]
+ElementName = Annotated[str, AfterValidator(element_name)]
+Layouts = Annotated[
+    dict[Annotated[str, AfterValidator(layout_name)], LayoutEntry],
+    Field(min_length=1, examples=['a section [layouts] with lines such as S1 = "k | c"']),
+]
 
 
 class Settings(Shape):
@@ -180,12 +197,10 @@ class StudyFile(Shape):
     road: RoadShape = Field(
         examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'],
     )
-    elements: dict[Annotated[str, AfterValidator(element_name)], ElementEntry] = Field(
+    elements: dict[ElementName, ElementEntry] = Field(
         min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
     )
-    layouts: dict[Annotated[str, AfterValidator(layout_name)], LayoutEntry] = Field(
-        min_length=1, examples=['a section [layouts] with lines such as S1 = "k | c"']
-    )
+    layouts: Layouts
     study: Settings = Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])
 
 

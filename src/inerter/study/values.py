@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,10 @@ from inerter.networks.parser import network
 from inerter.signals.road import Road
 from inerter.study.schema import UNITS
 from inerter.study.suggest import nearest
-from inerter.vehicle.cars import HalfCar, QuarterCar
+from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
 
-MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear")}
-_CARS: dict[str, type[QuarterCar | HalfCar]] = {"quarter-car": QuarterCar, "half-car": HalfCar}
+MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear"), "rig": ("device",)}
+_CARS: dict[str, type[QuarterCar | HalfCar | Rig]] = {"quarter-car": QuarterCar, "half-car": HalfCar, "rig": Rig}
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -26,6 +27,18 @@ class StrutLayout:
     """The network of every mount of the vehicle, as an expression: `strut`, or `front` and `rear`."""
 
     struts: dict[str, str]
+
+    def design(
+        self, model: str, vehicle: Mapping[str, float], elements: Mapping[str, Element]
+    ) -> QuarterCar | HalfCar | Rig:
+        """The vehicle with these struts, made of `elements`."""
+        mounted = {mount: network(text, **elements) for mount, text in self.struts.items()}
+        arguments: dict[str, Any] = {**vehicle, **mounted}
+        return _CARS[model](**arguments)
+
+    def entry(self) -> str | dict[str, str]:
+        """How a file says it."""
+        return dict(self.struts) if len(self.struts) > 1 else next(iter(self.struts.values()))
 
 
 @dataclass(frozen=True)
@@ -57,7 +70,7 @@ class Study:
     seed: int = 0
     high_pass: float | None = None  # corner of the filter of J3 [rad/s]
 
-    def design(self, layout: str, swept: float | None = None) -> QuarterCar | HalfCar:
+    def design(self, layout: str, swept: float | None = None) -> QuarterCar | HalfCar | Rig:
         """The vehicle with the struts of `layout`; `swept` replaces the value of the swept element [its SI unit].
 
         Raises `StudyError` for an unknown layout, or for `swept` where nothing is swept; `NetworkError` where `swept`
@@ -73,9 +86,7 @@ class Study:
                     f"Got a swept value, {swept!r}, but this study has no sweep. Add one, or leave it out."
                 )
             elements[self.sweep.element] = elements[self.sweep.element].with_value(swept)
-        mounted = {mount: network(text, **elements) for mount, text in self.layouts[layout].struts.items()}
-        arguments: dict[str, Any] = {**self.vehicle, **mounted}
-        return _CARS[self.model](**arguments)
+        return self.layouts[layout].design(self.model, self.vehicle, elements)
 
     def resolved(self) -> dict[str, Any]:
         """The study as a study file says it: plain tables, every default filled in, every quantity in SI units.
@@ -84,13 +95,10 @@ class Study:
         """
         return {
             "title": self.title,
-            "vehicle": {"model": self.model, **{key: _quantity(key, value) for key, value in self.vehicle.items()}},
-            "road": {key: _quantity(key, getattr(self.road, key)) for key in ("speed", "roughness")},
-            "elements": {name: _element(element) for name, element in self.elements.items()},
-            "layouts": {
-                name: layout.struts["strut"] if self.model == "quarter-car" else dict(layout.struts)
-                for name, layout in self.layouts.items()
-            },
+            "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
+            "road": {key: in_si(key, getattr(self.road, key)) for key in ("speed", "roughness")},
+            "elements": {name: element_entry(element) for name, element in self.elements.items()},
+            "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "study": self._settings(),
         }
 
@@ -104,26 +112,32 @@ class Study:
             "baseline": self.baseline,
             "sweep": None if sweep is None else {sweep.element: [f"{v!r} {sweep.unit}" for v in sweep.values]},
             "seed": self.seed,
-            "high_pass": None if self.high_pass is None else _quantity("high_pass", self.high_pass),
+            "high_pass": None if self.high_pass is None else in_si("high_pass", self.high_pass),
         }
         return {key: value for key, value in settings.items() if value is not None}
 
 
 def write_resolved(study: Study) -> str:
     """`study.resolved()` as TOML. `load_study` reads an equal study from it, to the last bit of every value."""
-    resolved = study.resolved()
-    lines = [f"{key} = {_toml(value)}" for key, value in resolved.items() if not isinstance(value, dict)]
-    for section, table in resolved.items():
+    return as_toml(study.resolved())
+
+
+def as_toml(tables: Mapping[str, Any]) -> str:
+    """TOML text: keys that hold a value, then a section for each dictionary."""
+    lines = [f"{key} = {_toml(value)}" for key, value in tables.items() if not isinstance(value, dict)]
+    for section, table in tables.items():
         if isinstance(table, dict):
             lines += ["", f"[{section}]", *(f"{_key(key)} = {_toml(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
 
 
-def _quantity(key: str, value: float) -> str:
+def in_si(key: str, value: float) -> str:
+    """The text of a quantity, in the SI unit of its key."""
     return f"{value!r} {UNITS[key]}"  # repr is the shortest text that reads back as the same number
 
 
-def _element(element: Element) -> str | dict[str, str]:
+def element_entry(element: Element) -> str | dict[str, str]:
+    """How a file says an element's value or range."""
     value = element.value
     if isinstance(value, Free):
         return {"from": f"{value.lower!r} {element.unit}", "to": f"{value.upper!r} {element.unit}"}
@@ -136,6 +150,8 @@ def _toml(value: object) -> str:
             return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
         case list():
             return "[" + ", ".join(_toml(item) for item in value) + "]"
+        case bool():
+            return str(value).lower()
         case str():
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON leaves DEL, TOML may not
         case _:

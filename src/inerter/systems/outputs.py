@@ -81,7 +81,8 @@ def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
             ),
             Output(f"{branch.label}_force", "N", f"force of {branch.label}", forces=row),
         ]
-    return {output.name: output for output in reversed(found)}  # a mount's own name goes before an element's
+    known = {output.name: output for output in reversed(found)}  # a mount's own name goes before an element's
+    return {output.name: known[output.name] for output in found}
 
 
 def _said(name: str) -> str:

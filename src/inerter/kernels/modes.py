@@ -151,36 +151,48 @@ def is_locked(kind: int, state: int) -> bool:
     return (state == 0) == (kind == FRICTION)
 
 
-@typed("int64[::1](float64[:,::1], int64[:,::1], int64[::1])")
-def independent_locks(locks: Array, elements: Array, state: Array) -> Array:
-    """Numbers of locked elements whose rows are independent; those that depend on them are locked without force."""
+@typed("boolean(float64[::1], float64[:,::1], int64, float64[::1])")
+def adds_to(row: Array, basis: Array, count: int, rest: Array) -> bool:
+    """Whether a row is independent of the first `count` orthonormal ones; `rest` is then the unit vector that it adds."""
+    size, left = 0.0, 0.0
+    for j in range(rest.shape[0]):
+        rest[j] = row[j]
+        size += row[j] ** 2
+    for _ in range(2):  # twice is enough for Gram-Schmidt
+        for i in range(count):
+            along = 0.0
+            for j in range(rest.shape[0]):
+                along += basis[i, j] * rest[j]
+            for j in range(rest.shape[0]):
+                rest[j] -= along * basis[i, j]
+    for j in range(rest.shape[0]):
+        left += rest[j] ** 2
+    if left <= RANK_TOLERANCE**2 * size:
+        return False
+    for j in range(rest.shape[0]):
+        rest[j] /= np.sqrt(left)
+    return True
+
+
+@typed("Tuple((int64[::1], boolean[::1]))(float64[:,::1], int64[:,::1], int64[::1])")
+def independent_locks(locks: Array, elements: Array, state: Array) -> Any:
+    """Numbers of locked elements whose rows are independent, and whether those hold each element.
+
+    An element that depends on independent locks does not move; if it is locked itself, it is so without force.
+    """
     k, columns = locks.shape
-    basis, row = np.zeros((k, columns)), np.zeros(columns)
-    chosen = np.zeros(k, np.int64)
+    basis, rest = np.zeros((k, columns)), np.zeros(columns)
+    chosen, still = np.zeros(k, np.int64), np.zeros(k, np.bool_)
     count = 0
     for e in range(k):
-        if not is_locked(elements[e, KIND], state[e]):
-            continue
-        size = 0.0
-        for j in range(columns):
-            row[j] = locks[e, j]
-            size += row[j] ** 2
-        for _ in range(2):  # twice is enough for Gram-Schmidt
-            for i in range(count):
-                along = 0.0
-                for j in range(columns):
-                    along += basis[i, j] * row[j]
-                for j in range(columns):
-                    row[j] -= along * basis[i, j]
-        left = 0.0
-        for j in range(columns):
-            left += row[j] ** 2
-        if left > RANK_TOLERANCE**2 * size:
+        if is_locked(elements[e, KIND], state[e]) and adds_to(locks[e], basis, count, rest):
             for j in range(columns):
-                basis[count, j] = row[j] / np.sqrt(left)
+                basis[count, j] = rest[j]
             chosen[count] = e
             count += 1
-    return chosen[:count].copy()
+    for e in range(k):
+        still[e] = not adds_to(locks[e], basis, count, rest)
+    return chosen[:count].copy(), still
 
 
 @typed("boolean(float64[:,::1], float64[:,::1])")
@@ -278,7 +290,7 @@ def build(
     locks = block(rates, ng, ng + k, 0, columns)
     dampers = block(rates, ng + k, ng + k + sizes[DAMPERS], na, nv)
     springs = block(rates, ng + k + sizes[DAMPERS], rates.shape[0], na, nv)
-    held = independent_locks(block(locks, 0, k, 0, nv), elements, state)
+    held, still = independent_locks(block(locks, 0, k, 0, nv), elements, state)
     nl = held.shape[0]
     H = np.zeros((nl, columns))
     for i in range(nl):
@@ -359,6 +371,9 @@ def build(
     for i in range(nl):
         add(maps, eta + nv + held[i], 0, block(right, nv + i, nv + i + 1, 0, width), 1.0)
     for e in range(k):
+        for j in range(width):
+            if still[e] and elements[e, OWN_POSITION] >= 0:
+                maps[na + elements[e, OWN_POSITION], j] = 0.0
         # what the state of each element asks: a row and the interval in which its value must stay
         limits[e, 0], limits[e, 1] = -np.inf, np.inf
         if limit[e] > 0.0:
@@ -370,7 +385,7 @@ def build(
             add(maps, guard + e, 0, block(maps, eta + nv + e, eta + nv + e + 1, 0, width), 1.0)
         elif elements[e, KIND] == GAP:  # open: its elongation
             add(maps, guard + e, na, block(lengths, e, e + 1, 0, ng + nr), 1.0)
-        else:  # slip: its velocity
+        elif not still[e]:  # slip: its velocity
             add(maps, guard + e, 0, block(locks, e, e + 1, 0, na), 1.0)
             add(maps, guard + e, n + nr, block(locks, e, e + 1, nv, columns), 1.0)
             add(maps, guard + e, 0, product(block(locks, e, e + 1, na, nv), massless), 1.0)

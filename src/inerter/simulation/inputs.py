@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from inerter.checks import check_positive
 from inerter.errors import SimulationError
-from inerter.signals.signal import Signal
+from inerter.signals.arguments import slack
+from inerter.signals.signal import Combination, Signal
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
 
@@ -181,9 +182,15 @@ def _from_the_left(
     """Knots at which a signal breaks, with its value and slope just before them."""
     at = np.searchsorted(time, breaks - 0.5 * _SAME * step)
     at = at[np.abs(time[np.minimum(at, time.size - 1)] - breaks) <= 2.0 * _SAME * step]
-    aside = 1e-7 * min(step, signal.interval or step)
+    aside = 1e-5 * min(step, signal.interval or step) + 3.0 * slack(time[at] - delay, _widest(signal))
     (left, slope), (_, further) = (signal.sample(time[at] - delay - i * aside) for i in (1, 2))
-    return at, left + aside * slope, 2.0 * slope - further
+    return at, left + aside * (1.5 * slope - 0.5 * further), 2.0 * slope - further
+
+
+def _widest(signal: Signal) -> float | None:
+    """The largest interval of the tables in a signal: how far a knot reaches follows from it."""
+    terms = [term for _, term in signal.terms] if isinstance(signal, Combination) else []
+    return max((_widest(term) or 0.0 for term in terms), default=signal.interval or 0.0) or None
 
 
 def whole_steps(duration: float, step: float) -> int:

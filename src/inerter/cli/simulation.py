@@ -1,0 +1,51 @@
+"""What `inerter simulate` does, in calls of the library."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from pathlib import Path
+
+from inerter.cli.progress import fraction
+from inerter.errors import StudyError
+from inerter.figures.simulation import Window, draw_simulation, readable_window
+from inerter.report.simulation import simulation_data, simulation_text
+from inerter.study.request import SimulationRequest
+from inerter.study.run import FIGURES
+from inerter.study.simulation_file import load_simulation
+from inerter.study.simulation_run import run_simulation
+
+
+def simulate(file: Path, output: Path | None, window: str | None, *, force: bool, as_json: bool) -> int:
+    """Simulate what a file asks for into a folder; returns the exit code."""
+    request = load_simulation(file)
+    wanted = None if window is None else _window(window, request)
+    folder = output or Path(f"{file.stem}-results")
+    with fraction(file.stem) as callback:
+        result = run_simulation(request, folder, force=force, progress=callback)
+    shown = None
+    if result.run.time.size > 1:
+        shown = wanted if wanted and wanted[0] < result.run.time[-2] else readable_window(result)
+        draw_simulation(result, folder / FIGURES, shown)
+    print(json.dumps(simulation_data(result), indent=2) if as_json else simulation_text(result, shown))
+    print(f"inerter: results: {folder}", file=sys.stderr)
+    if not result.run.status.ok:
+        print(f"inerter: {file.name}: {result.run.status}", file=sys.stderr, flush=True)
+        return 1
+    return 0
+
+
+def _window(text: str, request: SimulationRequest) -> Window:
+    begin, _, end = text.partition(":")
+    length, sample = request.length or math.inf, request.step * request.every
+    try:
+        window = max(float(begin), 0.0), min(float(end), length)
+    except ValueError:
+        window = (math.nan, math.nan)
+    if not window[1] - window[0] >= 2.0 * sample:
+        raise StudyError(
+            f"--window is FROM:TO in seconds, at least two samples within the {length:g} s of the simulation, such as "
+            f"--window 0:{length:g}; got {text!r}."
+        )
+    return window

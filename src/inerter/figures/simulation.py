@@ -1,0 +1,229 @@
+"""The figure of a simulation: what comes in, what the body and the tyres feel, and the force in every strut."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from inerter.errors import StudyError
+from inerter.figures.labels import axis_label, capital, scale
+from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, styled
+from inerter.study.simulation_run import Nonlinear, SimulationResult
+
+Matrix = NDArray[np.float64]
+Window = tuple[float, float]
+
+NAME = "simulation"
+_HEIGHT = 1.35  # of a panel [inch], which its title must fit
+_LONGEST_TITLE = 20
+_MOST_POINTS = 4000  # of a curve; more are drawn as the range that they cover
+_MOST_SWINGS, _MOST_BANDS = 160, 60  # in a window that can be read
+_SHADED = {"friction": ("stick", "{} sticks"), "gap": ("open", "{} is open")}
+_SHADES: dict[str, Any] = {
+    "friction": {"facecolor": "#DCDCDC", "edgecolor": "none"},
+    "gap": {"facecolor": "#F8DCB8", "edgecolor": "none"},
+}
+_OVER_GAPS: Any = {"facecolor": "none", "edgecolor": "#8C8C8C", "hatch": "//////"}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """An output, how it is called beside others in its panel, the number of its colour, and a factor."""
+
+    output: str
+    label: str = ""
+    number: int = 0
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves over time on one axis; the states of a strut's friction and gaps are shaded."""
+
+    title: str
+    unit: str
+    curves: tuple[Curve, ...]
+    shaded: tuple[Nonlinear, ...] = ()
+
+
+def draw_simulation(result: SimulationResult, folder: Path, window: Window | None = None) -> list[Path]:
+    """Write the figure into `folder` as SVG and as PNG; returns the files.
+
+    Raises `StudyError` for a `window` [s] with less than two samples.
+    """
+    with styled():
+        return save(simulation_figure(result, window or readable_window(result)), folder, NAME)
+
+
+def panels(result: SimulationResult) -> list[Panel]:
+    """What is drawn, from top to bottom."""
+    outputs, struts = result.run.outputs, result.struts
+    inputs = result.inputs
+    found = [Panel(_common(inputs), outputs[inputs[0]].unit, _curves(inputs))]
+    if result.accelerations:
+        weights = {w.output: w.weight for w in result.mechanism.measures.comfort}
+        body = tuple(
+            Curve(name, name.removesuffix("_acceleration") + ("" if w == 1.0 else f" × {w:.3g} m"), i, w)
+            for i, (name, w) in enumerate(weights.items(), len(struts))
+        )
+        found.append(Panel("body acceleration", "m/s^2", body if len(body) > 1 else (Curve(body[0].output),)))
+    if result.tyre_loads:
+        found.append(Panel("tyre load", "N", _curves(result.tyre_loads)))
+    for strut in struts:
+        shaded = tuple(n for n in result.nonlinear if n.strut == strut)
+        inerters = result.inerters(strut)
+        if not result.tyre_loads and inerters:
+            found.append(Panel(f"{strut} force", "N", (Curve(f"{strut}_force"),)))
+        title = f"{f'{strut} ' if len(struts) > 1 else ''}{'inerter' if inerters else strut} force"
+        title = title.replace(f"{strut} {strut}", strut)
+        carried = tuple(f"{name}_force" for name in inerters) or (f"{strut}_force",)
+        numbers = range(struts.index(strut), len(carried) + struts.index(strut))
+        labels = inerters if len(inerters) > 1 else ("",)
+        found.append(Panel(title, "N", tuple(map(Curve, carried, labels, numbers)), shaded))
+    return found
+
+
+def readable_window(result: SimulationResult) -> Window:
+    """The whole run, or as much of its end as can be told apart in print: the last 1/2, 1/5, 1/10, ... of it."""
+    run = result.run
+    end = float(run.time[-1])
+    length = whole = end - float(run.time[0])
+    swings = [_swings(run[curve.output], run.time) for panel in panels(result) for curve in panel.curves]
+    bands = [np.array(run.intervals(n.name, _SHADED[n.kind][0])).reshape(-1, 2)[:, 1] for n in result.nonlinear]
+    limits = [(times, _MOST_SWINGS) for times in swings] + [(times, _MOST_BANDS) for times in bands]
+    for part in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000):
+        length = whole / part
+        if all(np.sum(times >= end - length) <= most for times, most in limits):
+            break
+    return end - length, end
+
+
+def simulation_figure(result: SimulationResult, window: Window) -> Figure:
+    """All panels above each other over the times in `window` [s]; for a rig the loop of its force beside them."""
+    wanted, run = panels(result), result.run
+    inside = (run.time >= window[0]) & (run.time <= window[1])
+    if np.sum(inside) < 2:
+        raise StudyError(
+            f"The window from {window[0]:g} to {window[1]:g} s holds less than two samples of those from "
+            f"{run.time[0]:g} to {run.time[-1]:g} s."
+        )
+    rig = not result.tyre_loads
+    figure, axes = new_figure(len(wanted), height=_HEIGHT) if not rig else _with_loop(len(wanted))
+    for ax, panel in zip(axes, wanted, strict=False):
+        draw_panel(result, panel, inside, ax)
+        ax.set_xlim(*window)
+        ax.sharex(axes[0])
+        ax.tick_params(labelbottom=False)
+    last = axes[len(wanted) - 1]
+    last.tick_params(labelbottom=True)
+    last.set_xlabel(axis_label("Time", "s"))
+    if rig:
+        draw_loop(result, inside, axes[-1])
+    figure.align_ylabels(axes[: len(wanted)])
+    if any(ax.get_legend_handles_labels()[0] for ax in axes):
+        add_legend(figure, axes)
+    return figure
+
+
+def draw_panel(result: SimulationResult, panel: Panel, inside: NDArray[np.bool_], ax: Axes) -> Axes:
+    """The curves of one panel, and behind them the intervals in which its friction sticks and its gaps are open."""
+    run = result.run
+    time = run.time[inside]
+    values = [run[curve.output][inside] * curve.weight for curve in panel.curves]
+    unit = scale([max(float(np.abs(v).max(initial=0.0)) for v in values)], panel.unit)
+    for curve, value in zip(panel.curves, values, strict=True):
+        ax.plot(*_thinned(time, value * unit.factor), **_style(curve))
+    _shade(result, panel.shaded, (float(time[0]), float(time[-1])), ax)
+    ax.set_ylabel(fill(axis_label(capital(panel.title), unit.unit), _LONGEST_TITLE, break_long_words=False))
+    return ax
+
+
+def draw_loop(result: SimulationResult, inside: NDArray[np.bool_], ax: Axes) -> Axes:
+    """The force of the device over the displacement of the table; what comes before the last period is grey."""
+    (road,), (device,) = result.inputs, result.struts
+    time, x, y = (
+        result.run[name][inside] if name else result.run.time[inside] for name in ("", road, f"{device}_force")
+    )
+    along, up = (scale([np.abs(v).max()], unit) for v, unit in ((x, "m"), (y, "N")))
+    period = result.request.make_signal().period
+    last = time >= time[-1] - (period or np.inf) * (1.0 + 1e-9)
+    if not last.all():
+        ax.plot(x * along.factor, y * up.factor, color="#BBBBBB", linewidth=0.6)
+    ax.plot(x[last] * along.factor, y[last] * up.factor, color=colour(0), linewidth=0.9)
+    ax.set(xlabel=axis_label(capital(road), along.unit), ylabel=axis_label(f"{capital(device)} force", up.unit))
+    return ax
+
+
+def _with_loop(rows: int) -> tuple[Figure, list[Axes]]:
+    figure, (first,) = new_figure(height=rows * _HEIGHT + 0.5, width=WIDE)
+    first.remove()
+    grid = figure.add_gridspec(rows, 2, width_ratios=(1.7, 1.0))
+    axes = [figure.add_subplot(grid[i, 0]) for i in range(rows)]
+    return figure, [*axes, figure.add_subplot(grid[:, 1])]
+
+
+def _curves(names: Sequence[str]) -> tuple[Curve, ...]:
+    return tuple(Curve(name, _end(name) if len(names) > 1 else "", i) for i, name in enumerate(names))
+
+
+def _common(names: Sequence[str]) -> str:
+    return names[0].split("_")[0] if len(names) > 1 else names[0].replace("_", " ")
+
+
+def _end(name: str) -> str:
+    """The axle in `road_front` and `tyre_front_load`."""
+    return next((axle for axle in ("front", "rear") if axle in name.split("_")), name.replace("_", " "))
+
+
+def _style(curve: Curve) -> dict[str, Any]:
+    return {"color": colour(curve.number), "linewidth": 0.9, **({"label": curve.label} if curve.label else {})}
+
+
+def _shade(result: SimulationResult, elements: Sequence[Nonlinear], window: Window, ax: Axes) -> None:
+    """Filled where a friction sticks or a gap is open; several of one kind share the height.
+
+    Where there are both, the friction is hatched, so that one shows through the other.
+    """
+    shades = {**_SHADES, "friction": _OVER_GAPS} if any(n.kind == "gap" for n in result.nonlinear) else _SHADES
+    for element in elements:
+        state, words = _SHADED[element.kind]
+        alike = [other.name for other in elements if other.kind == element.kind]
+        row = alike.index(element.name)
+        low, high = 1.0 - (row + 1) / len(alike), 1.0 - row / len(alike)
+        name = element.name.removeprefix(f"{element.strut}.")
+        label = words.format(name if len(alike) == 1 else f"{name} (row {row + 1})")
+        for begin, end in result.run.intervals(element.name, state):
+            if begin < window[1] and end > window[0]:
+                ax.axvspan(begin, end, low, high, linewidth=0.0, zorder=0.5, label=label, **shades[element.kind])
+
+
+def _swings(values: Matrix, time: Matrix) -> Matrix:
+    """Times at which a curve crosses its mean."""
+    above = values > np.mean(values)
+    return np.asarray(time[1:][above[1:] != above[:-1]])
+
+
+def _thinned(time: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
+    """The same curve to the eye with at most `_MOST_POINTS` points: of each piece the lowest and the highest."""
+    size = -(-2 * time.size // _MOST_POINTS)
+    if size < 3:
+        return time, values
+    at = np.array([i for piece in _pieces(time.size, size) for i in _extremes(values, piece)])
+    return time[at], values[at]
+
+
+def _pieces(count: int, size: int) -> Iterator[slice]:
+    yield from (slice(i, min(i + size, count)) for i in range(0, count, size))
+
+
+def _extremes(values: Matrix, piece: slice) -> list[int]:
+    part = values[piece]
+    return sorted({piece.start + int(np.argmin(part)), piece.start + int(np.argmax(part))})

@@ -1,0 +1,117 @@
+"""What a simulation found, as text for a terminal of 80 columns and as data for JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from textwrap import wrap
+from typing import Any
+
+from inerter.figures.labels import quantity
+from inerter.figures.simulation import Window
+from inerter.report.text import WIDTH
+from inerter.study.simulation_run import SimulationResult
+from inerter.units import shown
+
+_SHARES = {"stick": "stuck", "open": "in the gap", "upper contact": "upper end", "lower contact": "lower end"}
+
+
+def simulation_text(result: SimulationResult, window: Window | None) -> str:
+    """The request, r.m.s. values, events, energy, status and what the figure shows: ASCII, at most 80 columns."""
+    blocks = (_request(result), _values(result), _elements(result), _energy(result), _status(result, window))
+    text = "\n\n".join("\n".join(block) for block in map(list, blocks) if block)
+    return text.encode("ascii", "replace").decode()
+
+
+def simulation_data(result: SimulationResult) -> dict[str, Any]:
+    """The same in SI units, for JSON."""
+    run, request = result.run, result.request
+    energy, repetition = run.energy, run.repetition
+    data = {
+        **request.resolved(),
+        "time": [float(run.time[0]), float(run.time[-1])],
+        "status": str(run.status),
+        "rms": {name: {"value": result.rms(name), "unit": run.unit(name)} for name in result.main_outputs},
+        "nonlinear": {
+            n.name: {"kind": n.kind, "strut": n.strut, "events": n.events, "shares": n.shares} for n in result.nonlinear
+        },
+        "energy": None if energy is None else {**vars(energy), "residual": energy.residual},
+        "repetition": None if repetition is None else vars(repetition),
+    }
+    return {key: _plain(value) for key, value in data.items()}
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no infinity: what is not finite is text."""
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _request(result: SimulationResult) -> Iterator[str]:
+    request, run = result.request, result.run
+    signal, units = request.signal, request.signal.units
+    keys = [f"{k} {quantity(v, units[k]) if units[k] else _word(v)}" for k, v in signal.values.items()]
+    yield from wrap(request.title, WIDTH)
+    network = "; ".join(dict.fromkeys(request.layouts[request.layout].struts.values()))
+    yield from wrap(f"{request.model}, {request.layout} = {network}", WIDTH, subsequent_indent="  ")
+    yield from wrap(f"{signal.input}: {signal.kind}, {', '.join(keys)}", WIDTH, subsequent_indent="  ")
+    start = "steady state" if request.initial == "periodic" else f"from {request.initial}"
+    steps = f"{run.time[-1] - run.time[0]:.6g} s in steps of {1e3 * request.step:.6g} ms"
+    yield from wrap(f"{steps}, {request.integrator}, {start}", WIDTH)
+
+
+def _word(value: object) -> str:
+    return value.rpartition("/")[2] if isinstance(value, str) else shown(value)
+
+
+def _values(result: SimulationResult) -> Iterator[str]:
+    run = result.run
+    width = max(map(len, result.main_outputs))
+    yield "r.m.s. values"
+    for name in result.main_outputs:
+        yield f"  {name.replace('_', ' '):<{width}}  {quantity(result.rms(name), run.unit(name))}"
+
+
+def _elements(result: SimulationResult) -> Iterator[str]:
+    if result.nonlinear:
+        width = max(len(n.name) for n in result.nonlinear)
+        yield f"  {'element':<{width + 9}}  events  share of the time"
+    for n in result.nonlinear:
+        shares = ", ".join(f"{_SHARES.get(state, state)} {100 * share:.1f} %" for state, share in n.shares.items())
+        yield from wrap(
+            f"  {n.kind:<8} {n.name:<{width}}  {n.events:>6}  {shares}",
+            WIDTH,
+            drop_whitespace=False,
+            subsequent_indent=" " * (width + 21),
+        )
+    if result.unrecorded:
+        names = ", ".join(result.unrecorded)
+        yield from wrap(f"Note: this integrator keeps no events of {names}; the event-driven one does.", WIDTH)
+
+
+def _energy(result: SimulationResult) -> Iterator[str]:
+    energy = result.run.energy
+    if energy is None:
+        return
+    yield "energy"
+    rows = [
+        *((f"put in by {name}", work) for name, work in energy.inputs.items() if name in result.inputs),
+        ("gained by masses, inerters and springs", energy.stored),
+        *((f"dissipated in damper {name}", work) for name, work in energy.dampers.items()),
+        *((f"dissipated in friction {name}", work) for name, work in energy.friction.items()),
+        ("unaccounted for", energy.residual),
+    ]
+    width = max(len(name) for name, _ in rows)
+    for name, work in rows:
+        yield f"  {name:<{width}}  {work:.4g} J"
+
+
+def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
+    run, begin, end = result.run, float(result.run.time[0]), float(result.run.time[-1])
+    if run.repetition is not None:
+        r = run.repetition
+        yield f"Steady state: after {r.periods} periods the state repeats to {r.mismatch:.1e} of its size."
+    if window is not None and window != (begin, end):
+        yield f"The figure shows {window[0]:g} to {window[1]:g} s; another part with --window FROM:TO."
+    yield from wrap(f"Status: {run.status}", WIDTH)

@@ -1,0 +1,125 @@
+"""A simulation that was asked for, resolved and checked: SI values, one layout, one signal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from inerter.networks.elements import Element
+from inerter.signals.road import Road
+from inerter.signals.signal import Signal
+from inerter.simulation.simulate import simulate
+from inerter.simulation.trajectory import Trajectory
+from inerter.study.signal_kinds import KINDS, unit_of
+from inerter.study.values import StrutLayout, as_toml, element_entry, in_si
+from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
+
+
+@dataclass(frozen=True)
+class SignalRequest:
+    """A signal by its kind, what it moves, and the values of the kind's keys."""
+
+    kind: str
+    input: str
+    values: dict[str, Any]
+
+    @property
+    def unit(self) -> str:
+        """Of the signal: m, N or N m."""
+        return unit_of(self.input)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of the values; empty for what has none."""
+        return {name: key.of(self.unit).unit for name, key in KINDS[self.kind].keys.items()}
+
+    def resolved(self) -> dict[str, Any]:
+        """How a file says it, in SI units."""
+        units = self.units
+        values = {name: f"{v!r} {units[name]}" if units[name] else v for name, v in self.values.items()}
+        return {"kind": self.kind, "input": self.input, **values}
+
+
+@dataclass(frozen=True)
+class SimulationRequest:
+    """All that a simulation file says, with defaults filled in. Equal requests may come from different files."""
+
+    title: str
+    path: Path = field(compare=False)
+    model: str
+    vehicle: dict[str, float]
+    speed: float | None  # [m/s]
+    roughness: float | None  # [m^3/cycle]
+    elements: dict[str, Element]
+    layouts: dict[str, StrutLayout]
+    signal: SignalRequest
+    layout: str
+    duration: float | None  # [s]; None for one period
+    step: float = 2e-4  # [s]
+    integrator: str = "event-driven"
+    initial: str = "rest"
+    energy: bool = False
+    every: int = 1
+
+    @property
+    def length(self) -> float | None:
+        """Time from the first to the last sample [s]; None for a period that the signal does not have."""
+        return self.make_signal().period if self.duration is None else self.duration
+
+    def design(self) -> QuarterCar | HalfCar | Rig:
+        """The vehicle, or rig, with the chosen layout."""
+        return self.layouts[self.layout].design(self.model, self.vehicle, self.elements)
+
+    def make_signal(self) -> Signal:
+        """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
+        kind = KINDS[self.signal.kind]
+        road = None if self.speed is None or self.roughness is None else Road(self.roughness, self.speed)
+        known = {"road": road, "speed": self.speed, "unit": self.signal.unit}
+        return kind.make(**self.signal.values, **{name: known[name] for name in kind.given})
+
+    def run(self, progress: Callable[[float], None] | None = None) -> Trajectory:
+        """Simulate it; raises what `simulate` raises."""
+        signal = self.make_signal()
+        moved: Any = {"road": signal} if self.signal.input == "road" else {"forces": {self.signal.input: signal}}
+        if self.signal.input == "displacement":
+            moved = {"displacement": signal}
+        settings: Any = {"integrator": self.integrator, "initial": self.initial}
+        return simulate(
+            self.design(),
+            **moved,
+            **settings,
+            duration=self.duration,
+            step=self.step,
+            speed=self.speed,
+            energy=self.energy,
+            every=self.every,
+            progress=progress,
+        )
+
+    def resolved(self) -> dict[str, Any]:
+        """The request as a simulation file says it: every default filled in, every quantity in SI units."""
+        road = {key: in_si(key, v) for key in ("speed", "roughness") if (v := getattr(self, key)) is not None}
+        return {
+            "title": self.title,
+            "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
+            **({"road": road} if road else {}),
+            "elements": {name: element_entry(element) for name, element in self.elements.items()},
+            "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
+            "signal": self.signal.resolved(),
+            "simulation": {
+                "layout": self.layout,
+                **({} if self.duration is None else {"duration": f"{self.duration!r} s"}),
+                "step": f"{self.step!r} s",
+                "integrator": self.integrator,
+                "initial": self.initial,
+                "energy": self.energy,
+                "every": self.every,
+            },
+        }
+
+
+def write_simulation(request: SimulationRequest) -> str:
+    """`request.resolved()` as TOML. `load_simulation` reads an equal request from it, to the last bit."""
+    return as_toml(request.resolved())

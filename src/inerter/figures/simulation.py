@@ -199,7 +199,7 @@ def _shade(result: SimulationResult, elements: Sequence[Nonlinear], window: Wind
         row = alike.index(element.name)
         low, high = 1.0 - (row + 1) / len(alike), 1.0 - row / len(alike)
         name = element.name.removeprefix(f"{element.strut}.")
-        label = words.format(name if len(alike) == 1 else f"{name} (row {row + 1})")
+        label = words.format(name) + (f" (row {row + 1})" if len(alike) > 1 else "")
         for begin, end in result.run.intervals(element.name, state):
             if begin < window[1] and end > window[0]:
                 ax.axvspan(begin, end, low, high, linewidth=0.0, zorder=0.5, label=label, **shades[element.kind])

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -80,3 +81,27 @@ def compiled(function: F, signature: Any = None, fused: bool = False) -> F:
 def typed(signature: str) -> Callable[[F], F]:
     """Compile for one signature, when the module is loaded: calls with constants then share it."""
     return lambda function: compiled(function, signature)
+
+
+def compiling_beside(module: str) -> Callable[[], None]:
+    """Have a kernel module compiled by another process if it is not yet, while this one goes on; wait by calling.
+
+    Should that fail, this process compiles the module itself when it imports it.
+    """
+    path = Path(__file__).with_name(f"{module}.py")
+    folder = cache_folder(path)
+    if any(folder.iterdir()) or folder.name.startswith("inerter-"):
+        return lambda: None
+    _tell()
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-c", f"import inerter.kernels.{module}"],
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    except OSError:
+        return lambda: None
+    return lambda: (process.wait(), None)[1]

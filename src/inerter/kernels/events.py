@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from inerter.kernels import compiled, typed
+from inerter.kernels import compiled, compiling_beside, typed
+from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
 from inerter.kernels.flow import first_root, inputs_from, knot_numbers, series, slope_at
-from inerter.kernels.modes import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
 
 Array = Any
 DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE = range(7)
@@ -21,6 +21,7 @@ ORDERS = 6  # derivatives that are looked at to see on which side of its limit a
 STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, then those of these sizes
 RESIDUAL, POLYNOMIAL, U, SIZE, X = 7, 8, 11, 19, 19 + ORDERS
 ROWS = X + 32
+MODES_READY = compiling_beside("modes")  # which this module does not need yet
 _ROUNDING = 1e-13  # relative to the largest state so far
 _MET = 1e-9  # the same where a guard has just been met
 _PAUSES = 200  # switches without any time between them
@@ -103,7 +104,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
             code = switch(now, record.events, record.time[k], length, place[MODE])
             if code != DONE:
                 return code
-            _sample(record, record.slot[k], place[MODE], work, n)
+            _sample(record.states, record.visited, record.slot[k], place[MODE], work, n)
         while record.special[place[SPECIAL]] < k:
             place[SPECIAL] += 1
         m = place[MODE]
@@ -139,7 +140,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
         m, slot = place[MODE], record.slot[k + 1]
         work[CLOCK, 0] = 0.0
         place[JUMPED], place[SWITCHES], place[SEGMENT] = 0, 0, k + 1
-        _sample(record, slot, m, work, n)
+        _sample(record.states, record.visited, slot, m, work, n)
         if slot >= 0 and k >= place[SETTLED] and sizes[OUTPUTS] > 0:
             inputs_from(work[NUMBERS], nr, nu, length, length, length, work[U : U + 8])
             for o in range(sizes[OUTPUTS]):
@@ -147,12 +148,12 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
     return DONE
 
 
-@compiled
-def _sample(record: Record, slot: int, mode: int, work: Array, n: int) -> None:
-    if slot >= 0 and slot < record.states.shape[0]:
-        record.visited[slot] = mode
+@typed("void(float64[:,::1], int64[::1], int64, int64, float64[:,::1], int64)")
+def _sample(states: Array, visited: Array, slot: int, mode: int, work: Array, n: int) -> None:
+    if slot >= 0 and slot < states.shape[0]:
+        visited[slot] = mode
         for i in range(n):
-            record.states[slot, i] = work[STATE, i]
+            states[slot, i] = work[STATE, i]
 
 
 @typed("void(float64[:,::1], int64[::1], float64[:,::1], float64[:,::1], float64[::1])")
@@ -503,7 +504,7 @@ def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, 
     for o in range(sizes[OUTPUTS]):
         if counted:
             record.sums[o] += over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
-    _sample(record, record.slot[k], place[MODE], work, n)
+    _sample(record.states, record.visited, record.slot[k], place[MODE], work, n)
 
 
 @compiled

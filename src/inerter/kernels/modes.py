@@ -16,43 +16,33 @@ their balance must be true too. These entry conditions, and the jump that would 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled, typed
+from inerter.kernels import typed
+from inerter.kernels.arrays import (
+    DAMPERS,
+    ENTRY,
+    ETA,
+    FRICTION,
+    GAP,
+    GUARD,
+    KIND,
+    NA,
+    NR,
+    NW,
+    OUTPUT,
+    OUTPUTS,
+    OWN_POSITION,
+    K,
+    N,
+)
 from inerter.kernels.linalg import factor, solve
 
 Array = Any
 RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one
 ROUNDING = 1e-14  # of a sum, relative to its terms
-FRICTION, GAP = 0, 1
-KIND, OWN_POSITION = 0, 1  # columns of `Mechanics.elements`
-NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT = range(11)  # places in `sizes`, see `Mechanics`
-
-
-class Mechanics(NamedTuple):
-    """A mechanism's constants. Columns of maps are the state (a, g), roads' z, z', z'', forces, and 1 (`width`)."""
-
-    sizes: Array  # na, nw, nr, n, k, numbers of dampers and squared outputs, then first rows of parts of `Modes.maps`
-    balance: Array  # (na + nw, na + nw + width): M, C_aw; 0, C_ww; then right-hand sides without elements' forces
-    rates: Array  # (ng + k + dampers + springs, na + nw + nr): of positions and elongations, over a, w, z'
-    lengths: Array  # (k, ng + nr): elongation of the gaps from positions and roads
-    elements: Array  # (k, 2) FRICTION or GAP; number of the position that is the gap's own elongation, or -1
-    limit: Array  # (k,) force or half-width; an element whose limit is zero never changes its state
-    over: Array  # (outputs, n + nu + na + nw + k): outputs over the state, the inputs, and (a', w, F)
-
-
-class Modes(NamedTuple):
-    """Modes met so far, one row each."""
-
-    number: Array  # (3^k,) index of the mode that a state of the elements has, or -1
-    state: Array  # (capacity, k + 3): -1, 0, 1 of each element; numbers of conditions on velocity, springs, the loose
-    maps: Array  # (capacity, rows, width): rate of the state, guards, (a', w, F), entry conditions, outputs
-    reaction: Array  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
-    limits: Array  # (capacity, k, 3): interval of the guards, and whether they change at once with a road's slopes
-    steps: Array  # (capacity, rows, columns): next state, guards at the end and the start, their sway, outputs
-    reach: Array  # (capacity,) how far a Taylor series of the flow serves [s]
 
 
 @typed("float64[:,::1](float64[:,::1], float64[:,::1])")
@@ -153,7 +143,7 @@ def is_locked(kind: int, state: int) -> bool:
 
 @typed("boolean(float64[::1], float64[:,::1], int64, float64[::1])")
 def adds_to(row: Array, basis: Array, count: int, rest: Array) -> bool:
-    """Whether a row is independent of the first `count` orthonormal ones; `rest` is then the unit vector that it adds."""
+    """Whether a row is independent of the first `count` orthonormal ones; `rest` is then the unit vector it adds."""
     size, left = 0.0, 0.0
     for j in range(rest.shape[0]):
         rest[j] = row[j]
@@ -266,7 +256,10 @@ def drop_rounding(A: Array, bound: Array) -> None:
                 A[i, j] = 0.0
 
 
-@compiled
+@typed(
+    "boolean(int64[::1], float64[:,::1], float64[:,::1], float64[:,::1], int64[:,::1], float64[::1], float64[:,::1], "
+    "int64[::1], float64[:,::1], float64[:,::1], float64[:,::1])"
+)
 def build(
     sizes: Array,
     balance: Array,
@@ -463,35 +456,6 @@ def exponential(X: Array) -> Array:
     return total_term
 
 
-@compiled
-def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -> float:
-    """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
-
-    The input over the step is a cubic: a chain of four integrators for every road and force stands for it. Returns
-    how far a Taylor series of the flow serves [s].
-    """
-    n, nr, k = sizes[N], sizes[NR], sizes[K]
-    channels = nr + maps.shape[1] - 1 - n - 3 * nr
-    size = n + 4 * channels + 1
-    rate, guards = np.zeros((n, size)), np.zeros((k, size))
-    outputs = np.zeros((sizes[OUTPUTS], size))
-    over_chains(maps, 0, n, nr, h, rate)
-    over_chains(maps, sizes[GUARD], n, nr, h, guards)
-    over_chains(maps, sizes[OUTPUT], n, nr, h, outputs)
-    chain = np.zeros((size, size))
-    add(chain, 0, 0, rate, h)
-    for c in range(channels):
-        for j in range(3):
-            chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
-    exact = exponential(chain)
-    into_knots(block(exact, 0, n, 0, size), n, used, steps, 0)
-    into_knots(product(guards, exact), n, used, steps, n)
-    into_knots(guards, n, used, steps, n + k)
-    into_knots(product(outputs, exact), n, used, steps, n + 3 * k)
-    _bound_sway(guards, chain, n, used, steps, n + 2 * k)
-    return 1.0 / max(growth(maps, n), 1e-9)
-
-
 @typed("void(float64[:,::1], int64, int64, int64, float64, float64[:,::1])")
 def over_chains(maps: Array, first: int, n: int, nr: int, h: float, out: Array) -> None:
     """Rows of maps, from `first` on, over the state, the chains of integrators, and 1."""
@@ -572,3 +536,32 @@ def growth(maps: Array, n: int) -> float:
         A = product(A, A)
         power *= 0.5
     return float(np.exp(logarithm))
+
+
+@typed("float64(int64[::1], int64[::1], float64[:,::1], float64[:,::1], float64)")
+def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -> float:
+    """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
+
+    The input over the step is a cubic: a chain of four integrators for every road and force stands for it. Returns
+    how far a Taylor series of the flow serves [s].
+    """
+    n, nr, k = sizes[N], sizes[NR], sizes[K]
+    channels = nr + maps.shape[1] - 1 - n - 3 * nr
+    size = n + 4 * channels + 1
+    rate, guards = np.zeros((n, size)), np.zeros((k, size))
+    outputs = np.zeros((sizes[OUTPUTS], size))
+    over_chains(maps, 0, n, nr, h, rate)
+    over_chains(maps, sizes[GUARD], n, nr, h, guards)
+    over_chains(maps, sizes[OUTPUT], n, nr, h, outputs)
+    chain = np.zeros((size, size))
+    add(chain, 0, 0, rate, h)
+    for c in range(channels):
+        for j in range(3):
+            chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
+    exact = exponential(chain)
+    into_knots(block(exact, 0, n, 0, size), n, used, steps, 0)
+    into_knots(product(guards, exact), n, used, steps, n)
+    into_knots(guards, n, used, steps, n + k)
+    into_knots(product(outputs, exact), n, used, steps, n + 3 * k)
+    _bound_sway(guards, chain, n, used, steps, n + 2 * k)
+    return 1.0 / max(growth(maps, n), 1e-9)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.kernels import events as kernel
+from inerter.kernels.arrays import ENTRY, ETA, Mechanics, Modes
 from inerter.kernels.march import march_of
-from inerter.kernels.modes import ENTRY, ETA, Mechanics, Modes, build, discretise
 from inerter.networks.elements import Damper
 from inerter.simulation.inputs import InputTable
 from inerter.systems.outputs import Output
@@ -63,6 +63,9 @@ class Integration:
 
     def _build(self, states: NDArray[np.int64]) -> bool:
         """Add the mode in which the nonlinear elements are in these states."""
+        kernel.MODES_READY()
+        from inerter.kernels.modes import build, discretise
+
         if self.count == self.modes.reach.shape[0]:
             more = (np.concatenate([array, np.zeros_like(array)]) for array in self.modes[1:])
             self.modes = Modes(self.modes.number, *more)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, MechanismError
-from inerter.kernels.modes import FRICTION, GAP, KIND
+from inerter.kernels.arrays import FRICTION, GAP, KIND
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Spring
 from inerter.systems.coordinates import clean, complete, independent_rows, null_space
 from inerter.systems.graph import Branch, Graph, full_graph
@@ -27,7 +27,7 @@ Matrix = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Mechanics:
-    """The constant matrices that `kernels.modes.Mechanics` describes."""
+    """The constant matrices that `kernels.arrays.Mechanics` describes."""
 
     balance: Matrix
     rates: Matrix

@@ -109,7 +109,7 @@ def test_examples_are_sound(name: str, capsys: pytest.CaptureFixture[str]) -> No
     assert "ok" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", ["best_strut.py", "three_axles.py"])
+@pytest.mark.parametrize("name", ["best_strut.py", "three_axles.py", "rattle.py"])
 def test_python_examples_run(name: str) -> None:
     subprocess.run([sys.executable, str(EXAMPLES / name)], check=True, capture_output=True)
 
@@ -130,7 +130,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert inerter.__version__ in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["reproduce", "--help"]])
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["simulate", "--help"], ["reproduce", "--help"]])
 def test_help_has_examples_and_is_quick(arguments: list[str]) -> None:
     command = [sys.executable, "-c", "from inerter.cli.main import main; main()", *arguments]
     times = []

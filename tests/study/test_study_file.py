@@ -15,7 +15,9 @@ from inerter.signals.road import Road
 from inerter.study.file import StrutLayout, Study, Sweep, load_study, write_resolved
 from inerter.vehicle.cars import HalfCar, QuarterCar
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+EXAMPLES = sorted(
+    path for path in (Path(__file__).parents[2] / "examples").glob("*.toml") if "[study]" in path.read_text("utf-8")
+)
 
 GOOD = """
 title = "A quarter car"
@@ -324,6 +326,8 @@ BAD = {
     "not a section": ([("[vehicle]", "road = 3\n[vehicle]"), ("[road]", "[r]")], "road", ["got 3", "not a table"]),
     "model": ([('"quarter-car"', '"quarter_car"')], "vehicle.model", ['"half-car"', 'Did you mean "quarter-car"?']),
     "no model": ([('model = "quarter-car"', "")], "vehicle.model", ["missing", 'model = "quarter-car"']),
+    "rig": ([('"quarter-car"', '"rig"')], "vehicle.model", ["no road", '"half-car"', "inerter simulate"]),
+    "simulation": ([("[study]", "[signal]\n[study]")], "signal", ["unknown key", "inerter simulate"]),
     "model number": ([('"quarter-car"', "4")], "vehicle.model", ["got 4", "available in this version"]),
     "title": ([('"A quarter car"', '" "')], "title", ["expected text"]),
     # settings

@@ -279,6 +279,8 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
     elements, before = now.sizes[K], now.place[MODE]
     if place[EVENTS] + elements > events.shape[0]:
         return EVENTS_FULL
+    if before >= 0:
+        _drop_drift(now, before, length)
     for e in range(elements):
         trial[e] = now.state[before, e] if before >= 0 else (0 if now.limit[e] > 0.0 else 1)
     if who >= 0 and now.flags[CROSSED, who] != 0:
@@ -325,6 +327,31 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
             place[EVENTS] = i + 1
     place[MODE] = m
     return DONE
+
+
+@compiled
+def _drop_drift(now: Work, m: int, length: float) -> None:
+    """Take away the rounding that has gathered in what locks and the springs' balance of mode m keep at zero.
+
+    A velocity of 1e-13 m/s that a long stick has left behind would otherwise choose the direction of the slip.
+    """
+    sizes, work, maps, reaction = now.sizes, now.work, now.maps[m], now.reaction[m]
+    n, nu, elements, residual = sizes[N], now.place[INPUTS], sizes[K], work[RESIDUAL]
+    inputs_from(work[NUMBERS], sizes[NR], nu, length, work[CLOCK, 0], length, work[U : U + 8])
+    first = 0
+    for group in range(2):
+        last, broken = first + now.state[m, elements + group], False
+        for i in range(first, last):
+            row = maps[sizes[ENTRY] + i]
+            residual[i] = over_columns(row, work[STATE], work[U], n, nu)
+            size = _size(row, work[SCALE], work[U], n, nu) + abs(row[n + nu])
+            broken = broken or abs(residual[i]) > 1e-10 * size
+        for j in range(n):
+            work[GUESS, j] = work[STATE, j] + _asked(reaction, j, residual, first, last)
+        if not broken:
+            for j in range(n):
+                work[STATE, j] = work[GUESS, j]
+        first = last
 
 
 @compiled

@@ -53,7 +53,7 @@ class Integration:
             if code == kernel.DONE:
                 return
             if code == kernel.MODE_UNKNOWN:
-                if not self._build(self.flags[kernel.TRIAL]):
+                if not self.build(self.flags[kernel.TRIAL]):
                     self.status = self._failed(_SINGULAR)
             elif code == kernel.EVENTS_FULL:
                 events = self.record.events
@@ -61,7 +61,7 @@ class Integration:
             else:
                 self.status = self._failed(_FAILURES[code])
 
-    def _build(self, states: NDArray[np.int64]) -> bool:
+    def build(self, states: NDArray[np.int64]) -> bool:
         """Add the mode in which the nonlinear elements are in these states."""
         kernel.MODES_READY()
         from inerter.kernels.modes import build, discretise
@@ -173,7 +173,11 @@ def start(
         reach=np.zeros(capacity),
     )
     flags = np.zeros((4, k), np.int64)
-    return Integration(system, table, march, mechanics, modes, used, work, flags, place, record, account)
+    integration = Integration(system, table, march, mechanics, modes, used, work, flags, place, record, account)
+    if k == 1 and mechanics.limit[0] > 0.0:  # all three will be met: save the ways back to have them built
+        for s in (0, 1, -1):
+            integration.build(np.array([s]))
+    return integration
 
 
 def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[np.int64]:
@@ -186,9 +190,9 @@ def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[
         or np.any(mechanics.balance[:, na + nw + n : na + nw + n + roads])
         or np.any(mechanics.lengths[:, n - na :])
     )
-    moving = np.any(table.value, axis=0) | np.any(table.slope, axis=0)
-    numbers = range(4 * moving.size)
-    return np.array([i for i in numbers if moving[i // 4] and (i % 4 or i >= 4 * roads or heights)], dtype=np.int64)
+    numbers = range(4 * len(table.moving))
+    used = [i for i in numbers if table.moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]
+    return np.array(used, dtype=np.int64)
 
 
 def energy_rows(system: PiecewiseSystem) -> list[tuple[Matrix, Matrix, Matrix]]:

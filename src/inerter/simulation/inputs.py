@@ -38,6 +38,7 @@ class InputTable:
     special: NDArray[np.int64]  # segments of another length, or at whose start an input jumps; then one past the end
     slot: NDArray[np.int64]  # (knots,) number of the sample, or -1
     samples: int
+    moving: tuple[bool, ...]  # whether each input has a signal
 
     @property
     def sampled(self) -> Matrix:
@@ -167,6 +168,7 @@ def tabulate(
         special=np.append(np.flatnonzero(odd), time.size + 1).astype(np.int64),
         slot=slot.astype(np.int64),
         samples=int(slot.max()) + 1,
+        moving=tuple(signal is not None for signal in signals),
     )
 
 

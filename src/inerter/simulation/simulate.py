@@ -98,8 +98,8 @@ def simulate(
         integration.advance(min(segments, int(integration.place[SEGMENT]) + _CHUNK))
         if progress is not None:
             progress(integration.place[SEGMENT] / segments)
-    label = "; ".join(s.label for s in signals if s is not None)
-    return _trajectory(integration, steady, label, state)
+    label = "; ".join(dict.fromkeys(s.label for s in signals if s is not None))
+    return trajectory_of(integration, steady, label, state)
 
 
 def common_period(signals: Sequence[Signal | None]) -> float:
@@ -153,18 +153,21 @@ def _settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: b
     return recorded, Repetition(float(table.time[-1] - table.time[0]), periods, mismatch)
 
 
-def _trajectory(integration: Integration, steady: Repetition | None, label: str, state: Matrix) -> Trajectory:
+def trajectory_of(integration: Integration, steady: Repetition | None, label: str, state: Matrix) -> Trajectory:
     system, table, record = integration.system, integration.table, integration.record
     kinds = [_FRICTION if isinstance(system.graph.branches[i].element, Friction) else _GAP for i in system.nonlinear]
     labels = system.elements
     rows = record.events[: integration.place[EVENTS]]
-    events = tuple(Event(float(t), labels[int(e)], kinds[int(e)][int(a)], kinds[int(e)][int(b)]) for t, e, a, b in rows)
-    reached = table.samples
+
+    def events() -> tuple[Event, ...]:
+        listed = ((t, int(e), int(a), int(b)) for t, e, a, b in rows.tolist())
+        return tuple(Event(t, labels[e], kinds[e][a], kinds[e][b]) for t, e, a, b in listed)
+
+    reached, roads = table.samples, len(system.mechanism.roads)
     if not integration.status.ok:
         reached = int(np.sum(table.slot[: integration.place[SEGMENT] + 1] >= 0))
     first = integration.modes.state[record.visited[0]]
     states = {name: kind[int(s)] for name, kind, s in zip(labels, kinds, first, strict=False)}
-    inputs = sampled_inputs(system, table)[:reached]
     visited, history = record.visited[:reached], np.ascontiguousarray(record.states[:reached])
 
     def output(wanted: Output) -> Matrix:
@@ -173,14 +176,17 @@ def _trajectory(integration: Integration, steady: Repetition | None, label: str,
         eta = integration.modes.maps[: integration.count, integration.eta]
         over = np.concatenate([on_x, on_u, [0.0]]) + np.einsum("i,mij->mj", on_eta, eta)
         out = np.empty(reached)
-        used = np.flatnonzero(np.any(over[:, n : n + nu], axis=0))
-        over = np.ascontiguousarray(np.concatenate([over[:, :n], over[:, n + used], over[:, -1:]], axis=1))
-        evaluate(over, visited, history, np.ascontiguousarray(inputs[:, used]), out)
+        channel = [*range(roads)] * 3 + [*range(roads, nu - 2 * roads)]
+        used = [i for i in range(nu) if np.any(over[:, n + i]) and table.moving[channel[i]]]
+        over = np.ascontiguousarray(np.concatenate([over[:, :n], over[:, [n + i for i in used]], over[:, -1:]], axis=1))
+        inputs = np.empty((reached, len(used)))
+        for column, i in enumerate(used):
+            inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i])[:reached]
+        evaluate(over, visited, history, inputs, out)
         return out
 
     return Trajectory(
         time=table.sampled[:reached],
-        events=events,
         status=integration.status if not integration.status.ok else integration.warning,
         outputs=system.outputs,
         states=states,
@@ -190,26 +196,21 @@ def _trajectory(integration: Integration, steady: Repetition | None, label: str,
         end=integration.now,
         label=label,
         _evaluate=output,
+        _list_events=events,
     )
 
 
-def sampled_inputs(system: PiecewiseSystem, table: InputTable) -> Matrix:
-    """z, z', z'' of the roads and the forces at the samples, from the right (at the last one from the left)."""
+def sampled_input(table: InputTable, derivative: int, channel: int) -> Matrix:
+    """An input, or its first or second derivative, at the samples, from the right (at the last one from the left)."""
     at = np.flatnonzero(table.slot >= 0)
-    roads = len(system.mechanism.roads)
+    if derivative < 2:
+        return np.asarray((table.value, table.slope)[derivative][at, channel])
     segment = np.minimum(at, table.time.size - 2)
-    length = np.diff(table.time)[segment, None]
-    z0, z1 = table.value[segment, :roads], table.value_before[segment + 1, :roads]
-    s0, s1 = table.slope[segment, :roads], table.slope_before[segment + 1, :roads]
-    bend = np.where(
-        (at == segment)[:, None],
-        6.0 * (z1 - z0) / length**2 - (4.0 * s0 + 2.0 * s1) / length,
-        -6.0 * (z1 - z0) / length**2 + (2.0 * s0 + 4.0 * s1) / length,
-    )
-    last = (at == table.time.size - 1)[:, None]
-    value = np.where(last, table.value_before[at], table.value[at])
-    slope = np.where(last, table.slope_before[at], table.slope[at])
-    return np.hstack([value[:, :roads], slope[:, :roads], bend, value[:, roads:]])
+    length = np.diff(table.time)[segment]
+    rise = table.value_before[segment + 1, channel] - table.value[segment, channel]
+    s0, s1 = length * table.slope[segment, channel], length * table.slope_before[segment + 1, channel]
+    first, last = 6.0 * rise - 4.0 * s0 - 2.0 * s1, -6.0 * rise + 2.0 * s0 + 4.0 * s1
+    return np.asarray(np.where(at == segment, first, last) / length**2)
 
 
 def _energy(integration: Integration, start: Matrix) -> Energy:

@@ -56,13 +56,12 @@ def run(
     g = system.positions @ history.displacement[-1] + system.heights @ table.road[:, -1]
     return Trajectory(
         time=history.time,
-        events=(),
         status=history.status,
         outputs=system.outputs,
         states={},
         final_state=np.concatenate([a, g]),
         end=float(history.time[-1]),
-        label="; ".join(s.label for s in signals if s is not None),
+        label="; ".join(dict.fromkeys(s.label for s in signals if s is not None)),
         _evaluate=output,
     )
 

@@ -75,7 +75,6 @@ class Trajectory:
     """
 
     time: Matrix  # [s]
-    events: tuple[Event, ...]
     status: Status
     outputs: Mapping[str, Output]
     states: Mapping[str, str]  # state of every nonlinear element at the start
@@ -85,7 +84,15 @@ class Trajectory:
     end: float = 0.0  # [s] when that is
     label: str = ""  # of the signals
     _evaluate: Callable[[Output], Matrix] = field(repr=False, default=lambda output: np.zeros(0))
-    _known: dict[str, Matrix] = field(repr=False, default_factory=dict)
+    _list_events: Callable[[], tuple[Event, ...]] = field(repr=False, default=tuple)
+    _known: dict[str, Any] = field(repr=False, default_factory=dict)
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """Every change of state of a friction or gap, in order."""
+        if "" not in self._known:
+            self._known[""] = self._list_events()
+        return tuple(self._known[""])
 
     def __getitem__(self, name: str) -> Matrix:
         """The output `name` at `time`.
@@ -98,7 +105,7 @@ class Trajectory:
             raise SimulationError(f"There is no output named {name!r}. {hint}")
         if name not in self._known:
             self._known[name] = self._evaluate(self.outputs[name])
-        return self._known[name]
+        return np.asarray(self._known[name])
 
     def rms(self, name: str) -> float:
         """Root of the mean square of an output over all samples."""

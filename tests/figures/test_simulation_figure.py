@@ -1,0 +1,120 @@
+"""The figure of a simulation: it shows the numbers and the intervals, and nothing runs over anything else."""
+
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+from inerter.errors import StudyError
+from inerter.figures.simulation import draw_simulation, panels, readable_window, simulation_figure
+from inerter.figures.style import styled
+from inerter.study.simulation_file import load_simulation
+from inerter.study.simulation_run import SimulationResult
+from inerter.study.values import StrutLayout
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def result(name, duration=1.0, layout=None, **changes):
+    request = replace(load_simulation(EXAMPLES / f"{name}.toml"), duration=duration, **changes)
+    if layout is not None:
+        request = replace(
+            request,
+            layouts={request.layout: StrutLayout(dict.fromkeys(request.layouts[request.layout].struts, layout))},
+        )
+    return SimulationResult(request, request.run())
+
+
+CASES = {
+    "quarter car": result("stick_slip"),
+    "half car": result("half_car_friction"),
+    "rig": result("backlash_rattle"),
+    "nothing nonlinear": result("half_car_friction", 0.2, "k | c - b"),
+    "two frictions": result("stick_slip", 1.0, "k | (c | f) - (k | f)"),
+    "no inerter on the rig": result("backlash_rattle", 0.5, "(ks | cs) - g - (ks | f)"),
+    "two inerters": result("half_car_friction", 0.5, "k | b | c - (b | f)"),
+    "time-stepping": result("backlash_rattle", 0.1, energy=False, integrator="time-stepping"),
+    "short": result("stick_slip", 4e-4),
+}
+
+
+def drawn(case, window=None):
+    with styled():
+        figure = simulation_figure(case, window or readable_window(case))
+        figure.draw_without_rendering()
+    return figure
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_nothing_runs_over_the_edge_or_over_anything_else(case):
+    figure = drawn(case)
+    boxes = [ax.get_tightbbox() for ax in figure.axes] + [legend.get_window_extent() for legend in figure.legends]
+    for box in boxes:
+        assert figure.bbox.padded(2.0).count_contains([box.min, box.max]) == 2
+    for one, other in combinations(boxes, 2):
+        assert not one.padded(-1.0).overlaps(other)
+    for ax in figure.axes:
+        assert ax.yaxis.label.get_window_extent().height <= 1.05 * ax.get_window_extent().height
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_every_curve_is_in_si_units_times_the_unit_on_the_axis(case):
+    figure = drawn(case)
+    factors = {"[m": 1.0, "[mm]": 1e3, "[N]": 1.0, "[kN]": 1e-3}
+    for ax, panel in zip(figure.axes, panels(case), strict=False):
+        unit = next(f for name, f in sorted(factors.items(), reverse=True) if name in ax.get_ylabel().split()[-1])
+        for line, curve in zip(ax.lines, panel.curves, strict=True):
+            low, high = readable_window(case)
+            inside = (case.run.time >= low) & (case.run.time <= high)
+            values = case.run[curve.output][inside] * curve.weight * unit
+            assert line.get_ydata().min() == pytest.approx(values.min(), rel=1e-12)
+            assert line.get_ydata().max() == pytest.approx(values.max(), rel=1e-12)
+
+
+def test_every_interval_is_shaded_and_the_legend_says_what_it_is():
+    case = CASES["quarter car"]
+    figure = drawn(case)
+    ax = figure.axes[3]
+    shaded = sorted((p.get_x(), p.get_x() + p.get_width()) for p in ax.patches)
+    assert shaded == [pytest.approx(i) for i in case.run.intervals("f", "stick")]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["f sticks"]
+    assert [text.get_text() for text in drawn(CASES["rig"]).legends[0].get_texts()] == ["g is open", "f sticks"]
+
+
+def test_an_axle_has_one_colour_everywhere():
+    figure = drawn(CASES["half car"])
+    road, _, tyre, front, rear = figure.axes
+    for pair in ([road.lines[0], tyre.lines[0], front.lines[0]], [road.lines[1], tyre.lines[1], rear.lines[0]]):
+        assert len({to_hex(line.get_color()) for line in pair}) == 1
+
+
+def test_a_long_run_is_cut_to_what_can_be_read():
+    low, high = readable_window(result("half_car_friction", 5.0))
+    assert high == 5.0
+    assert 0.0 < low < 4.9
+    assert readable_window(CASES["quarter car"]) == (0.0, 1.0)
+
+
+def test_a_window_is_what_is_drawn():
+    figure = drawn(CASES["quarter car"], (0.25, 0.5))
+    for ax in figure.axes:
+        assert ax.get_xlim() == (0.25, 0.5)
+        assert ax.lines[0].get_xdata().min() >= 0.25
+    with pytest.raises(StudyError, match="less than two samples"):
+        simulation_figure(CASES["quarter car"], (7.0, 8.0))
+
+
+def test_many_samples_are_drawn_as_few_points():
+    long = result("backlash_rattle", 3.0, step=5e-5)
+    (line,) = drawn(long, (0.0, 3.0)).axes[1].lines
+    assert line.get_xdata().size <= 4000
+    assert line.get_ydata().max() == long.run["device_force"].max()
+
+
+def test_the_same_run_gives_the_same_bytes(tmp_path):
+    first, second = (draw_simulation(CASES["rig"], tmp_path / name) for name in "12")
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+    assert np.array([path.suffix in (".svg", ".png") for path in first]).all()

@@ -1,0 +1,295 @@
+"""Simulation files: what a good one means, that it survives being written out, and what is said about a bad one."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from inerter.errors import StudyError
+from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
+from inerter.signals.harmonics import multisine
+from inerter.signals.road import Road
+from inerter.study.request import SignalRequest, SimulationRequest, write_simulation
+from inerter.study.signal_kinds import FORCES, KINDS, MOVED, NEEDED, UNITS
+from inerter.study.simulation_file import load_simulation
+from inerter.study.simulation_schema import INITIAL, SimulationSettings
+from inerter.study.values import StrutLayout
+from inerter.vehicle.cars import QuarterCar, Rig
+
+EXAMPLES = sorted(
+    path
+    for path in (Path(__file__).parents[2] / "examples").glob("*.toml")
+    if "[simulation]" in path.read_text("utf-8")
+)
+
+CAR = """
+[vehicle]
+model = "quarter-car"
+sprung_mass = "181.75 kg"
+unsprung_mass = "25 kg"
+tyre_stiffness = "120 kN/m"
+[road]
+speed = "90 km/h"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "60 kN/m"
+c = "3 kN s/m"
+b = "300 kg"
+f = "10 N"
+[layouts]
+S1 = "k | c"
+S2 = "k | c | (b | f)"
+[signal]
+kind = "multisine"
+seed = 3
+[simulation]
+layout = "S2"
+duration = "0.5 s"
+"""
+
+HALF = CAR.replace(
+    'model = "quarter-car"\nsprung_mass = "181.75 kg"\nunsprung_mass = "25 kg"\ntyre_stiffness = "120 kN/m"',
+    """model = "half-car"
+sprung_mass = "363.5 kg"
+pitch_inertia = "200 kg m^2"
+unsprung_mass_front = "25 kg"
+unsprung_mass_rear = "20 kg"
+tyre_stiffness_front = "120 kN/m"
+tyre_stiffness_rear = "100 kN/m"
+distance_front = "0.775 m"
+distance_rear = "1.265 m\"""",
+)
+
+RIG = """
+[vehicle]
+model = "rig"
+[elements]
+ks = "1000 kN/m"
+cs = "3200 N s/m"
+g = "0.1 mm"
+b = "113 kg"
+[layouts]
+screw = "(ks | cs) - g - b"
+[signal]
+kind = "cosine"
+amplitude = "1 mm"
+frequency = "3 Hz"
+[simulation]
+duration = "0.2 s"
+"""
+
+
+@pytest.fixture
+def load(tmp_path):
+    """Loads a file from text, with parts of the text replaced first; each part must be there."""
+
+    def load_text(text, *changes):
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new, 1)
+        path = tmp_path / "motion.toml"
+        path.write_text(text, encoding="utf-8")
+        return load_simulation(path)
+
+    return load_text
+
+
+# --- what a good file means ---
+
+
+def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tmp_path):
+    assert load(CAR) == SimulationRequest(
+        title="motion",
+        path=tmp_path / "motion.toml",
+        model="quarter-car",
+        vehicle={"sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
+        speed=25.0,
+        roughness=5e-7,
+        elements={"k": Spring(60e3, "k"), "c": Damper(3e3, "c"), "b": Inerter(300.0, "b"), "f": Friction(10.0, "f")},
+        layouts={"S1": StrutLayout({"strut": "k | c"}), "S2": StrutLayout({"strut": "k | c | (b | f)"})},
+        signal=SignalRequest("multisine", "road", {"seed": 3, "lowest": 0.1, "highest": 1000.0}),
+        layout="S2",
+        duration=0.5,
+        step=2e-4,
+        integrator="event-driven",
+        initial="rest",
+        energy=False,
+        every=1,
+    )
+
+
+def test_the_vehicle_and_the_signal_are_those_of_the_library(load):
+    request = load(CAR)
+    strut = Spring(60e3, "k") | Damper(3e3, "c") | (Inerter(300.0, "b") | Friction(10.0, "f"))
+    assert request.design() == QuarterCar(181.75, 25.0, 120e3, strut)
+    time = np.linspace(0.0, 1.0, 7)
+    assert np.array_equal(request.make_signal()(time), multisine(Road(5e-7, 25.0), seed=3)(time))
+
+
+def test_a_rig_has_one_device_and_needs_no_road(load):
+    request = load(RIG)
+    device = (Spring(1e6, "ks") | Damper(3200.0, "cs")) - Gap(1e-4, "g") - Inerter(113.0, "b")
+    assert (request.design(), request.layout, request.signal.input) == (Rig(device), "screw", "displacement")
+
+
+def test_frequencies_count_cycles_and_phases_radians(load):
+    request = load(RIG, ('"3 Hz"', '"3 Hz"\nphase = "90 deg"'))
+    assert request.signal.values == {"amplitude": 1e-3, "frequency": 3.0, "phase": pytest.approx(np.pi / 2)}
+
+
+@pytest.mark.parametrize("model", MOVED)
+def test_the_inputs_of_a_model_are_those_of_its_mechanism(load, model):
+    mechanism = load({"quarter-car": CAR, "half-car": HALF, "rig": RIG}[model]).design().mechanism()
+    assert {force.name for force in mechanism.forces} == set(FORCES[model])
+    assert all(road.name.startswith(MOVED[model]) for road in mechanism.roads)
+
+
+KIND_KEYS = {
+    "sampled": 'file = "given.csv"',
+    "profile": 'file = "road.csv"',
+}
+
+
+@pytest.mark.parametrize(("kind", "unit"), [(k, u) for k in KINDS for u in UNITS if u == "m" or not KINDS[k].of_roads])
+def test_every_kind_of_signal_is_made_of_its_own_examples(load, tmp_path, kind, unit):
+    (tmp_path / "given.csv").write_text(f"time [s],value [{unit}]\n0,1\n1,2\n2,1\n")
+    (tmp_path / "road.csv").write_text("distance [m],height [mm]\n0,0\n10,5\n100,0\n")
+    keys = {name: key.of(unit) for name, key in KINDS[kind].keys.items()}
+    lines = KIND_KEYS.get(kind) or "\n".join(key.example for key in keys.values() if key.default is NEEDED)
+    moved = {"m": "road", "N": "sprung_force", "N m": "pitch_moment"}[unit]
+    old = 'kind = "multisine"\nseed = 3'
+    request = load(HALF, (old, f'kind = "{kind}"\ninput = "{moved}"\n{lines}'), ('"0.5 s"', '"2 ms"'))
+    assert request.signal.unit == unit
+    assert np.isfinite(request.make_signal()([0.0, 0.1])).all()
+    assert_survives(request, tmp_path / "elsewhere")
+    if kind != "step":  # its jump may not reach a damper's end, which is another test's business
+        assert request.run().status.ok
+
+
+# --- there and back ---
+
+
+def assert_survives(request, folder):
+    folder.mkdir(exist_ok=True)
+    copy = folder / "copy.toml"
+    copy.write_text(write_simulation(request), encoding="utf-8")
+    assert load_simulation(copy) == request
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_survive_being_written(path, tmp_path):
+    assert_survives(load_simulation(path), tmp_path)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_run(path):
+    request = load_simulation(path)
+    run = replace(request, duration=0.5).run()
+    assert run.status.ok
+    assert run.energy.relative_residual < 1e-8
+
+
+def test_there_are_examples():
+    assert {path.stem for path in EXAMPLES} >= {"stick_slip", "backlash_rattle", "half_car_friction"}
+
+
+def test_every_setting_survives_being_written(load, tmp_path):
+    settings = """[simulation]
+step = "0.25 ms"
+integrator = "time-stepping"
+initial = "preload"
+energy = true
+every = 4
+"""
+    request = load(CAR, ("[simulation]\n", settings), ("[vehicle]", 'title = "A \\"bump\\""\n[vehicle]'))
+    assert (request.step, request.every, request.energy, request.title) == (0.25e-3, 4, True, 'A "bump"')
+    assert_survives(request, tmp_path)
+
+
+def test_the_steady_state_is_one_period(load):
+    request = load(RIG, ('duration = "0.2 s"', 'initial = "periodic"\nstep = "1 ms"'), ('"3 Hz"', '"5 Hz"'))
+    assert (request.duration, request.length) == (None, 0.2)
+    assert request.run().time[-1] == pytest.approx(0.2)
+
+
+def test_every_key_is_in_the_documentation():
+    text = (Path(__file__).parents[2] / "docs" / "simulation.md").read_text(encoding="utf-8")
+    words = {*KINDS, *(key for kind in KINDS.values() for key in kind.keys), *SimulationSettings.model_fields, *INITIAL}
+    assert [word for word in words if f"`{word}`" not in text and f'"{word}"' not in text] == []
+
+
+# --- what is said about a bad one: the file, the place, and the words that help ---
+
+SEED = 'kind = "multisine"\nseed = 3'
+BAD = {
+    "range": (CAR, [('"3 kN s/m"', '{ from = "1 N s/m", to = "2 N s/m" }')], "elements.c", ["range", "one value"]),
+    "no unit": (CAR, [('"300 kg"', '"300"')], "elements.b", ["no unit"]),
+    "negative": (CAR, [('"300 kg"', '"-300 kg"')], "elements.b", ["not positive"]),
+    "model": (CAR, [('"quarter-car"', '"quarter_car"')], "vehicle.model", ['"rig"', 'Did you mean "quarter-car"?']),
+    "rig's mass": (RIG, [('"rig"', '"rig"\nsprung_mass = "1 kg"')], "vehicle.sprung_mass", ['model = "quarter-car"']),
+    "axles of a rig": (RIG, [('"(ks | cs) - g - b"', '{ front = "b", rear = "b" }')], "layouts.screw", ["one device"]),
+    "undefined": (CAR, [('"k | c"', '"k | q"')], "layouts.S1", ['"q"', "not in [elements]"]),
+    "impact": (RIG, [("(ks | cs) - g - b", "g - b")], "layouts.screw", ["gap"]),
+    "study": (CAR, [("[signal]", "[study]\n[signal]")], "study", ["unknown key", "inerter run"]),
+    "section": (CAR, [("[signal]", "[signl]")], "signl", ["unknown key", 'Did you mean "signal"?']),
+    "no simulation": (CAR, [("[simulation]", "[other]")], "simulation", ["missing", 'duration = "10 s"']),
+    "no layout": (CAR, [('layout = "S2"\n', "")], "simulation.layout", ["missing", "S1, S2"]),
+    "other layout": (CAR, [('layout = "S2"', 'layout = "S3"')], "simulation.layout", ['"S3"', "S1, S2"]),
+    "kind": (CAR, [('"multisine"', '"multisin"')], "signal.kind", ['Did you mean "multisine"?', "held-noise"]),
+    "no kind": (CAR, [('kind = "multisine"', "")], "signal.kind", ["missing", 'kind = "multisine"']),
+    "kind's key": (CAR, [("seed = 3", 'amplitude = "1 mm"')], "signal.amplitude", ["unknown key", 'kind = "sine"']),
+    "key": (CAR, [("seed = 3", "sed = 3")], "signal.sed", ["unknown key", 'Did you mean "seed"?']),
+    "missing key": (RIG, [('frequency = "3 Hz"\n', "")], "signal.frequency", ["missing", 'frequency = "3 Hz"']),
+    "amplitude in N": (RIG, [('"1 mm"', '"1 N"')], "signal.amplitude", ["another kind", '"1 m"']),
+    "number": (RIG, [('"1 mm"', "1")], "signal.amplitude", ["without a unit"]),
+    "frequency": (RIG, [('"3 Hz"', '"3 s"')], "signal.frequency", ["another kind", "Hz"]),
+    "force in mm": (
+        CAR,
+        [(SEED, 'kind = "sine"\ninput = "sprung_force"\namplitude = "1 mm"\nfrequency = "1 Hz"')],
+        "signal.amplitude",
+        ["another kind", '"1 N"'],
+    ),
+    "seed": (CAR, [("seed = 3", "seed = -3")], "signal.seed", ["whole number"]),
+    "band": (CAR, [("seed = 3", 'lowest = "3 kHz"')], "signal", ["must not exceed", "3000 and 1000 Hz"]),
+    "road as force": (CAR, [("seed = 3", 'input = "sprung_force"')], "signal.kind", ["shape of a road"]),
+    "input": (CAR, [("seed = 3", 'input = "rod"')], "signal.input", ['"rod"', 'Did you mean "road"?']),
+    "rig's input": (RIG, [('"3 Hz"', '"3 Hz"\ninput = "road"')], "signal.input", ["displacement"]),
+    "no file": (CAR, [(SEED, 'kind = "profile"\nfile = "none.csv"')], "signal", ["no file", "none.csv"]),
+    "no roughness": (CAR, [('roughness = "5e-7 m^3/cycle"\n', "")], "road.roughness", ["multisine", "m^3/cycle"]),
+    "no delay": (
+        HALF,
+        [
+            ('[road]\nspeed = "90 km/h"\nroughness = "5e-7 m^3/cycle"\n', ""),
+            (SEED, 'kind = "step"\nheight = "1 mm"'),
+        ],
+        "road.speed",
+        ["rear wheel", '"25 m/s"'],
+    ),
+    "duration": (CAR, [('duration = "0.5 s"', "")], "simulation.duration", ["missing", '"10 s"']),
+    "steps": (CAR, [('"0.5 s"', '"0.50001 s"')], "simulation.step", ["whole number of steps"]),
+    "zero step": (CAR, [('"0.5 s"', '"0.5 s"\nstep = "0 s"')], "simulation.step", ["not positive"]),
+    "integrator": (CAR, [('"0.5 s"', '"1 s"\nintegrator = "euler"')], "simulation.integrator", ["time-stepping"]),
+    "initial": (CAR, [('"0.5 s"', '"1 s"\ninitial = "rset"')], "simulation.initial", ['Did you mean "rest"?']),
+    "energy": (CAR, [('"0.5 s"', '"1 s"\nenergy = "yes"')], "simulation.energy", ["true or false"]),
+    "every": (CAR, [('"0.5 s"', '"1 s"\nevery = 0')], "simulation.every", ["whole number"]),
+    "misplaced": (CAR, [("seed = 3", 'duration = "1 s"')], "signal.duration", ["unknown key"]),
+}
+
+
+@pytest.mark.parametrize(("text", "changes", "place", "words"), BAD.values(), ids=BAD)
+def test_one_sentence_names_the_place_and_what_to_do(load, text, changes, place, words):
+    with pytest.raises(StudyError) as caught:
+        load(text, *changes)
+    message = str(caught.value)
+    line = next(line for line in message.splitlines() if line.startswith(f"motion.toml: {place}: "))
+    for word in words:
+        assert word in line, line
+    assert "pydantic" not in message
+
+
+def test_files_that_are_none(tmp_path):
+    with pytest.raises(StudyError, match=r"no such file; expected a simulation file"):
+        load_simulation(tmp_path / "none.toml")
+    with pytest.raises(StudyError, match="this is a folder"):
+        load_simulation(tmp_path)

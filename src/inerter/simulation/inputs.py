@@ -68,7 +68,8 @@ def assign(
     if forces is not None and not by_force:
         raise SimulationError(f"Forces are given by name, forces={{name: signal}} (there are: {_listed(names)}).")
     signals: list[Signal | None] = [by_road.get(name) for name in roads]
-    delays = [_delay(r.distance, s, speed, r.name) for r, s in zip(mechanism.roads, signals, strict=True)]
+    late = [0.0 if isinstance(moved, Mapping) else r.distance for r in mechanism.roads]
+    delays = [_delay(d, s, speed, name) for d, s, name in zip(late, signals, roads, strict=True)]
     return [*signals, *(by_force.get(name) for name in names)], delays + [0.0] * len(names)
 
 

@@ -95,7 +95,7 @@ def _expand(mechanism: Mechanism, networks: dict[str, Network], notes: tuple[str
         carriers = builder.add(mount.name, networks[mount.name], upper, lower)
         elongation = upper - lower
         mounts[mount.name] = Mount(elongation[:size], elongation[size:], carriers)
-    labels = _unique([(mount, element.label) for mount, element, _ in builder.branches])
+    labels = _unique([(mount, element) for mount, element, _ in builder.branches])
     branches = tuple(
         Branch(element, label, row[:size], row[size:])
         for (_, element, row), label in zip(builder.branches, labels, strict=True)
@@ -138,8 +138,12 @@ def _inner_nodes(network: Network) -> int:
     return 0
 
 
-def _unique(pairs: list[tuple[str, str]]) -> list[str]:
-    """Plain labels where they are unique, else with the mount before them, else with a number behind them."""
-    labels = [label for _, label in pairs]
-    full = [label if labels.count(label) == 1 else f"{mount}.{label}" for mount, label in pairs]
+def _unique(placed: list[tuple[str, Element]]) -> list[str]:
+    """Labels, plain where that is unique or the only name given; else with the mount before, or a number behind."""
+    labels = [element.label for _, element in placed]
+    names = [element.name for _, element in placed]
+    plain = [
+        labels.count(la) == 1 or (n is not None and names.count(n) == 1) for la, n in zip(labels, names, strict=True)
+    ]
+    full = [la if alone else f"{mount}.{la}" for (mount, _), la, alone in zip(placed, labels, plain, strict=True)]
     return [name if full.count(name) == 1 else f"{name}{full[: i + 1].count(name)}" for i, name in enumerate(full)]

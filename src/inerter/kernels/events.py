@@ -131,8 +131,13 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
             if place[SEGMENT] > k:
                 continue
         if place[JUMPED] == 0:
-            _jump(now.maps[m], sizes, work, record, place, k, nu)
-        place[JUMPED] = 1
+            place[JUMPED] = 2 if _jump(now.maps[m], sizes, work, record, place, k, nu) else 1
+        if place[JUMPED] == 2:  # the sample here is taken anew, in the mode that goes on from here
+            code = switch(now, record.events, record.time[k], length, -1)
+            if code != DONE:
+                return code
+            place[JUMPED] = 1
+            _renew(now.maps[place[MODE]], sizes, work, record, place, k, nu)
         code = cross(now, record.events, record.branch_road, record.gauss, record.time[k], length)
         if code != DONE:
             return code
@@ -416,7 +421,8 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     before = now.place[MODE]
     for e in range(elements):
         met = before >= 0 and e == who and trial[e] == now.state[max(before, 0), e]
-        side = _violated(now, m, e, d, met)
+        row, limits = maps[sizes[GUARD] + e], now.limits[m, e]
+        side = _violated(maps, row, limits, now.flags, now.place, work, e, n, nu, d, met)
         if side != 0:
             now.place[WANTED] = side if trial[e] == 0 else 0
             return e
@@ -463,31 +469,49 @@ def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) ->
         work[SIZE + k, i] = size * d / k
 
 
-@compiled
-def _violated(now: Work, m: int, e: int, d: float, met: bool) -> int:
+@typed(
+    "int64(float64[:,::1], float64[::1], float64[::1], int64[:,::1], int64[::1], float64[:,::1], "
+    "int64, int64, int64, float64, boolean)"
+)
+def _violated(
+    maps: Array,
+    row: Array,
+    limits: Array,
+    flags: Array,
+    place: Array,
+    work: Array,
+    e: int,
+    n: int,
+    nu: int,
+    d: float,
+    met: bool,
+) -> int:
     """At which limit (-1, 1) the guard of element e is violated at once, else 0; notes how long it stays on a limit.
 
     `met`: the guard has just been found to be at a limit.
     """
-    n, nu, work, row = now.sizes[N], now.place[INPUTS], now.work, now.maps[m, now.sizes[GUARD] + e]
-    now.flags[TOUCH, e] = 0
+    flags[TOUCH, e] = 0
     for at in range(2):
-        side, limit = 2 * at - 1, now.limits[m, e, at]
+        side, limit = 2 * at - 1, limits[at]
         if abs(limit) == np.inf:
             continue
         for order in range(ORDERS):
-            if order > now.place[KNOWN]:
-                _coefficient(now.maps[m], work, order, n, nu, d)
-                now.place[KNOWN] = order
-            size = _size(row, work[SIZE + order], work[U + order], n, nu)
-            total = over_columns(row, work[X + order], work[U + order], n, nu)
+            if order > place[KNOWN]:
+                _coefficient(maps, work, order, n, nu, d)
+                place[KNOWN] = order
+            size, total, at_x, at_u = 0.0, 0.0, X + order, U + order
+            for j in range(n):
+                total += row[j] * work[at_x, j]
+                size += abs(row[j]) * work[SIZE + order, j]
+            for j in range(nu):
+                term = row[n + j] * work[at_u, j]
+                total += term
+                size += abs(term)
             if order == 0:
-                total -= limit
+                total += row[n + nu] - limit
                 size += abs(limit)
-            else:
-                total -= row[n + nu]
             if abs(total) <= (_MET if order == 0 and met else _ROUNDING) * size:
-                now.flags[TOUCH, e], now.flags[SIDE, e] = order + 1, side
+                flags[TOUCH, e], flags[SIDE, e] = order + 1, side
             elif side * total > 0.0:
                 return side
             else:
@@ -496,15 +520,16 @@ def _violated(now: Work, m: int, e: int, d: float, met: bool) -> int:
 
 
 @compiled
-def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> None:
-    """A held road moves at once: positions follow, the mean force does the work, and the sample here is taken anew."""
+def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> bool:
+    """Where a held road moves at once, positions follow and the mean force does the work. Whether an input breaks."""
     n, nr, branches = sizes[N], sizes[NR], record.branch_road.shape[0]
     first, u = sizes[OUTPUT] + sizes[OUTPUTS] + branches, work[U]
-    leaps = 0.0
-    for c in range(nr):
+    leaps, kinks = 0.0, 0.0
+    for c in range(record.value.shape[1]):
         leaps += abs(record.value[k, c] - record.value_before[k, c])
+        kinks += abs(record.slope[k, c] - record.slope_before[k, c])
     if leaps == 0.0:
-        return
+        return kinks > 0.0
     counted = record.slot[k] >= 0 and k > place[SETTLED]
     for i in range(nr):
         u[i], u[nr + i], u[2 * nr + i] = record.value_before[k, i], record.slope_before[k, i], 0.0
@@ -524,14 +549,24 @@ def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, 
                 u[c] = record.value[k, c]
                 for i in range(n):
                     work[STATE, i] += maps[i, n + nr + c] * rise
+    return True
+
+
+@compiled
+def _renew(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> None:
+    """The sample where an input breaks, and the squares where it jumps, are those from the right."""
+    n, nr, u, leaps = sizes[N], sizes[NR], work[U], 0.0
+    _sample(record.states, record.visited, record.slot[k], place[MODE], work, n)
+    for c in range(record.value.shape[1]):
+        leaps += abs(record.value[k, c] - record.value_before[k, c])
+    if leaps == 0.0 or record.slot[k] < 0 or k <= place[SETTLED]:
+        return
     for i in range(nr):
-        u[nr + i] = record.slope[k, i]
+        u[i], u[nr + i], u[2 * nr + i] = record.value[k, i], record.slope[k, i], 0.0
     for i in range(3 * nr, nu):
         u[i] = record.value[k, i - 2 * nr]
     for o in range(sizes[OUTPUTS]):
-        if counted:
-            record.sums[o] += over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
-    _sample(record.states, record.visited, record.slot[k], place[MODE], work, n)
+        record.sums[o] += over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
 
 
 @compiled

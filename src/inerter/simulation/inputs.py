@@ -37,13 +37,13 @@ class InputTable:
     slope_before: Matrix
     special: NDArray[np.int64]  # segments of another length, or at whose start an input jumps; then one past the end
     slot: NDArray[np.int64]  # (knots,) number of the sample, or -1
-    samples: int
+    sampled: Matrix  # times of the samples [s]
     moving: tuple[bool, ...]  # whether each input has a signal
 
     @property
-    def sampled(self) -> Matrix:
-        """Times of the samples [s]."""
-        return self.time[self.slot >= 0]
+    def samples(self) -> int:
+        """Number of samples."""
+        return int(self.sampled.size)
 
 
 def assign(
@@ -168,7 +168,7 @@ def tabulate(
         slope_before=slope_before,
         special=np.append(np.flatnonzero(odd), time.size + 1).astype(np.int64),
         slot=slot.astype(np.int64),
-        samples=int(slot.max()) + 1,
+        sampled=time[slot >= 0],
         moving=tuple(signal is not None for signal in signals),
     )
 

@@ -1,15 +1,19 @@
-"""The time-stepping integrator behind `simulate`: its inputs, its start and its trajectory."""
+"""The time-stepping integrator behind `simulate`: its inputs, its start and its trajectory.
+
+States (a, g) are those of `systems.piecewise`, so that either integrator goes on from where the other one ended.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.signals.signal import Signal
 from inerter.simulation.inputs import check_steps, whole_steps
-from inerter.simulation.time_stepping import Start, StepTable, step_through
+from inerter.simulation.time_stepping import Histories, Start, StepTable, step_through
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem
@@ -33,36 +37,15 @@ def run(
     """
     table = _table(system, signals, delays, begin, duration, step)
     history = step_through(system.mechanism, system.graph, table, _start(system, table, state), every)
-    height, rate = table.road[:, ::every], table.road_rate[:, ::every]
-
-    def output(wanted: Output) -> Matrix:
-        total = np.zeros(history.time.size)
-        for rows, values in (
-            (wanted.displacement, history.displacement.T),
-            (wanted.velocity, history.velocity.T),
-            (wanted.acceleration, history.acceleration.T),
-            (wanted.forces, history.forces.T),
-            (wanted.road, height),
-            (wanted.road_velocity, rate),
-            (wanted.external, table.force[:, ::every]),
-        ):
-            for i in np.flatnonzero(rows):
-                total += rows[i] * values[i]
-        return total
-
-    R, N, V = system.motions
-    last = history.velocity[-1] - V @ table.road_rate[:, -1]
-    a = np.linalg.lstsq(np.hstack([R, N]), last, rcond=None)[0][: R.shape[1]]
-    g = system.positions @ history.displacement[-1] + system.heights @ table.road[:, -1]
     return Trajectory(
         time=history.time,
         status=history.status,
         outputs=system.outputs,
         states={},
-        final_state=np.concatenate([a, g]),
+        final_state=_final_state(system, table, history),
         end=float(history.time[-1]),
         label="; ".join(dict.fromkeys(s.label for s in signals if s is not None)),
-        _evaluate=output,
+        _evaluate=partial(_evaluate, table, history, every),
     )
 
 
@@ -74,13 +57,13 @@ def _table(
     duration: float,
     step: float,
 ) -> StepTable:
+    """Roads and forces at every step; what has no signal stays at zero."""
     count = whole_steps(duration, step)
     check_steps(signals, step, begin + duration)
-    values = [
-        (np.zeros(count + 1), np.zeros(count + 1)) if s is None else s.grid(begin - d, step, count + 1)
-        for s, d in zip(signals, delays, strict=True)
-    ]
-    value, slope = (np.array([pair[i] for pair in values]).reshape(len(signals), count + 1) for i in range(2))
+    value, slope = np.zeros((2, len(signals), count + 1))
+    for i, (signal, delay) in enumerate(zip(signals, delays, strict=True)):
+        if signal is not None:
+            value[i], slope[i] = signal.grid(begin - delay, step, count + 1)
     hold = ["cubic" if s is None else s.hold for s in signals]
     roads = len(system.mechanism.roads)
     return StepTable(
@@ -95,16 +78,46 @@ def _table(
 
 
 def _start(system: PiecewiseSystem, table: StepTable, state: Matrix) -> Start:
-    """Displacements, velocities and elongations of the state."""
-    na = system.motions[0].shape[1]
+    """Motions of all nodes in a state (a, g).
+
+    Velocities are R a + V z', with massless nodes at rest. Displacements are the smallest that have the positions g,
+    which fix the elongations of springs and gaps; those of other branches follow from the displacements.
+    """
+    R, _, V = system.motions
+    a, g = np.split(state, [R.shape[1]])
     z, rate = table.road[:, 0], table.road_rate[:, 0]
-    displacement = np.linalg.lstsq(system.positions, state[na:] - system.heights @ z, rcond=None)[0]
-    branches = system.graph.branches
-    elongations = np.array([b.nodes @ displacement + b.roads @ z for b in branches])
-    known = np.any(system.elongations[0], axis=1) | np.any(system.elongations[1], axis=1)
-    exact = system.elongations[0] @ state[na:] + system.elongations[1] @ z
+    displacement = np.asarray(np.linalg.lstsq(system.positions, g - system.heights @ z, rcond=None)[0])
+    over_g, over_z = system.elongations
+    fixed = np.any(over_g, axis=1) | np.any(over_z, axis=1)
+    others = np.array([b.nodes @ displacement + b.roads @ z for b in system.graph.branches])
     return Start(
-        displacement=np.asarray(displacement, dtype=np.float64),
-        velocity=system.motions[0] @ state[:na] + system.motions[2] @ rate,
-        elongations=np.where(known, exact, elongations),
+        displacement=displacement,
+        velocity=R @ a + V @ rate,
+        elongations=np.where(fixed, over_g @ g + over_z @ z, others),
     )
+
+
+def _final_state(system: PiecewiseSystem, table: StepTable, history: Histories) -> Matrix:
+    """The state (a, g) of the last sample: its velocities are R a + N w + V z'."""
+    R, N, V = system.motions
+    z, rate = table.road[:, -1], table.road_rate[:, -1]
+    a_and_w = np.linalg.lstsq(np.hstack([R, N]), history.velocity[-1] - V @ rate, rcond=None)[0]
+    g = system.positions @ history.displacement[-1] + system.heights @ z
+    return np.concatenate([a_and_w[: R.shape[1]], g])
+
+
+def _evaluate(table: StepTable, history: Histories, every: int, output: Output) -> Matrix:
+    """The samples of an output."""
+    total = np.zeros(history.time.size)
+    for weights, motions in (
+        (output.displacement, history.displacement.T),
+        (output.velocity, history.velocity.T),
+        (output.acceleration, history.acceleration.T),
+        (output.forces, history.forces.T),
+        (output.road, table.road[:, ::every]),
+        (output.road_velocity, table.road_rate[:, ::every]),
+        (output.external, table.force[:, ::every]),
+    ):
+        for i in np.flatnonzero(weights):
+            total += weights[i] * motions[i]
+    return total

@@ -18,7 +18,7 @@ import simulation_peers as peers
 import inerter as it
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import InputTable, tabulate
-from inerter.simulation.simulate import trajectory_of
+from inerter.simulation.observe import trajectory_of
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 
 ROAD = it.Road(roughness=5e-7, speed=25)
@@ -93,10 +93,11 @@ def against_peers(name: str) -> None:
     for peer in found:
         error = peer.error if np.isfinite(peer.error) else 0.0
         step, spent, ours = next(row for row in rows if row[2] <= max(error, rows[-1][2]))
+        times = peer.seconds_per_second / spent
         print(
-            f"{name}: {peer.peer}, rtol {peer.tolerance:g}: {peer.seconds_per_second * 1e3:.1f} ms/s, error "
-            f"{peer.error:.1e}: we are {peer.seconds_per_second / spent:.0f} times faster ({step * 1e3:g} ms, {ours:.1e})"
+            f"{name}: {peer.peer}, rtol {peer.tolerance:g}: {peer.seconds_per_second * 1e3:.1f} ms/s, error {error:.1e}"
         )
+        print(f"   we are {times:.0f} times faster, with a step of {step * 1e3:g} ms and an error of {ours:.1e}")
 
 
 def whole_steps() -> None:
@@ -109,7 +110,9 @@ def whole_steps() -> None:
         spent -= fastest(lambda system=system, table=few: run(system, table))
         steps = many.time.size - few.time.size
         bare = peers.bare_loop(system.order, 3, 50_000).seconds_per_step
-        print(f"{name}: a step {spent / steps * 1e9:.1f} ns, a bare loop {bare * 1e9:.1f} ns: {spent / steps / bare:.2f}")
+        print(
+            f"{name}: a step {spent / steps * 1e9:.1f} ns, a bare loop {bare * 1e9:.1f} ns: {spent / steps / bare:.2f}"
+        )
 
 
 def half_against_quarter() -> None:

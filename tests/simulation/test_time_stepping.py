@@ -13,7 +13,7 @@ from scipy.signal import lsim
 from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Spring, assemble, free
 from inerter.errors import SimulationError
 from inerter.networks.elements import Network
-from inerter.simulation.time_stepping import Histories, StepTable, Start, step_through
+from inerter.simulation.time_stepping import Histories, Start, StepTable, step_through
 from inerter.systems.graph import full_graph
 from inerter.vehicle.cars import Rig, Vehicle
 from inerter.vehicle.mechanism import GROUND, Coordinate, Force, Strut

@@ -6,11 +6,12 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.checks import is_number
 from inerter.errors import SimulationError, Status
 from inerter.kernels.events import EVENTS
 from inerter.signals.signal import Signal
@@ -77,21 +78,26 @@ def simulate_many(
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
     """
-    systems = [piecewise(vehicle) for vehicle in vehicles]
+    systems = [piecewise(vehicle) for vehicle in _listed("vehicles", vehicles)]
+    names = [outputs] if isinstance(outputs, str) else _listed("outputs", outputs)
+    if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
+        raise SimulationError(f"The number of threads is a whole number from 1 on, got jobs = {jobs!r}.")
+    if not is_number(settled):
+        raise SimulationError(f"The time from which on values count is a number of seconds, got {settled!r}.")
     count = _count(road, forces, displacement)
     knots, skipped = whole_steps(duration, step), round(settled / step)
     if not 0 <= skipped < knots:
         raise SimulationError(f"The part that does not count, {settled:g} s, must be shorter than {duration:g} s.")
     for system in systems:
-        for name in outputs:
+        for name in names:
             if name not in system.outputs:
                 raise SimulationError(f"There is no output named {name!r} (there are: {', '.join(system.outputs)}).")
-    squares = np.full((len(systems), count, len(outputs)), np.nan)
+    squares = np.full((len(systems), count, len(names)), np.nan)
     events, status = np.zeros((len(systems), count), np.int64), np.empty((len(systems), count), dtype=object)
 
     def run(i: int, j: int, table: InputTable) -> None:
         state = initial_state(systems[i], table.value[0], initial)
-        integration = event_driven.start(systems[i], table, state, list(outputs), keep=False, settled=skipped)
+        integration = event_driven.start(systems[i], table, state, names, keep=False, settled=skipped)
         integration.advance(table.time.size - 1)
         events[i, j], status[i, j] = integration.place[EVENTS], integration.status
         if integration.status.ok:
@@ -111,8 +117,14 @@ def simulate_many(
                 done += len(finished)
                 if progress is not None:
                     progress(done / (count * len(systems)))
-    units = tuple(systems[0].outputs[name].unit for name in outputs) if systems else ("",) * len(outputs)
-    return Batch(tuple(outputs), units, squares, events, tuple(tuple(row) for row in status))
+    units = tuple(systems[0].outputs[name].unit for name in names)
+    return Batch(tuple(names), units, squares, events, tuple(tuple(row) for row in status))
+
+
+def _listed(what: str, given: object) -> list[Any]:
+    if not isinstance(given, Sequence) or isinstance(given, str) or not given:
+        raise SimulationError(f"simulate_many takes one or more {what} in a list, got {given!r}.")
+    return list(given)
 
 
 def _count(*given: Sequence[object] | None) -> int:

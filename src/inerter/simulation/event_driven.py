@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import OK, Status, StatusKind
+from inerter.errors import OK, SimulationError, Status, StatusKind
 from inerter.kernels import events as kernel
 from inerter.kernels.arrays import ENTRY, ETA, Mechanics, Modes
 from inerter.kernels.march import march_of
@@ -19,6 +19,7 @@ from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
 Matrix = NDArray[np.float64]
+MOST_ELEMENTS = 12
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 
 
@@ -126,7 +127,14 @@ def start(
 
     `keep` the states at all samples; `outputs` are to be squared and added up from knot `settled` on; `account` for
     the energy.
+
+    Raises `SimulationError` if there are more frictions and gaps than combinations of their states can be numbered.
     """
+    if len(system.nonlinear) > MOST_ELEMENTS:
+        raise SimulationError(
+            f"The event-driven integrator takes up to {MOST_ELEMENTS} frictions and gaps, got {len(system.nonlinear)}. "
+            f'Take integrator="time-stepping", or join those that always act together.'
+        )
     n, nu, k = system.order, system.inputs, len(system.nonlinear)
     na, nw = (motion.shape[1] for motion in system.motions[:2])
     rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])

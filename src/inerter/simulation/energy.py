@@ -1,0 +1,41 @@
+"""The energy account of an integration."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.kernels.events import ENERGY, SEGMENT
+from inerter.networks.elements import Damper, Friction, Spring
+from inerter.simulation.event_driven import Integration
+from inerter.simulation.inputs import InputTable
+from inerter.simulation.trajectory import Energy
+from inerter.systems.piecewise import PiecewiseSystem
+
+Matrix = NDArray[np.float64]
+
+
+def energy_of(integration: Integration, start: Matrix) -> Energy:
+    """Where the energy went from the state `start` on."""
+    system, table = integration.system, integration.table
+    names = [*(r.name for r in system.mechanism.roads), *(f.name for f in system.mechanism.forces)]
+    sums = integration.work[ENERGY]
+    branches = list(zip(system.graph.branches, sums[len(names) :], strict=False))
+    knot = int(integration.place[SEGMENT])
+    return Energy(
+        inputs={name: float(w) for name, w in zip(names, sums, strict=False)},
+        stored=_stored(system, table, integration.state, knot, -1) - _stored(system, table, start, 0, 1),
+        dampers={b.label: float(w) for b, w in branches if isinstance(b.element, Damper)},
+        friction={b.label: float(w) for b, w in branches if isinstance(b.element, Friction)},
+    )
+
+
+def _stored(system: PiecewiseSystem, table: InputTable, state: Matrix, knot: int, side: int) -> float:
+    """Kinetic and elastic energy [J]."""
+    roads, na = len(system.mechanism.roads), system.motions[0].shape[1]
+    z = (table.value if side > 0 else table.value_before)[knot, :roads]
+    rate = (table.slope if side > 0 else table.slope_before)[knot, :roads]
+    speeds = system.kinetic @ state[:na] + system.kinetic_road @ rate
+    lengths = system.elongations[0] @ state[na:] + system.elongations[1] @ z
+    k = np.array([float(b.element.value) if isinstance(b.element, Spring) else 0.0 for b in system.graph.branches])  # type: ignore[arg-type]
+    return float(0.5 * system.inertia @ speeds**2 + 0.5 * k @ lengths**2)

@@ -1,0 +1,72 @@
+"""Periodic steady states: a period is repeated until the state repeats."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import SimulationError, Status, StatusKind
+from inerter.kernels.events import EVENTS, SEGMENT, SPECIAL
+from inerter.signals.signal import Signal
+from inerter.simulation import event_driven
+from inerter.simulation.event_driven import Integration
+from inerter.simulation.inputs import InputTable
+from inerter.simulation.trajectory import Repetition
+from inerter.systems.piecewise import PiecewiseSystem
+
+Matrix = NDArray[np.float64]
+_PERIODS = 300
+_REPEATS, _ENOUGH = 1e-10, 1e-6  # changes of the state over a period, relative to its size
+
+
+def common_period(signals: Sequence[Signal | None]) -> float:
+    """The period of all signals [s].
+
+    Raises `SimulationError` if one has none, or if no period is a multiple of all.
+    """
+    moving = [s for s in signals if s is not None]
+    for signal in moving:
+        if signal.period is None:
+            raise SimulationError(
+                f"The signal {signal.label!r} does not repeat: give a duration, or a periodic signal."
+            )
+    if not moving:
+        raise SimulationError("Nothing moves the mechanism: give a road, forces or a displacement.")
+    period = max(float(s.period or 0.0) for s in moving)
+    for signal in moving:
+        ratio = period / float(signal.period or 1.0)
+        if abs(ratio - round(ratio)) > 1e-9 * ratio:
+            raise SimulationError(
+                f"The periods of {', '.join(f'{s.period:g}' for s in moving)} s are not multiples of each other."
+            )
+    return period
+
+
+def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
+    """Repeat one period until the state repeats; an integration at the start of the one to record."""
+    last = table.time.size - 1
+    before, slope = table.value_before.copy(), table.slope_before.copy()
+    before[0], slope[0] = before[last], slope[last]
+    special = table.special
+    if not np.array_equal(before[0], table.value[0]) and special[0] != 0:
+        special = np.concatenate([[0], special])
+    quick = event_driven.start(system, table, state, keep=False)
+    quick.advance(last)
+    quick.record = quick.record._replace(value_before=before, slope_before=slope, special=special)
+    mismatch, periods = np.inf, 1
+    while quick.status.ok and periods < _PERIODS and mismatch > _REPEATS:
+        begun = quick.state
+        quick.place[[SEGMENT, SPECIAL, EVENTS]] = 0
+        quick.advance(last)
+        periods += 1
+        mismatch = quick.mismatch(begun)
+    recorded = event_driven.start(system, table, quick.state, account=energy)
+    recorded.record = recorded.record._replace(value_before=before, slope_before=slope, special=special)
+    recorded.status = quick.status
+    if quick.status.ok and mismatch > _ENOUGH:
+        recorded.warning = Status(
+            StatusKind.INACCURATE, f"after {periods} periods the state still changes by {mismatch:.1e} of its size"
+        )
+    return recorded, Repetition(float(table.time[-1] - table.time[0]), periods, mismatch)

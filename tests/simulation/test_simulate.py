@@ -91,6 +91,15 @@ def test_a_run_in_two_parts_is_the_run():
     assert [e.element for e in first.events + second.events] == [e.element for e in whole.events]
 
 
+def test_time_stepping_goes_on_from_its_last_sample():
+    """Also where the samples do not reach the end of the run: 1000 steps, every seventh kept."""
+    signal, car = it.multisine(ROAD, seed=5, highest=100.0), quarter_car(100.0)
+    kept = it.simulate(car, road=signal, duration=0.1, step=1e-4, every=7, integrator="time-stepping")
+    whole = it.simulate(car, road=signal, duration=0.0994, step=1e-4, integrator="time-stepping")
+    assert kept.end == pytest.approx(0.0994)
+    np.testing.assert_allclose(kept.final_state, whole.final_state, rtol=1e-9, atol=1e-12)
+
+
 def test_a_periodic_steady_state_repeats():
     car, signal = quarter_car(100.0), it.sine(amplitude=5e-3, frequency=2.0)
     steady = it.simulate(car, road=signal, initial="periodic", energy=True)

@@ -37,15 +37,18 @@ def run(
     """
     table = _table(system, signals, delays, begin, duration, step)
     history = step_through(system.mechanism, system.graph, table, _start(system, table, state), every)
+    reached = int(
+        np.sum(np.all(np.isfinite(history.displacement), axis=1) & np.all(np.isfinite(history.forces), axis=1))
+    )
     return Trajectory(
-        time=history.time,
+        time=history.time[:reached],
         status=history.status,
         outputs=system.outputs,
         states={},
-        final_state=_final_state(system, table, history),
-        end=float(history.time[-1]),
+        final_state=_state_at(system, table, history, reached - 1, (reached - 1) * every),
+        end=float(history.time[reached - 1]),
         label="; ".join(dict.fromkeys(s.label for s in signals if s is not None)),
-        _evaluate=partial(_evaluate, table, history, every),
+        _evaluate=partial(_evaluate, table, history, every, reached),
     )
 
 
@@ -97,16 +100,16 @@ def _start(system: PiecewiseSystem, table: StepTable, state: Matrix) -> Start:
     )
 
 
-def _final_state(system: PiecewiseSystem, table: StepTable, history: Histories) -> Matrix:
-    """The state (a, g) of the last sample: its velocities are R a + N w + V z'."""
+def _state_at(system: PiecewiseSystem, table: StepTable, history: Histories, sample: int, step: int) -> Matrix:
+    """The state (a, g) of a sample: its velocities are R a + N w + V z'."""
     R, N, V = system.motions
-    z, rate = table.road[:, -1], table.road_rate[:, -1]
-    a_and_w = np.linalg.lstsq(np.hstack([R, N]), history.velocity[-1] - V @ rate, rcond=None)[0]
-    g = system.positions @ history.displacement[-1] + system.heights @ z
+    z, rate = table.road[:, step], table.road_rate[:, step]
+    a_and_w = np.linalg.lstsq(np.hstack([R, N]), history.velocity[sample] - V @ rate, rcond=None)[0]
+    g = system.positions @ history.displacement[sample] + system.heights @ z
     return np.concatenate([a_and_w[: R.shape[1]], g])
 
 
-def _evaluate(table: StepTable, history: Histories, every: int, output: Output) -> Matrix:
+def _evaluate(table: StepTable, history: Histories, every: int, reached: int, output: Output) -> Matrix:
     """The samples of an output."""
     total = np.zeros(history.time.size)
     for weights, motions in (
@@ -120,4 +123,4 @@ def _evaluate(table: StepTable, history: Histories, every: int, output: Output) 
     ):
         for i in np.flatnonzero(weights):
             total += weights[i] * motions[i]
-    return total
+    return total[:reached]

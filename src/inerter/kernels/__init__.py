@@ -61,7 +61,7 @@ def _tell() -> None:
     print("inerter: compiling the numerical kernels; this happens once.", file=sys.stderr, flush=True)
 
 
-def compiled(function: F, signature: Any = None, fused: bool = False) -> F:
+def compiled(function: F, signature: Any = None, *, fused: bool = False, borrowing: bool = False) -> F:
     """Compile on first use, or at once for a given signature, and keep the result between processes."""
     folder = cache_folder(Path(function.__code__.co_filename))
     if not any(folder.iterdir()):
@@ -71,16 +71,23 @@ def compiled(function: F, signature: Any = None, fused: bool = False) -> F:
     settings.CACHE_DIR = str(folder)
     try:
         fast: Any = {"contract"} if fused else False  # a product and a sum in one instruction, with one rounding
-        compiler: Any = numba.njit(signature, cache=True, error_model="numpy", nogil=True, fastmath=fast)
+        compiler: Any = numba.njit(
+            signature, cache=True, error_model="numpy", nogil=True, fastmath=fast, _nrt=not borrowing
+        )
         result = compiler(function)
     finally:
         settings.CACHE_DIR = before
     return cast("F", result)
 
 
-def typed(signature: str) -> Callable[[F], F]:
+def typed(signature: str, *, borrowing: bool = False) -> Callable[[F], F]:
     """Compile for one signature, when the module is loaded: calls with constants then share it."""
-    return lambda function: compiled(function, signature)
+    return lambda function: compiled(function, signature, borrowing=borrowing)
+
+
+def borrowing(function: F) -> F:
+    """Compile a function that makes no array of its own: it need not count who else holds those that it is given."""
+    return compiled(function, borrowing=True)
 
 
 def compiling_beside(module: str) -> Callable[[], None]:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from inerter.kernels import compiled, compiling_beside, typed
+from inerter.kernels import borrowing, compiling_beside, typed
 from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
 from inerter.kernels.flow import first_root, inputs_from, knot_numbers, series, slope_at
 
@@ -64,7 +64,7 @@ class Record(NamedTuple):
     gauss: Array  # (2, points) nodes and weights on [0, 1]
 
 
-@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)")
+@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)", borrowing=True)
 def over_columns(row: Array, x: Array, u: Array, n: int, nu: int) -> float:
     """A row over a mode's columns times (state, inputs, 1)."""
     total = row[n + nu]
@@ -75,7 +75,7 @@ def over_columns(row: Array, x: Array, u: Array, n: int, nu: int) -> float:
     return float(total)
 
 
-@typed("int64(int64[::1], int64[::1])")
+@typed("int64(int64[::1], int64[::1])", borrowing=True)
 def mode_number(number: Array, trial: Array) -> int:
     """Number of the mode in which the elements are in these states, or -1."""
     code = 0
@@ -84,7 +84,7 @@ def mode_number(number: Array, trial: Array) -> int:
     return int(number[code])
 
 
-@compiled
+@borrowing
 def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, stop: int) -> int:
     """Integrate up to knot `stop`.
 
@@ -153,7 +153,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
     return DONE
 
 
-@typed("void(float64[:,::1], int64[::1], int64, int64, float64[:,::1], int64)")
+@typed("void(float64[:,::1], int64[::1], int64, int64, float64[:,::1], int64)", borrowing=True)
 def _sample(states: Array, visited: Array, slot: int, mode: int, work: Array, n: int) -> None:
     if slot >= 0 and slot < states.shape[0]:
         visited[slot] = mode
@@ -161,7 +161,7 @@ def _sample(states: Array, visited: Array, slot: int, mode: int, work: Array, n:
             states[slot, i] = work[STATE, i]
 
 
-@typed("void(float64[:,::1], int64[::1], float64[:,::1], float64[:,::1], float64[::1])")
+@typed("void(float64[:,::1], int64[::1], float64[:,::1], float64[:,::1], float64[::1])", borrowing=True)
 def evaluate(rows: Array, visited: Array, states: Array, inputs: Array, out: Array) -> None:
     """An output at all samples: each mode's row over the state, the inputs and 1."""
     n, nu = states.shape[1], inputs.shape[1]
@@ -175,7 +175,7 @@ def evaluate(rows: Array, visited: Array, states: Array, inputs: Array, out: Arr
         out[i] = total
 
 
-@compiled
+@borrowing
 def cross(now: Work, events: Array, branch_road: Array, gauss: Array, start: float, length: float) -> int:
     """Go to the end of one segment piece by piece, and through every event on the way."""
     place, work, sizes = now.place, now.work, now.sizes
@@ -218,7 +218,7 @@ def cross(now: Work, events: Array, branch_road: Array, gauss: Array, start: flo
     return DONE
 
 
-@typed("float64(float64[:,::1], int64, int64, float64)")
+@typed("float64(float64[:,::1], int64, int64, float64)", borrowing=True)
 def _polynomial(state: Array, count: int, i: int, s: float) -> float:
     total = state[count - 1, i]
     for j in range(count - 2, -1, -1):
@@ -226,7 +226,7 @@ def _polynomial(state: Array, count: int, i: int, s: float) -> float:
     return float(total)
 
 
-@typed("float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1])")
+@typed("float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1])", borrowing=True)
 def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array) -> float:
     """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
 
@@ -264,7 +264,7 @@ def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, 
     return best
 
 
-@typed("int64(int64[:,::1])")
+@typed("int64(int64[:,::1])", borrowing=True)
 def _unknown(flags: Array) -> int:
     """Leave to have a mode built; what has been found out about modes on trial must not stay."""
     for e in range(flags.shape[1]):
@@ -272,7 +272,7 @@ def _unknown(flags: Array) -> int:
     return MODE_UNKNOWN
 
 
-@compiled
+@borrowing
 def switch(now: Work, events: Array, start: float, length: float, who: int) -> int:
     """Find the mode that goes on from here, after the guard of element `who` (or nothing, -1) was met.
 
@@ -334,7 +334,7 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
     return DONE
 
 
-@compiled
+@borrowing
 def _drop_drift(now: Work, m: int, length: float) -> None:
     """Take away the rounding that has gathered in what locks and the springs' balance of mode m keep at zero.
 
@@ -359,7 +359,7 @@ def _drop_drift(now: Work, m: int, length: float) -> None:
         first = last
 
 
-@compiled
+@borrowing
 def judge(now: Work, m: int, length: float, who: int) -> int:
     """Whether mode m can go on from here: ACCEPTED, STRUCK, STRANDED, or the element whose state must change.
 
@@ -429,7 +429,7 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     return ACCEPTED
 
 
-@typed("float64(float64[:,::1], int64, float64[::1], int64, int64)")
+@typed("float64(float64[:,::1], int64, float64[::1], int64, int64)", borrowing=True)
 def _asked(reaction: Array, row: int, residual: Array, first: int, last: int) -> float:
     total = 0.0
     for i in range(first, last):
@@ -437,7 +437,7 @@ def _asked(reaction: Array, row: int, residual: Array, first: int, last: int) ->
     return total
 
 
-@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)")
+@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)", borrowing=True)
 def _size(row: Array, size: Array, u: Array, n: int, nu: int) -> float:
     """Sum of the sizes of what a row adds up: its rounding is a small multiple of this."""
     total = 0.0
@@ -448,7 +448,7 @@ def _size(row: Array, size: Array, u: Array, n: int, nu: int) -> float:
     return total
 
 
-@typed("void(float64[:,::1], float64[:,::1], int64, int64, int64, float64)")
+@typed("void(float64[:,::1], float64[:,::1], int64, int64, int64, float64)", borrowing=True)
 def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) -> None:
     """The k-th coefficient of the flow from GUESS, and the sizes of what it was added up from."""
     for i in range(n):
@@ -471,7 +471,8 @@ def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) ->
 
 @typed(
     "int64(float64[:,::1], float64[::1], float64[::1], int64[:,::1], int64[::1], float64[:,::1], "
-    "int64, int64, int64, float64, boolean)"
+    "int64, int64, int64, float64, boolean)",
+    borrowing=True,
 )
 def _violated(
     maps: Array,
@@ -519,7 +520,7 @@ def _violated(
     return 0
 
 
-@compiled
+@borrowing
 def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> bool:
     """Where a held road moves at once, positions follow and the mean force does the work. Whether an input breaks."""
     n, nr, branches = sizes[N], sizes[NR], record.branch_road.shape[0]
@@ -552,7 +553,7 @@ def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, 
     return True
 
 
-@compiled
+@borrowing
 def _renew(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> None:
     """The sample where an input breaks, and the squares where it jumps, are those from the right."""
     n, nr, u, leaps = sizes[N], sizes[NR], work[U], 0.0
@@ -569,7 +570,7 @@ def _renew(maps: Array, sizes: Array, work: Array, record: Record, place: Array,
         record.sums[o] += over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
 
 
-@compiled
+@borrowing
 def _account(
     maps: Array, sizes: Array, work: Array, branch_road: Array, gauss: Array, nu: int, count: int, s: float, d: float
 ) -> None:

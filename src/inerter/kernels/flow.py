@@ -7,9 +7,12 @@ from typing import Any
 from inerter.kernels import typed
 
 Array = Any
+CLOSE = 1e-15  # of a piece, which is a step at most: beyond the resolution of time itself
 
 
-@typed("void(float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], int64, float64, float64[::1])")
+@typed(
+    "void(float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], int64, float64, float64[::1])", borrowing=True
+)
 def knot_numbers(
     value: Array, slope: Array, value_before: Array, slope_before: Array, knot: int, length: float, out: Array
 ) -> None:
@@ -22,7 +25,7 @@ def knot_numbers(
         out[4 * c + 3] = length * slope_before[knot + 1, c]
 
 
-@typed("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])")
+@typed("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])", borrowing=True)
 def inputs_from(numbers: Array, nr: int, nu: int, length: float, start: float, d: float, U: Array) -> None:
     """Coefficients (4, inputs) of roads' z, z', z'' and of forces in powers of (t - start) / d."""
     channels = nu - 2 * nr
@@ -43,7 +46,7 @@ def inputs_from(numbers: Array, nr: int, nu: int, length: float, start: float, d
             U[0, i], U[1, i], U[2, i], U[3, i] = 2.0 * c2 / (d * d), 6.0 * c3 / (d * d), 0.0, 0.0
 
 
-@typed("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])")
+@typed("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])", borrowing=True)
 def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array) -> int:
     """Coefficients X[k] of the flow from x in powers of t / d, until they are below rounding; returns their number.
 
@@ -78,7 +81,7 @@ def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array)
     return int(last)
 
 
-@typed("float64(float64[::1], int64, float64)")
+@typed("float64(float64[::1], int64, float64)", borrowing=True)
 def value_at(c: Array, count: int, s: float) -> float:
     """The polynomial with coefficients c[0], ..., c[count - 1]."""
     total = c[count - 1]
@@ -87,7 +90,7 @@ def value_at(c: Array, count: int, s: float) -> float:
     return float(total)
 
 
-@typed("float64(float64[::1], int64, float64)")
+@typed("float64(float64[::1], int64, float64)", borrowing=True)
 def slope_at(c: Array, count: int, s: float) -> float:
     """Its derivative."""
     total = 0.0
@@ -96,7 +99,7 @@ def slope_at(c: Array, count: int, s: float) -> float:
     return total
 
 
-@typed("float64(float64[::1], int64, float64, float64)")
+@typed("float64(float64[::1], int64, float64, float64)", borrowing=True)
 def polish(c: Array, count: int, a: float, b: float) -> float:
     """The root in [a, b] of a polynomial that is positive at a and not at b: Newton's steps, or else halving."""
     s = 0.5 * (a + b)
@@ -110,13 +113,13 @@ def polish(c: Array, count: int, a: float, b: float) -> float:
         after = s - value / slope if slope < 0.0 else a
         if not (a < after < b):
             after = 0.5 * (a + b)
-        if abs(after - s) <= 2e-16 * after or b - a <= 2e-16 * b:
+        if abs(after - s) <= CLOSE or b - a <= CLOSE:
             return after
         s = after
     return s
 
 
-@typed("float64(float64[::1], int64, float64[::1])")
+@typed("float64(float64[::1], int64, float64[::1])", borrowing=True)
 def first_root(c: Array, count: int, ends: Array) -> float:
     """Smallest s in [0, 1] from which on the polynomial is negative; 2 if there is none.
 

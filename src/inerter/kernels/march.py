@@ -116,4 +116,4 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
             x[i] = v[i]
         return k
 
-    return March(compiled(march, SIGNATURE, fused=True))
+    return March(compiled(march, SIGNATURE, fused=True, borrowing=True))

@@ -93,6 +93,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
     """
     place, work, sizes = now.place, now.work, now.sizes
     n, nr, nu = sizes[N], sizes[NR], place[INPUTS]
+    nobody: Any = np.int64(-1)  # a plain -1 would be a type of its own, and compile what takes it twice
     while place[SEGMENT] < stop:
         k = place[SEGMENT]
         length = record.time[k + 1] - record.time[k]
@@ -101,7 +102,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
         value, slope, value_before, slope_before = record.value, record.slope, record.value_before, record.slope_before
         knot_numbers(value, slope, value_before, slope_before, k, length, work[NUMBERS])
         if place[MODE] < 0:
-            code = switch(now, record.events, record.time[k], length, place[MODE])
+            code = switch(now, record.events, record.time[k], length, nobody)
             if code != DONE:
                 return code
             _sample(record.states, record.visited, record.slot[k], place[MODE], work, n)
@@ -133,12 +134,13 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
         if place[JUMPED] == 0:
             place[JUMPED] = 2 if _jump(now.maps[m], sizes, work, record, place, k, nu) else 1
         if place[JUMPED] == 2:  # the sample here is taken anew, in the mode that goes on from here
-            code = switch(now, record.events, record.time[k], length, -1)
+            code = switch(now, record.events, record.time[k], length, nobody)
             if code != DONE:
                 return code
             place[JUMPED] = 1
             _renew(now.maps[place[MODE]], sizes, work, record, place, k, nu)
-        code = cross(now, record.events, record.branch_road, record.gauss, record.time[k], length)
+        begun = record.visited[max(record.slot[k], 0) : record.slot[k] + 1]
+        code = cross(now, record.events, begun, record.branch_road, record.gauss, record.time[k], length)
         if code != DONE:
             return code
         # close the segment
@@ -176,8 +178,11 @@ def evaluate(rows: Array, visited: Array, states: Array, inputs: Array, out: Arr
 
 
 @borrowing
-def cross(now: Work, events: Array, branch_road: Array, gauss: Array, start: float, length: float) -> int:
-    """Go to the end of one segment piece by piece, and through every event on the way."""
+def cross(now: Work, events: Array, begun: Array, branch_road: Array, gauss: Array, start: float, length: float) -> int:
+    """Go to the end of one segment piece by piece, and through every event on the way.
+
+    `begun`: the mode at the sample at its start, if there is one; what changes at once there changes the sample's mode.
+    """
     place, work, sizes = now.place, now.work, now.sizes
     n, nr, nu, elements, guard = sizes[N], sizes[NR], place[INPUTS], sizes[K], sizes[GUARD]
     coefficients, state = work[U : U + 8], work[X:]
@@ -188,7 +193,7 @@ def cross(now: Work, events: Array, branch_road: Array, gauss: Array, start: flo
         inputs_from(work[NUMBERS], nr, nu, length, t, d, coefficients)
         count = series(now.maps[m], work[STATE], coefficients, n, nu, d, state)
         best = 2.0
-        who: Any = np.int64(-1)  # a plain -1 would be a type of its own
+        who: Any = np.int64(-1)
         for e in range(elements):
             if now.flags[TOUCH, e] < ORDERS:
                 s = _crossing(now.maps[m, guard + e], now.limits[m, e], now.flags, e, n, nu, count, work)
@@ -215,6 +220,8 @@ def cross(now: Work, events: Array, branch_road: Array, gauss: Array, start: flo
             code = switch(now, events, start, length, who)
             if code != DONE:
                 return code
+            if work[CLOCK, 0] == 0.0:
+                begun[:] = place[MODE]
     return DONE
 
 

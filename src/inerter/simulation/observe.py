@@ -71,7 +71,7 @@ def sampled_input(table: InputTable, derivative: int, channel: int) -> Matrix:
     at = np.flatnonzero(table.slot >= 0)
     if derivative < 2:
         right, left = ((table.value, table.value_before), (table.slope, table.slope_before))[derivative]
-        return np.where(at == table.time.size - 1, left[at, channel], right[at, channel])
+        return np.asarray(np.where(at == table.time.size - 1, left[at, channel], right[at, channel]))
     segment = np.minimum(at, table.time.size - 2)
     length = np.diff(table.time)[segment]
     rise = table.value_before[segment + 1, channel] - table.value[segment, channel]

@@ -8,7 +8,9 @@ them is `kernels.modes`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from types import UnionType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,106 +98,142 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     if free:
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
     graph = full_graph(mechanism)
-    count, roads = len(graph.nodes), len(mechanism.roads)
-    masses = [
-        Branch(Inerter(c.inertia), c.name, row, np.zeros(roads))
-        for c, row in zip(mechanism.coordinates, np.eye(count), strict=False)
-    ]
-    branches = graph.branches
-    nonlinear = tuple(i for i, b in enumerate(branches) if isinstance(b.element, Friction | Gap))
-    R, N, V = _velocities(mechanism, graph, masses)
-    rows = _stack(branches, count, roads)
-    E_a, E_w, E_z = rows[0] @ R, rows[0] @ N, rows[1] + rows[0] @ V
-    placed = [i for i, b in enumerate(branches) if isinstance(b.element, Gap)]
-    placed += [i for i, b in enumerate(branches) if isinstance(b.element, Spring)]
-    coordinates = np.eye(count)[: len(mechanism.coordinates)]
-    choices = np.vstack([rows[0][placed], coordinates])
-    choices_road = np.vstack([rows[1][placed], np.zeros((len(coordinates), roads))])
-    chosen = independent_rows(choices)
-    P, P_road = choices[chosen], choices_road[chosen]
-    over_g = clean(choices @ np.linalg.pinv(P)) if chosen else np.zeros((len(choices), 0))
-    over_g[chosen] = np.eye(len(chosen))
-    over_z = clean(choices_road - over_g @ P_road)
-    e_g, e_z = np.zeros((len(branches), len(chosen))), np.zeros((len(branches), roads))
-    e_g[placed], e_z[placed] = over_g[: len(placed)], over_z[: len(placed)]
-
-    def weighted(kind: type[Element], left: Matrix, right: Matrix) -> Matrix:
-        value = np.array([_value(b.element) if isinstance(b.element, kind) else 0.0 for b in branches])
-        return np.ascontiguousarray(left.T @ (value[:, None] * right))
-
-    inertial = [*masses, *(b for b in branches if isinstance(b.element, Inerter))]
-    inertia = np.array([_value(b.element) for b in inertial])
-    nodes, of_roads = _stack(inertial, count, roads)
-    kinetic, kinetic_road = nodes @ R, of_roads + nodes @ V
-    force_rows = np.zeros((len(mechanism.forces), count))
-    for i, force in enumerate(mechanism.forces):
-        force_rows[i, : len(coordinates)] = [force.port.get(c.name, 0.0) for c in mechanism.coordinates]
-    special = list(nonlinear)
-    kinds = [FRICTION if isinstance(branches[i].element, Friction) else GAP for i in special]
-    dampers = [i for i, b in enumerate(branches) if isinstance(b.element, Damper)]
-    springs = [i for i, b in enumerate(branches) if isinstance(b.element, Spring)]
-    own = [chosen.index(placed.index(i)) if i in placed and placed.index(i) in chosen else -1 for i in special]
-    M, M_z = kinetic.T @ (inertia[:, None] * kinetic), kinetic.T @ (inertia[:, None] * kinetic_road)
-    motions = np.hstack([E_a, E_w])
-    resistance = weighted(Damper, motions, motions)
-    na, nw = R.shape[1], N.shape[1]
-    left = resistance.copy()
-    left[:, :na] = 0.0
-    left[:na, :na] = M
-    right = np.hstack([
-        -resistance[:, :na],
-        -weighted(Spring, motions, e_g),
-        -weighted(Spring, motions, e_z),
-        -weighted(Damper, motions, E_z),
-        -np.vstack([M_z, np.zeros((nw, roads))]),
-        (force_rows @ np.hstack([R, N])).T,
-        np.zeros((na + nw, 1)),
-    ])  # fmt: skip
-    mechanics = Mechanics(
-        balance=np.hstack([left, right]),
-        rates=_dense(
-            np.vstack(
-                [
-                    np.hstack([P @ R, P @ N, P_road + P @ V]),
-                    np.hstack([E_a, E_w, E_z])[[*special, *dampers, *springs]],
-                ]
-            )
-        ),
-        lengths=_dense(np.hstack([e_g, e_z])[special]),
-        elements=np.array([kinds, own], dtype=np.int64).T.copy(),
-        limit=np.array([_value(branches[i].element) for i in special]),
-    )
+    inertia = _inertia(mechanism, graph)
+    R, N, V = motions = _velocities(mechanism, graph, inertia)
+    nodes, roads = _stack(graph.branches, graph)
+    rates = (nodes @ R, nodes @ N, roads + nodes @ V)
+    places = _places(mechanism, graph)
+    kinetic, kinetic_road = inertia.nodes @ R, inertia.roads + inertia.nodes @ V
+    nonlinear = tuple(i for i, b in enumerate(graph.branches) if isinstance(b.element, Friction | Gap))
+    damping = _weighted(graph, Damper, np.hstack(rates[:2]), np.hstack(rates))
     system = PiecewiseSystem(
         mechanism=mechanism,
         graph=graph,
-        mechanics=mechanics,
+        mechanics=_mechanics(mechanism, graph, motions, rates, places, inertia),
         nonlinear=nonlinear,
         outputs=outputs(mechanism, graph),
-        rates=(E_a, E_w, E_z),
-        elongations=(e_g, e_z),
-        displacements=(over_g[len(placed) :], over_z[len(placed) :]),
-        motions=(R, N, V),
+        rates=rates,
+        elongations=places.elongations,
+        displacements=places.displacements,
+        motions=motions,
         kinetic=kinetic,
         kinetic_road=kinetic_road,
-        inertia=inertia,
-        positions=P,
-        heights=P_road,
-        needs_velocity=tuple(np.any(np.abs(_felt(resistance, weighted(Damper, motions, E_z), na)) > 1e-9, axis=0)),
-        needs_acceleration=tuple(np.any(np.abs(kinetic_road) > 1e-12, axis=0) | _locked_to(E_a, E_w, E_z, special)),
+        inertia=inertia.values,
+        positions=places.nodes,
+        heights=places.roads,
+        needs_velocity=tuple(np.any(np.abs(_felt(damping, R.shape[1])) > 1e-9, axis=0)),
+        needs_acceleration=tuple(np.any(np.abs(kinetic_road) > 1e-12, axis=0) | _locked_to(rates, nonlinear)),
     )
     _check_locks(system)
     return system
 
 
-def _felt(resistance: Matrix, by_road: Matrix, na: int) -> Matrix:
+@dataclass(frozen=True, eq=False)
+class _Inertia:
+    """Masses and inerters: their rows over nodes and roads, and their values."""
+
+    nodes: Matrix
+    roads: Matrix
+    values: Matrix
+
+
+def _inertia(mechanism: Mechanism, graph: Graph) -> _Inertia:
+    inerters = [b for b in graph.branches if isinstance(b.element, Inerter)]
+    nodes, roads = _stack(inerters, graph)
+    masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
+    still = np.zeros((len(masses), roads.shape[1]))
+    values = np.array([*(c.inertia for c in mechanism.coordinates), *(_value(b.element) for b in inerters)])
+    return _Inertia(np.vstack([masses, nodes]), np.vstack([still, roads]), values)
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Positions as rows over nodes and roads, and what follows from them, over positions g and roads z."""
+
+    nodes: Matrix
+    roads: Matrix
+    elongations: tuple[Matrix, Matrix]  # of springs and gaps, a row for each branch
+    displacements: tuple[Matrix, Matrix]  # of the coordinates
+    own: tuple[int, ...]  # for each branch the position that is its own elongation, or -1
+
+
+def _places(mechanism: Mechanism, graph: Graph) -> _Places:
+    """The first independent ones among the elongations of gaps and springs and the displacements of coordinates."""
+    branches = graph.branches
+    nodes, roads = _stack(branches, graph)
+    placed = [i for kind in (Gap, Spring) for i, b in enumerate(branches) if isinstance(b.element, kind)]
+    coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
+    choices = np.vstack([nodes[placed], coordinates])
+    choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
+    chosen = independent_rows(choices)
+    P, P_road = choices[chosen], choices_road[chosen]
+    over_g = clean(choices @ np.linalg.pinv(P)) if chosen else np.zeros((len(choices), 0))
+    over_g[chosen] = np.eye(len(chosen))
+    over_z = clean(choices_road - over_g @ P_road)
+    e_g, e_z = np.zeros((len(branches), len(chosen))), np.zeros(roads.shape)
+    e_g[placed], e_z[placed] = over_g[: len(placed)], over_z[: len(placed)]
+    number = {i: chosen.index(at) for at, i in enumerate(placed) if at in chosen}
+    own = tuple(number.get(i, -1) for i in range(len(branches)))
+    return _Places(P, P_road, (e_g, e_z), (over_g[len(placed) :], over_z[len(placed) :]), own)
+
+
+def _mechanics(
+    mechanism: Mechanism,
+    graph: Graph,
+    motions: tuple[Matrix, Matrix, Matrix],
+    rates: tuple[Matrix, Matrix, Matrix],
+    places: _Places,
+    inertia: _Inertia,
+) -> Mechanics:
+    """Left and right-hand sides of the balances of `kernels.modes`, and the rows of what can be locked."""
+    branches, (R, N, V) = graph.branches, motions
+    moving, na, nw = np.hstack(rates[:2]), R.shape[1], N.shape[1]
+    resistance = _weighted(graph, Damper, moving, np.hstack(rates))
+    kinetic, kinetic_road = inertia.nodes @ R, inertia.roads + inertia.nodes @ V
+    momentum = inertia.values[:, None] * np.hstack([kinetic, kinetic_road])
+    left = resistance[:, : na + nw].copy()
+    left[:, :na] = 0.0
+    left[:na, :na] = kinetic.T @ momentum[:, :na]
+    ports = np.zeros((len(mechanism.forces), len(graph.nodes)))
+    for i, force in enumerate(mechanism.forces):
+        ports[i, : len(mechanism.coordinates)] = [force.port.get(c.name, 0.0) for c in mechanism.coordinates]
+    right = np.hstack([
+        -resistance[:, :na],
+        -_weighted(graph, Spring, moving, np.hstack(places.elongations)),
+        -resistance[:, na + nw :],
+        -np.vstack([kinetic.T @ momentum[:, na:], np.zeros((nw, kinetic_road.shape[1]))]),
+        (ports @ np.hstack([R, N])).T,
+        np.zeros((na + nw, 1)),
+    ])  # fmt: skip
+    kinds: tuple[type[Element] | UnionType, ...] = (Friction | Gap, Damper, Spring)
+    special, dampers, springs = ([i for i, b in enumerate(branches) if isinstance(b.element, k)] for k in kinds)
+    positions = np.hstack([places.nodes @ R, places.nodes @ N, places.roads + places.nodes @ V])
+    names = [[FRICTION if isinstance(branches[i].element, Friction) else GAP, places.own[i]] for i in special]
+    return Mechanics(
+        balance=np.hstack([left, right]),
+        rates=_dense(np.vstack([positions, np.hstack(rates)[[*special, *dampers, *springs]]])),
+        lengths=_dense(np.hstack(places.elongations)[special]),
+        elements=np.array(names, dtype=np.int64).reshape(len(special), 2),
+        limit=np.array([_value(branches[i].element) for i in special]),
+    )
+
+
+def _weighted(graph: Graph, kind: type[Element], left: Matrix, right: Matrix) -> Matrix:
+    """Sum over the elements of one kind of left row x value x right row."""
+    values = np.array([_value(b.element) if isinstance(b.element, kind) else 0.0 for b in graph.branches])
+    return np.ascontiguousarray(left.T @ (values[:, None] * right))
+
+
+def _felt(damping: Matrix, na: int) -> Matrix:
     """Damping between inertias and roads once the massless motions between them have given way."""
-    return by_road[:na] - resistance[:na, na:] @ np.linalg.pinv(resistance[na:, na:]) @ by_road[na:]
+    nv = damping.shape[0]
+    return damping[:na, nv:] - damping[:na, na:nv] @ np.linalg.pinv(damping[na:, na:nv]) @ damping[na:, nv:]
 
 
-def _locked_to(E_a: Matrix, E_w: Matrix, E_z: Matrix, special: list[int]) -> NDArray[np.bool_]:
+def _locked_to(rates: tuple[Matrix, Matrix, Matrix], nonlinear: tuple[int, ...]) -> NDArray[np.bool_]:
     """Roads that a friction that sticks, or a gap that touches, may tie an inertia to."""
-    together = null_space(E_w[special].T).T
-    return np.asarray(np.any(np.abs(together @ E_z[special]) > 1e-9, axis=0))
+    _, E_w, E_z = (rows[list(nonlinear)] for rows in rates)
+    return np.asarray(np.any(np.abs(null_space(E_w.T).T @ E_z) > 1e-9, axis=0))
 
 
 def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix, Matrix]:
@@ -246,36 +284,37 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     return on_x, on_u, on_eta
 
 
-def _velocities(mechanism: Mechanism, graph: Graph, masses: list[Branch]) -> tuple[Matrix, Matrix, Matrix]:
+def _velocities(mechanism: Mechanism, graph: Graph, inertia: _Inertia) -> tuple[Matrix, Matrix, Matrix]:
     """R, N and V: motions with inertia, massless motions, and what roads impose on a node between inerters alone.
 
     A motion that only inertia resists and nothing excites keeps its momentum of zero, so it follows the others at once.
     """
-    count, roads = len(graph.nodes), len(mechanism.roads)
-    inertial = [*masses, *(b for b in graph.branches if isinstance(b.element, Inerter))]
-    nodes, of_roads = _stack(inertial, count, roads)
+    count = len(graph.nodes)
     others = [b for b in graph.branches if not isinstance(b.element, Inerter)]
     holding = [b for b in others if not isinstance(b.element, Friction | Gap) or _holds(b.element)]
-    loose = null_space(np.vstack([nodes, _stack(holding, count, roads)[0]]))
+    loose = null_space(np.vstack([inertia.nodes, _stack(holding, graph)[0]]))
     if loose.shape[1]:
         node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]
         raise MechanismError(
             f"Node {node!r} is held by nothing while the gaps beside it are open: no mass, spring, damper, inerter or "
             f"friction resists its motion. Join the gaps into one, or add what holds the part between them."
         )
-    N = null_space(nodes)
-    U = null_space(_stack(others, count, roads)[0])
+    N = null_space(inertia.nodes)
+    U = null_space(_stack(others, graph)[0])
     for force in mechanism.forces:
         row = np.zeros(count)
         row[: len(mechanism.coordinates)] = [force.port.get(c.name, 0.0) for c in mechanism.coordinates]
         U = U @ null_space((row @ U)[None])
     R = complete(np.hstack([U, N]), np.eye(count))
-    value = np.array([_value(b.element) for b in inertial])
-    M, M_z = nodes.T @ (value[:, None] * nodes), nodes.T @ (value[:, None] * of_roads)
     if not U.shape[1]:
-        return R, N, np.zeros((count, roads))
-    own = U.T @ M @ U
-    return R - U @ np.linalg.solve(own, U.T @ M @ R), N, -U @ np.linalg.solve(own, U.T @ M_z)
+        return R, N, np.zeros((count, len(mechanism.roads)))
+    momentum = U.T @ inertia.nodes.T * inertia.values
+    own = momentum @ inertia.nodes @ U
+    return (
+        R - U @ np.linalg.solve(own, momentum @ inertia.nodes @ R),
+        N,
+        -U @ np.linalg.solve(own, momentum @ inertia.roads),
+    )
 
 
 def _holds(element: Element) -> bool:
@@ -309,7 +348,9 @@ def _check_locks(system: PiecewiseSystem) -> None:
             )
 
 
-def _stack(branches: list[Branch] | tuple[Branch, ...], nodes: int, roads: int) -> tuple[Matrix, Matrix]:
+def _stack(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
+    """Rows of some branches over nodes and over roads."""
+    nodes, roads = len(graph.nodes), next((b.roads.size for b in graph.branches), 0)
     on_nodes = np.array([b.nodes for b in branches]).reshape(len(branches), nodes)
     return on_nodes, np.array([b.roads for b in branches]).reshape(len(branches), roads)
 

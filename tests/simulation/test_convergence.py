@@ -35,7 +35,7 @@ def car(friction: float, half_gap: float = 0.0) -> it.QuarterCar:
 def tabled(signal: it.Signal, duration: float, interval: float) -> it.Signal:
     """The signal as cubics through its values and slopes."""
     time = np.linspace(0.0, duration, round(duration / interval) + 1)
-    value, slope = signal.sample(time)
+    value, slope = signal.grid(0.0, interval, time.size)
     return it.Signal.sampled(time, value, "cubic", derivative=slope, speed=25.0)
 
 

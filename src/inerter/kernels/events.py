@@ -8,7 +8,7 @@ import numpy as np
 
 from inerter.kernels import borrowing, compiling_beside, typed
 from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
-from inerter.kernels.flow import first_root, inputs_from, knot_numbers, series, slope_at
+from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at
 
 Array = Any
 DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE = range(7)
@@ -19,7 +19,7 @@ SEGMENT, MODE, EVENTS, SPECIAL, JUMPED, SWITCHES, WANTED, SETTLED, ACCOUNT, INPU
 TRIAL, TOUCH, SIDE, CROSSED = range(4)  # rows of `flags`
 ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
 STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, then those of these sizes
-RESIDUAL, POLYNOMIAL, U, SIZE, X = 7, 8, 11, 19, 19 + ORDERS
+RESIDUAL, POLYNOMIAL, U, SIZE, INPUT_SIZE, X = 7, 8, 11, 19, 19 + ORDERS, 19 + 2 * ORDERS
 ROWS = X + 32
 MODES_READY = compiling_beside("modes")  # which this module does not need yet
 _ROUNDING = 1e-13  # relative to the largest state so far
@@ -376,6 +376,7 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     n, nu, elements, d = sizes[N], now.place[INPUTS], sizes[K], min(now.reach[m], length)
     coefficients, residual = work[U : U + 8], work[RESIDUAL]
     inputs_from(work[NUMBERS], sizes[NR], nu, length, work[CLOCK, 0], d, coefficients)
+    input_sizes(work[NUMBERS], sizes[NR], nu, length, work[CLOCK, 0], d, work[INPUT_SIZE : INPUT_SIZE + ORDERS])
     speed, length_scale = 0.0, 0.0  # what has not moved yet is no finer than what has
     for i in range(n):
         work[GUESS, i] = work[STATE, i]
@@ -427,7 +428,9 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     now.place[KNOWN] = -1
     before = now.place[MODE]
     for e in range(elements):
-        met = before >= 0 and e == who and trial[e] == now.state[max(before, 0), e]
+        was = now.state[max(before, 0), e]  # slip up and slip down have the same guard
+        slips = now.elements[e, KIND] == FRICTION and trial[e] * was != 0
+        met = before >= 0 and e == who and (trial[e] == was or slips)
         row, limits = maps[sizes[GUARD] + e], now.limits[m, e]
         side = _violated(maps, row, limits, now.flags, now.place, work, e, n, nu, d, met)
         if side != 0:
@@ -469,9 +472,8 @@ def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) ->
             total += row[j] * work[X + k - 1, j]
             size += abs(row[j]) * work[SIZE + k - 1, j]
         for j in range(nu):
-            term = row[n + j] * work[U + k - 1, j]
-            total += term
-            size += abs(term)
+            total += row[n + j] * work[U + k - 1, j]
+            size += abs(row[n + j]) * work[INPUT_SIZE + k - 1, j]
         work[X + k, i] = total * d / k
         work[SIZE + k, i] = size * d / k
 
@@ -512,9 +514,8 @@ def _violated(
                 total += row[j] * work[at_x, j]
                 size += abs(row[j]) * work[SIZE + order, j]
             for j in range(nu):
-                term = row[n + j] * work[at_u, j]
-                total += term
-                size += abs(term)
+                total += row[n + j] * work[at_u, j]
+                size += abs(row[n + j]) * work[INPUT_SIZE + order, j]
             if order == 0:
                 total += row[n + nu] - limit
                 size += abs(limit)

@@ -46,6 +46,26 @@ def inputs_from(numbers: Array, nr: int, nu: int, length: float, start: float, d
             U[0, i], U[1, i], U[2, i], U[3, i] = 2.0 * c2 / (d * d), 6.0 * c3 / (d * d), 0.0, 0.0
 
 
+@typed("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])", borrowing=True)
+def input_sizes(numbers: Array, nr: int, nu: int, length: float, start: float, d: float, U: Array) -> None:
+    """Sums of absolute values of what `inputs_from` adds up: where a velocity passes zero, its rounding does not."""
+    s, r = start / length, d / length
+    for c in range(nu - 2 * nr):
+        p0, rise, b, e = abs(numbers[4 * c]), abs(numbers[4 * c + 1]), abs(numbers[4 * c + 2]), abs(numbers[4 * c + 3])
+        p1, p2, p3 = b, 3.0 * rise + 2.0 * b + e, b + e + 2.0 * rise
+        c0 = p0 + s * (p1 + s * (p2 + s * p3))
+        c1 = r * (p1 + s * (2.0 * p2 + s * 3.0 * p3))
+        c2 = r * r * (p2 + 3.0 * s * p3)
+        c3 = r * r * r * p3
+        i = c if c < nr else c + 2 * nr
+        U[0, i], U[1, i], U[2, i], U[3, i] = c0, c1, c2, c3
+        if c < nr:
+            i += nr
+            U[0, i], U[1, i], U[2, i] = c1 / d, 2.0 * c2 / d, 3.0 * c3 / d
+            i += nr
+            U[0, i], U[1, i] = 2.0 * c2 / (d * d), 6.0 * c3 / (d * d)
+
+
 @typed("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])", borrowing=True)
 def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array) -> int:
     """Coefficients X[k] of the flow from x in powers of t / d, until they are below rounding; returns their number.

@@ -17,6 +17,7 @@ from inerter.vehicle.cars import Vehicle
 
 Array = Any
 SCREW = (it.Spring(1e6, name="shaft") | it.Damper(3200.0)) - it.Gap(1e-4) - (it.Inerter(113.0) | it.Friction(10.0))
+LEG = (it.Spring(1e6) | it.Damper(3200.0)) - it.Inerter(300.0)
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 
 
@@ -380,6 +381,22 @@ def test_held_force_by_the_matrix_exponential(hold: str) -> None:
         assert_close(result[name][::4], expected[:, i], 1e-10)
 
 
+@pytest.mark.parametrize("frequency", [1.3, 4.0, 11.0])
+def test_periodic_state_of_a_linear_car_by_its_frequency_response(frequency: float) -> None:
+    """The transfer function from the road's velocity, at the amplitude and phase of a sine."""
+    car = paper_quarter_car(it.Spring(60e3) | it.Damper(2500.0) | LEG)
+    names = ("sprung_acceleration", "tyre_load", "strut_force")
+    system = it.assemble(car, inputs="road", outputs=names)
+    omega, height = 2.0 * np.pi * frequency, 4e-3
+    gain = system.C @ np.linalg.solve(1j * omega * np.eye(system.order) - system.A, system.B) + system.D
+    result = run(car, road=it.sine(height, frequency), initial="periodic", step=1.0 / frequency / 2000)
+    assert result.repetition is not None
+    assert result.repetition.mismatch < 1e-9
+    phase = np.exp(1j * omega * result.time)
+    for i, name in enumerate(names):
+        assert_close(result[name], (gain[i, 0] * height * omega * phase).real, 1e-8)
+
+
 # Massless networks under a given displacement
 
 
@@ -448,7 +465,6 @@ def driven(strut: Network, step: float = 2e-4) -> it.Trajectory:
     return run(paper_quarter_car(it.Spring(60e3) | it.Damper(1500.0) | strut), road=signal, duration=1.0, step=step)
 
 
-LEG = (it.Spring(1e6) | it.Damper(3200.0)) - it.Inerter(300.0)
 SAME = {
     "several frictions side by side are their sum": (
         it.Friction(20.0) | it.Friction(50.0) | it.Friction(30.0),

@@ -96,7 +96,8 @@ class Integration:
     def mismatch(self, before: Matrix) -> float:
         """Change of the state since `before`, relative to the largest velocity, or position, so far."""
         na, n = self.system.motions[0].shape[1], self.system.order
-        change, scale = np.abs(self.state - before), self.work[kernel.SCALE, :n]
+        change = np.abs(self.state - before)
+        scale = np.max(np.abs([self.state, before, self.work[kernel.SCALE, :n]]), axis=0)  # the last knows events alone
         parts = (slice(0, na), slice(na, n))
         return max(float(change[p].max(initial=0.0) / max(scale[p].max(initial=0.0), 1e-300)) for p in parts)
 

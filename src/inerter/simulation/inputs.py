@@ -254,3 +254,8 @@ def check_holds(system: PiecewiseSystem, signals: Sequence[Signal | None]) -> No
                 f"A damper follows the velocity of {road.name!r}, which {signal.label!r} does not have where it "
                 f'jumps. Use hold="cubic" or "linear".'
             )
+        if signal.hold == "zero" and system.moves_elements[i]:
+            raise SimulationError(
+                f"Friction or a gap moves with {road.name!r} without a mass between; {signal.label!r} jumps, and what "
+                f'slips or touches on the way of a jump is not determined. Use hold="cubic" or "linear".'
+            )

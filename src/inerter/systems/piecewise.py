@@ -62,6 +62,7 @@ class PiecewiseSystem:
     heights: Matrix  # (ng, roads): ... from those of the roads
     needs_velocity: tuple[bool, ...]  # of each road, whether its velocity reaches an inertia at once
     needs_acceleration: tuple[bool, ...]  # of each road
+    moves_elements: tuple[bool, ...]  # of each road, whether friction or a gap moves with it at once
 
     @property
     def order(self) -> int:
@@ -123,6 +124,7 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
         heights=places.roads,
         needs_velocity=tuple(np.any(np.abs(_felt(damping, R.shape[1])) > 1e-9, axis=0)),
         needs_acceleration=tuple(np.any(np.abs(kinetic_road) > 1e-12, axis=0) | _locked_to(rates, nonlinear)),
+        moves_elements=tuple(_moved_by(rates, [i for i in nonlinear if _value(graph.branches[i].element) > 0.0])),
     )
     _check_locks(system)
     return system
@@ -234,6 +236,14 @@ def _locked_to(rates: tuple[Matrix, Matrix, Matrix], nonlinear: tuple[int, ...])
     """Roads that a friction that sticks, or a gap that touches, may tie an inertia to."""
     _, E_w, E_z = (rows[list(nonlinear)] for rows in rates)
     return np.asarray(np.any(np.abs(null_space(E_w.T).T @ E_z) > 1e-9, axis=0))
+
+
+def _moved_by(rates: tuple[Matrix, Matrix, Matrix], elements: list[int]) -> NDArray[np.bool_]:
+    """Roads that move one of these elements with nothing but massless motions between."""
+    links, moved = (np.abs(rows) > 1e-9 for rows in rates[1:])
+    for _ in range(links.shape[1]):
+        moved = moved | (links @ (links.T @ moved))
+    return np.asarray(np.any(moved[elements], axis=0))
 
 
 def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix, Matrix]:

@@ -221,6 +221,13 @@ def test_a_run_that_cannot_go_on_ends_with_its_reason():
     assert run["sprung_velocity"].shape == run.time.shape
 
 
+def test_what_is_far_faster_than_the_step_is_told_and_not_waited_for():
+    device = it.Damper(2e5) - it.Gap(1e-5) - it.Inerter(0.011)
+    run = it.simulate(it.Rig(device), displacement=it.cosine(1e-3, 3.0), duration=1.0, step=5e-3)
+    assert not run.status.ok
+    assert "10 000 times faster than the step" in run.status.message
+
+
 def test_a_changed_kernel_is_compiled_again(tmp_path):
     """A copy of the package whose flow kernel is changed must not run what the cache holds of the original."""
     program = textwrap.dedent(

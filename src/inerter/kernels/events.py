@@ -11,7 +11,7 @@ from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT,
 from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at
 
 Array = Any
-DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE = range(7)
+DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(8)
 ACCEPTED, STRUCK, STRANDED = -1, -2, -3
 SEGMENT, MODE, EVENTS, SPECIAL, JUMPED, SWITCHES, WANTED, SETTLED, ACCOUNT, INPUTS, KNOWN = range(
     11
@@ -24,6 +24,7 @@ ROWS = X + 32
 MODES_READY = compiling_beside("modes")  # which this module does not need yet
 _ROUNDING = 1e-13  # relative to the largest state so far
 _MET = 1e-9  # the same where a guard has just been met
+PIECES = 1e4  # of a segment: with more, a run would take hours
 _PAUSES = 200  # switches without any time between them
 _SWITCHES = 20000  # switches within one segment
 
@@ -189,6 +190,8 @@ def cross(now: Work, events: Array, begun: Array, branch_road: Array, gauss: Arr
     pauses = 0
     while work[CLOCK, 0] < length:
         m, t = place[MODE], work[CLOCK, 0]
+        if length > PIECES * now.reach[m]:
+            return STIFF
         d = min(length - t, now.reach[m])
         inputs_from(work[NUMBERS], nr, nu, length, t, d, coefficients)
         count = series(now.maps[m], work[STATE], coefficients, n, nu, d, state)

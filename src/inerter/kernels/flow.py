@@ -7,7 +7,7 @@ from typing import Any
 from inerter.kernels import typed
 
 Array = Any
-CLOSE = 1e-15  # of a piece, which is a step at most: beyond the resolution of time itself
+CLOSE = 1e-15  # of the time since the piece began: a force that frees a friction must be met to rounding
 
 
 @typed(
@@ -133,7 +133,7 @@ def polish(c: Array, count: int, a: float, b: float) -> float:
         after = s - value / slope if slope < 0.0 else a
         if not (a < after < b):
             after = 0.5 * (a + b)
-        if abs(after - s) <= CLOSE or b - a <= CLOSE:
+        if abs(after - s) <= CLOSE * after or b - a <= CLOSE * b:
             return after
         s = after
     return s

@@ -110,6 +110,8 @@ _FAILURES = {
     kernel.IMPACT: "two inertias meet without compliance between them",
     kernel.NO_MODE: "no combination of slip, stick and contact can go on",
     kernel.NOT_FINITE: "the motion grows beyond all bounds",
+    kernel.STIFF: "something answers more than 10 000 times faster than the step (a damper on a small inertance, "
+    "most often); take a step of that order, or leave out what is so fast,",
 }
 _SINGULAR = "the forces in a combination of slip, stick and contact are not determined"
 

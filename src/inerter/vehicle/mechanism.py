@@ -202,8 +202,8 @@ def _check_names(mechanism: Mechanism) -> None:
 
 
 def _check_numbers(mechanism: Mechanism) -> None:
-    if not mechanism.coordinates and not mechanism.roads:
-        raise MechanismError("A mechanism needs at least one coordinate with a mass, or a road that moves it.")
+    if not mechanism.coordinates and not (mechanism.roads and mechanism.struts):
+        raise MechanismError("A mechanism needs at least one coordinate with a mass, or a strut that a road moves.")
     for coordinate in mechanism.coordinates:
         what = "Moment of inertia" if coordinate.angle else "Mass"
         check_positive(

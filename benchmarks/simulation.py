@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 import simulation_peers as peers
@@ -31,6 +33,7 @@ STRUTS = {
 }
 STEPS = (0.5e-3, 0.4e-3, 0.25e-3, 0.2e-3, 0.1e-3)
 LONG, SHORT = 10.0, 2.0  # simulated by us, and by the peers [s]
+ROUNDS = 3
 
 
 def quarter_car(strut) -> it.QuarterCar:
@@ -70,31 +73,47 @@ def fastest(work: Callable[[], object], repeats: int = 15) -> float:
     return min(times)
 
 
+def rate_of(work: Callable[[], object], simulated: float, at_least: float = 0.0) -> float:
+    """Median seconds that a simulated second takes, over as many runs as fill `at_least` seconds."""
+    times = []
+    while not times or sum(times) < at_least:
+        begin = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - begin)
+    return float(np.median(times)) / simulated
+
+
 def against_peers(name: str) -> None:
+    """Each peer in turn with us, so that a machine that slows down slows both; the median of the ratios."""
     problem, system = peers.PROBLEMS[name], piecewise(quarter_car(STRUTS[name]))
-    fine = road_table(1e-5, SHORT, stride=5)
-    exact = peers.reference(problem, fine)
-    rows = []
+    fine, coarse = road_table(1e-5, SHORT, stride=5), road_table(2e-4, SHORT)
+    exact, exact_coarse = peers.reference(problem, fine), peers.reference(problem, coarse)
+    errors = {}
     for step in STEPS:
         short = run(system, inputs(system, step, SHORT))["sprung_acceleration"]
-        error = peers.relative_error(short, exact.acceleration[:: round(step / 5e-5)])
-        table = inputs(system, step)
-        spent = fastest(lambda table=table: run(system, table)) / LONG
-        rows.append((step, spent, error))
-        print(f"{name}: ours, {step * 1e3:g} ms: {spent * 1e3:.4f} ms/s, error {error:.1e}")
-    found = (
-        peers.solve_ivp_run(problem, fine, 1e-7, exact, stop_at_kinks=False),
-        peers.solve_ivp_run(problem, road_table(2e-4, SHORT), 1e-7, None),
-        *(peers.cvode_run(problem, fine, rtol, exact) for rtol in (1e-6, 1e-7, 1e-8)),
-    )
-    for peer in found:
-        error = peer.error if np.isfinite(peer.error) else 0.0
-        step, spent, ours = next(row for row in rows if row[2] <= max(error, rows[-1][2]))
-        times = peer.seconds_per_second / spent
-        print(
-            f"{name}: {peer.peer}, rtol {peer.tolerance:g}: {peer.seconds_per_second * 1e3:.1f} ms/s, error {error:.1e}"
+        errors[step] = peers.relative_error(short, exact.acceleration[:: round(step / 5e-5)])
+    for peer, table, rtol, expected, path in (
+        ("DOP853", fine, 1e-7, exact, partial(peers.dop853_path, stop_at_kinks=False)),
+        ("DOP853 from knot to knot", coarse, 1e-7, exact_coarse, partial(peers.dop853_path, stop_at_kinks=True)),
+        *(("CVODE Adams", fine, rtol, exact, peers.cvode_path) for rtol in (1e-6, 1e-7, 1e-8)),
+    ):
+        path(problem, table.until(0.1), rtol)  # compiles
+        error = peers.relative_error(
+            peers.body_acceleration(problem, path(problem, table, rtol)), expected.acceleration
         )
-        print(f"   we are {times:.0f} times faster, with a step of {step * 1e3:g} ms and an error of {ours:.1e}")
+        step = next((step for step in STEPS if errors[step] <= error), STEPS[-1])
+        mine = inputs(system, step)
+        pairs = [
+            (
+                rate_of(lambda mine=mine: run(system, mine), LONG, 0.3),
+                rate_of(lambda path=path, table=table, rtol=rtol: path(problem, table, rtol), SHORT),
+            )
+            for _ in range(ROUNDS)
+        ]
+        ours, theirs = np.median(pairs, axis=0) * 1e3
+        ratio = np.median([b / a for a, b in pairs])
+        print(f"{name}: {peer}, rtol {rtol:g}: {theirs:.1f} ms/s, error {error:.1e}")
+        print(f"   ours, step {step * 1e3:g} ms: {ours:.3f} ms/s, error {errors[step]:.1e}: {ratio:.0f} times faster")
 
 
 def whole_steps() -> None:
@@ -103,8 +122,8 @@ def whole_steps() -> None:
         strut = it.network("rest", rest=strut)
         system = piecewise(quarter_car(strut))
         few, many = inputs(system, 0.5e-3), inputs(system, 0.1e-3)
-        spent = fastest(lambda system=system, table=many: run(system, table))
-        spent -= fastest(lambda system=system, table=few: run(system, table))
+        spent = fastest(lambda system=system, table=many: run(system, table), 60)
+        spent -= fastest(lambda system=system, table=few: run(system, table), 60)
         steps = many.time.size - few.time.size
         bare = peers.bare_loop(system.order, 3, 50_000).seconds_per_step
         print(
@@ -113,26 +132,35 @@ def whole_steps() -> None:
 
 
 def half_against_quarter() -> None:
-    spent = []
+    tables = []
     for car in (quarter_car(STRUTS["A"]), half_car(STRUTS["A"])):
         system = piecewise(car)
-        table = inputs(system, 2e-4)
-        spent.append(fastest(lambda system=system, table=table: run(system, table)))
-    print(f"half car / quarter car, friction in every strut: {spent[1] / spent[0]:.2f}")
+        tables.append((system, inputs(system, 2e-4)))
+    rounds = [[rate_of(partial(run, *pair), LONG, 0.2) for pair in tables] for _ in range(7)]
+    print(f"half car / quarter car, friction in every strut: {np.median([b / a for a, b in rounds]):.2f}")
 
 
 def batches() -> None:
+    """Beside it the same ratio for a bare loop that touches no memory: what two cores of this machine give at most."""
     cars = [quarter_car(it.Spring(120e3) | it.Damper(3000.0 + 20.0 * i) | FRICTION) for i in range(64)]
-    spent = {
-        jobs: fastest(
-            lambda jobs=jobs: it.simulate_many(
-                cars, road=[SIGNAL], outputs=["sprung_acceleration"], duration=20.0, settled=10.0, jobs=jobs
-            ),
-            5,
-        )
-        for jobs in (1, 2)
-    }
-    print(f"64 runs of 20 s: {spent[1]:.2f} s on one core, {spent[1] / spent[2]:.2f} times faster on two")
+
+    def simulated(jobs: int) -> float:
+        begin = time.perf_counter()
+        it.simulate_many(
+            cars, road=[SIGNAL], outputs=["sprung_acceleration"], duration=20.0, settled=10.0, jobs=jobs
+        )  # fmt: skip
+        return time.perf_counter() - begin
+
+    def bare(jobs: int) -> float:
+        begin = time.perf_counter()
+        with ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(peers.burn, [50_000_000] * 8))
+        return time.perf_counter() - begin
+
+    simulated(2), bare(2)
+    rounds = [(simulated(1) / simulated(2), bare(1) / bare(2)) for _ in range(7)]
+    ours, most = np.median(rounds, axis=0)
+    print(f"64 runs of 20 s on two cores: {ours:.2f} times faster than on one; a bare loop: {most:.2f} times")
 
 
 def whole_call() -> None:

@@ -554,6 +554,15 @@ def matrix_vector_products(Phi: Array, G: Array, inputs: Array, states: Array) -
             states[step + 1, i] = total
 
 
+@njit(nogil=True)
+def burn(steps: int) -> float:
+    """Arithmetic alone."""
+    total = 0.0
+    for i in range(steps):
+        total += (i % 7) * 0.5
+    return total
+
+
 def bare_loop(n: int, m: int, steps: int, repeats: int = 20) -> Loop:
     """x <- Phi x + G u for every step, n states and m inputs, each state kept: the least an exact flow has to do.
 

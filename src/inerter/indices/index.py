@@ -33,6 +33,7 @@ class Question:
     unit: str
     high_pass: float | None = None  # corner [rad/s] of a filter s/(s + a) on every output
     over_s: bool = False  # whether its definition divides by s, where paper2008 divides by s + a
+    amplitude: float | None = None  # of the force [N], for methods that see nonlinear elements
 
 
 class Index(Protocol):
@@ -112,13 +113,21 @@ class TyreLoad:
 class LoadCarrying:
     """J5: largest gain from a force on the body to its displacement, over all frequencies [m/N].
 
-    Half car: bounce force to bounce displacement. Source: Wang and Su (2008), eq. (6).
+    Half car: bounce force to bounce displacement. `amplitude` is that of a sinusoidal force [N]: what a design with
+    friction or gaps does depends on it, what a linear one does not. Source: Wang and Su (2008), eq. (6).
+
+    Raises `IndicatorError` unless the amplitude is positive.
     """
 
+    amplitude: float | None = None
     symbol = "J5"
     title = "dynamic load carrying"
     unit = "m/N"
     response = "body displacement per force on the body"
+
+    def __post_init__(self) -> None:
+        if self.amplitude is not None:
+            check_positive(IndicatorError, "The amplitude of the force on the body", self.amplitude, "N")
 
     def question(self, mechanism: Mechanism) -> Question:
         """Raises `IndicatorError` if the mechanism names no force and displacement for it."""
@@ -134,6 +143,7 @@ class LoadCarrying:
             combination=Combination.PEAK_GAIN,
             road=None,
             unit=self.unit,
+            amplitude=self.amplitude,
         )
 
 

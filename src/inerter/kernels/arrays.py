@@ -29,6 +29,6 @@ class Modes(NamedTuple):
     state: Array  # (capacity, k + 3): -1, 0, 1 of each element; numbers of conditions on velocity, springs, the loose
     maps: Array  # (capacity, rows, width): rate of the state, guards, (a', w, F), entry conditions, outputs
     reaction: Array  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
-    limits: Array  # (capacity, k, 3): interval of the guards, and whether they change at once with a road's slopes
-    steps: Array  # (capacity, rows, columns): next state, guards at the end and the start, their sway, outputs
+    limits: Array  # (capacity, k, 2): interval of the guards
+    steps: Array  # (capacity, columns, rows): next state, guards at end and start, outputs; guards' sway; each padded
     reach: Array  # (capacity,) how far a Taylor series of the flow serves [s]

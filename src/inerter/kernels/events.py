@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import float64, int64, types
 
-from inerter.kernels import borrowing, compiling_beside, typed
+from inerter.kernels import borrowing, compiled, compiling_beside, typed
 from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
 from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at
+from inerter.kernels.march import SIGNATURE
 
 Array = Any
 DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(8)
@@ -85,7 +87,6 @@ def mode_number(number: Array, trial: Array) -> int:
     return int(number[code])
 
 
-@borrowing
 def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, stop: int) -> int:
     """Integrate up to knot `stop`.
 
@@ -602,3 +603,22 @@ def _account(
                 energy[c] += weight * force * branch_road[b, c] * u[nr + c]
         for f in range(nf):
             energy[nr + f] += weight * u[3 * nr + f] * over_columns(maps[first + 2 * branches + f], x, u, n, nu)
+
+
+_FLOATS, _TABLE, _TABLES = float64[::1], float64[:, ::1], float64[:, :, ::1]
+_INTS, _INT_TABLE = int64[::1], int64[:, ::1]
+_MECHANICS, _MODES = (_INTS, _INT_TABLE, _FLOATS, _TABLE), (_INTS, _INT_TABLE, _TABLES, _TABLES, _TABLES, _FLOATS)
+_HISTORY = (_INTS, _INTS, _TABLE, _INTS, _FLOATS, _TABLE)
+_tuple: Any = types.NamedTuple
+integrate = compiled(  # now, while another process compiles the kernels of modes
+    integrate,
+    types.int64(
+        types.FunctionType(SIGNATURE),
+        _TABLES,
+        _tuple((_TABLE, _INT_TABLE, _INTS, *_MECHANICS, *_MODES), Work),
+        _tuple((_FLOATS, _TABLE, _TABLE, _TABLE, _TABLE, *_HISTORY, _TABLE, _TABLE), Record),
+        types.float64,
+        types.int64,
+    ),
+    borrowing=True,
+)

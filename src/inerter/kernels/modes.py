@@ -388,10 +388,6 @@ def build(
             drop_rounding(slip, bound)
             for j in range(width):
                 maps[guard + e, j] = slip[0, j]
-        limits[e, 2] = 0.0
-        for j in range(n + nr, n + 3 * nr):
-            if maps[guard + e, j] != 0.0:
-                limits[e, 2] = 1.0
     inputs = width - 1
     add(maps, sizes[OUTPUT], 0, block(over, 0, over.shape[0], 0, inputs), 1.0)
     on_eta = block(over, 0, over.shape[0], inputs, over.shape[1])
@@ -475,7 +471,7 @@ def over_chains(maps: Array, first: int, n: int, nr: int, h: float, out: Array) 
 
 @typed("void(float64[:,::1], int64, int64[::1], float64[:,::1], int64)")
 def into_knots(rows: Array, n: int, used: Array, out: Array, top: int) -> None:
-    """Rows over the chains at the start of a step as rows over the numbers z0, z1 - z0, h z0', h z1' of cubics."""
+    """Rows over the chains at the start of a step, as columns over the numbers z0, z1 - z0, h z0', h z1' of cubics."""
     size = rows.shape[1]
     numbers = np.zeros(size - 1 - n)
     for i in range(rows.shape[0]):
@@ -486,20 +482,20 @@ def into_knots(rows: Array, n: int, used: Array, out: Array, top: int) -> None:
             numbers[c + 2] = y1 - 4.0 * y2 + 6.0 * y3
             numbers[c + 3] = 6.0 * y3 - 2.0 * y2
         for j in range(n):
-            out[top + i, j] = rows[i, j]
+            out[j, top + i] = rows[i, j]
         for j in range(used.shape[0]):
-            out[top + i, n + j] = numbers[used[j]]
-        out[top + i, n + used.shape[0]] = rows[i, size - 1]
+            out[n + j, top + i] = numbers[used[j]]
+        out[n + used.shape[0], top + i] = rows[i, size - 1]
 
 
 @typed("void(float64[:,::1], float64[:,::1], int64, int64[::1], float64[:,::1], int64)")
 def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, top: int) -> None:
     """One eighth of the largest second derivative of each guard over a step, as weights on absolute values."""
     k, columns = guards.shape[0], n + used.shape[0] + 1
-    term, power = np.zeros((k, columns)), guards
-    for i in range(k):
-        for j in range(columns):
-            steps[top + i, j] = 0.0
+    term, power = np.zeros((columns, k)), guards
+    for j in range(columns):
+        for i in range(k):
+            steps[j, top + i] = 0.0
     for order in range(1, 60):
         power = product(power, chain)
         largest = 0.0
@@ -510,9 +506,9 @@ def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, 
         if largest == 0.0:
             break
         into_knots(power, n, used, term, 0)
-        for i in range(k):
-            for j in range(columns):
-                steps[top + i, j] += order * (order - 1) / 8.0 * abs(term[i, j])
+        for j in range(columns):
+            for i in range(k):
+                steps[j, top + i] += order * (order - 1) / 8.0 * abs(term[j, i])
 
 
 @typed("float64(float64[:,::1], int64)")
@@ -562,6 +558,6 @@ def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -
     into_knots(block(exact, 0, n, 0, size), n, used, steps, 0)
     into_knots(product(guards, exact), n, used, steps, n)
     into_knots(guards, n, used, steps, n + k)
-    into_knots(product(outputs, exact), n, used, steps, n + 3 * k)
-    _bound_sway(guards, chain, n, used, steps, n + 2 * k)
+    into_knots(product(outputs, exact), n, used, steps, n + 2 * k)
+    _bound_sway(guards, chain, n, used, steps, -(-(n + 2 * k + sizes[OUTPUTS]) // 4) * 4)
     return 1.0 / max(growth(maps, n), 1e-9)

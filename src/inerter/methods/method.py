@@ -26,6 +26,8 @@ class Estimate:
     unit: str
     status: Status = OK
     standard_error: float | None = None  # None: the method has no scatter
+    interval: tuple[float, float] | None = None  # of 95 % confidence, where there is a standard error
+    realisations: int = 0  # random inputs that were averaged
     peaks: tuple[Peak, ...] = ()  # local maxima of the gain, for an index that is a peak gain
     notes: tuple[str, ...] = ()  # what the method left out
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     import xarray
 
 Matrix = NDArray[np.float64]
-_WAITING = 3  # signals laid out ahead of the cores
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +78,7 @@ def simulate_many(
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
     """
-    systems = [piecewise(vehicle) for vehicle in _listed("vehicles", vehicles)]
+    cars = _listed("vehicles", vehicles)
     names = [outputs] if isinstance(outputs, str) else _listed("outputs", outputs)
     if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
         raise SimulationError(f"The number of threads is a whole number from 1 on, got jobs = {jobs!r}.")
@@ -88,37 +88,63 @@ def simulate_many(
     knots, skipped = whole_steps(duration, step), round(settled / step)
     if not 0 <= skipped < knots:
         raise SimulationError(f"The part that does not count, {settled:g} s, must be shorter than {duration:g} s.")
-    for system in systems:
-        for name in names:
-            if name not in system.outputs:
-                raise SimulationError(f"There is no output named {name!r} (there are: {', '.join(system.outputs)}).")
-    squares = np.full((len(systems), count, len(names)), np.nan)
-    events, status = np.zeros((len(systems), count), np.int64), np.empty((len(systems), count), dtype=object)
+    squares = np.full((len(cars), count, len(names)), np.nan)
+    events, status = np.zeros((len(cars), count), np.int64), np.empty((len(cars), count), dtype=object)
+    systems: list[PiecewiseSystem | None] = [None] * len(cars)
+    tables = [_Tables(len(cars)) for _ in range(count)]
 
-    def run(i: int, j: int, table: InputTable) -> None:
-        state = initial_state(systems[i], table.value[0], initial)
-        integration = event_driven.start(systems[i], table, state, names, keep=False, settled=skipped)
+    def run(i: int, j: int) -> None:
+        system = systems[i] = systems[i] or _system(cars[i], names)
+        moved, pushed, shaken = (None if g is None else g[j] for g in (road, forces, displacement))
+        signals, delays = assign(system.mechanism, moved, pushed, shaken, speed)
+        check_holds(system, signals)
+        table = tables[j].take(signals, delays, duration, step)
+        state = initial_state(system, table.value[0], initial)
+        integration = event_driven.start(system, table, state, names, keep=False, settled=skipped)
         integration.advance(table.time.size - 1)
         events[i, j], status[i, j] = integration.place[EVENTS], integration.status
         if integration.status.ok:
             squares[i, j] = integration.record.sums / (knots - skipped)
 
-    workers, done, waiting = jobs or os.cpu_count() or 1, 0, set[Future[None]]()
-    with ThreadPoolExecutor(workers) as pool:
-        for j in range(count):
-            tables: dict[tuple[object, ...], InputTable] = {}
-            for i, system in enumerate(systems):
-                table = _table(system, tables, j, road, forces, displacement, speed, duration, step)
-                waiting.add(pool.submit(run, i, j, table))
-            while waiting and (len(waiting) > _WAITING * max(workers, len(systems)) or j == count - 1):
-                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    future.result()
-                done += len(finished)
-                if progress is not None:
-                    progress(done / (count * len(systems)))
-    units = tuple(systems[0].outputs[name].unit for name in names)
+    pool = ThreadPoolExecutor(jobs or os.cpu_count() or 1)
+    try:
+        under_way = [pool.submit(run, i, j) for j in range(count) for i in range(len(cars))]
+        for done, future in enumerate(as_completed(under_way), 1):
+            future.result()
+            if progress is not None:
+                progress(done / len(under_way))
+    finally:
+        pool.shutdown(cancel_futures=True)
+    system = systems[0]
+    assert system is not None
+    units = tuple(system.outputs[name].unit for name in names)
     return Batch(tuple(names), units, squares, events, tuple(tuple(row) for row in status))
+
+
+class _Tables:
+    """The inputs of the j-th runs: laid out when first needed, shared where they agree, dropped after the last run."""
+
+    def __init__(self, runs: int) -> None:
+        self.runs, self.known, self.lock = runs, dict[tuple[object, ...], InputTable](), Lock()
+
+    def take(
+        self, signals: Sequence[Signal | None], delays: Sequence[float], duration: float, step: float
+    ) -> InputTable:
+        key = (tuple(map(id, signals)), tuple(delays))
+        with self.lock:
+            table = self.known[key] = self.known.get(key) or tabulate(signals, delays, duration, step)
+            self.runs -= 1
+            if self.runs == 0:
+                self.known.clear()
+        return table
+
+
+def _system(car: Vehicle, outputs: Sequence[str]) -> PiecewiseSystem:
+    system = piecewise(car)
+    for name in outputs:
+        if name not in system.outputs:
+            raise SimulationError(f"There is no output named {name!r} (there are: {', '.join(system.outputs)}).")
+    return system
 
 
 def _listed(what: str, given: object) -> list[Any]:
@@ -135,24 +161,3 @@ def _count(*given: Sequence[object] | None) -> int:
             "simulate_many takes sequences of signals, all of one length: road=[multisine(...), ...] or forces=[{...}]."
         )
     return lengths.pop()
-
-
-def _table(
-    system: PiecewiseSystem,
-    tables: dict[tuple[object, ...], InputTable],
-    j: int,
-    road: Sequence[Signal] | None,
-    forces: Sequence[Mapping[str, Signal]] | None,
-    displacement: Sequence[Signal] | None,
-    speed: float | None,
-    duration: float,
-    step: float,
-) -> InputTable:
-    """The inputs of a system's j-th run; systems whose inputs agree share one table."""
-    moved, pushed, shaken = (None if g is None else g[j] for g in (road, forces, displacement))
-    signals, delays = assign(system.mechanism, moved, pushed, shaken, speed)
-    check_holds(system, signals)
-    key = (tuple(map(id, signals)), tuple(delays))
-    if key not in tables:
-        tables[key] = tabulate(signals, delays, duration, step)
-    return tables[key]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, SimulationError, Status, StatusKind
 from inerter.kernels import events as kernel
 from inerter.kernels.arrays import ENTRY, ETA, Mechanics, Modes
-from inerter.kernels.march import march_of
+from inerter.kernels.march import march_of, padded
 from inerter.networks.elements import Damper
 from inerter.simulation.inputs import InputTable
 from inerter.systems.outputs import Output
@@ -153,7 +153,8 @@ def start(
     )
     branches = system.graph.branches if account else ()
     samples, channels = table.samples if keep else 0, table.value.shape[1]
-    work = np.zeros((kernel.ROWS, max(64, 2 * n + 3 * k + used.size + 1, nu, 4 * channels, channels + len(branches))))
+    columns, stepped = n + used.size + 1, padded(n + 2 * k + len(outputs)) + padded(k)
+    work = np.zeros((kernel.ROWS, max(64, columns + stepped, nu, 4 * channels, channels + len(branches))))
     work[kernel.STATE, :n], work[kernel.SCALE, :n] = state, np.abs(state)
     record = kernel.Record(
         time=table.time,
@@ -179,8 +180,8 @@ def start(
         state=np.zeros((capacity, k + 3), np.int64),
         maps=np.zeros((capacity, int(starts[5]), width)),
         reaction=np.zeros((capacity, n + k, nw + k)),
-        limits=np.zeros((capacity, k, 3)),
-        steps=np.zeros((capacity, n + 3 * k + len(outputs), n + used.size + 1)),
+        limits=np.zeros((capacity, k, 2)),
+        steps=np.zeros((capacity, columns, stepped)),
         reach=np.zeros(capacity),
     )
     flags = np.zeros((4, k), np.int64)

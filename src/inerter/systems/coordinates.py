@@ -15,8 +15,9 @@ is made once for all designs of a layout.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache, wraps
 
 import numpy as np
 import scipy.linalg
@@ -70,13 +71,30 @@ def find_coordinates(
     U = U @ null_space(forces @ U)
     R = complete(np.hstack([U, massless]), np.eye(n))
     Z_e = springs @ Z
-    off_Z = np.eye(springs.shape[0]) - Z_e @ np.linalg.pinv(Z_e) if Z.shape[1] else np.eye(springs.shape[0])
+    off_Z = np.eye(springs.shape[0]) - Z_e @ pseudo_inverse(Z_e) if Z.shape[1] else np.eye(springs.shape[0])
     attainable = off_Z @ np.hstack([springs @ R, springs @ Y, spring_roads])
     chosen = independent_rows(attainable)
-    G = clean(attainable @ np.linalg.pinv(attainable[chosen])) if chosen else np.zeros((springs.shape[0], 0))
+    G = clean(attainable @ pseudo_inverse(attainable[chosen])) if chosen else np.zeros((springs.shape[0], 0))
     return Coordinates(R, U, Y, Z, G, Z_e, clean(off_Z[chosen]))
 
 
+def _remembered(function: Callable[..., Matrix]) -> Callable[..., Matrix]:
+    """Remember results by what the matrices hold: incidence is the same for all designs of a layout."""
+
+    @lru_cache(maxsize=512)
+    def known(*keys: tuple[tuple[int, ...], bytes]) -> Matrix:
+        result = function(*(np.frombuffer(data).reshape(shape) for shape, data in keys))
+        result.flags.writeable = False
+        return result
+
+    @wraps(function)
+    def remembering(*matrices: Matrix) -> Matrix:
+        return known(*((m.shape, np.asarray(m, dtype=np.float64).tobytes()) for m in matrices))
+
+    return remembering
+
+
+@_remembered
 def null_space(rows: Matrix) -> Matrix:
     """A basis (as columns) of the vectors that every row annihilates, with an identity block in it."""
     size = np.abs(rows).max(axis=1, initial=0.0)
@@ -90,6 +108,7 @@ def null_space(rows: Matrix) -> Matrix:
     return clean(np.linalg.solve(basis[pivots].T, basis.T).T)
 
 
+@_remembered
 def complete(basis: Matrix, candidates: Matrix) -> Matrix:
     """The first of the columns `candidates` that together with `basis` are independent and span all of them."""
     spanned = scipy.linalg.orth(basis).T if basis.size else np.zeros((0, candidates.shape[0]))
@@ -111,6 +130,12 @@ def independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
             directions = np.vstack([directions, residual / np.linalg.norm(residual)])
             chosen.append(i)
     return chosen
+
+
+@_remembered
+def pseudo_inverse(matrix: Matrix) -> Matrix:
+    """The Moore-Penrose inverse."""
+    return np.asarray(np.linalg.pinv(matrix))
 
 
 def clean(matrix: Matrix) -> Matrix:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, MechanismError
 from inerter.kernels.arrays import FRICTION, GAP, KIND
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Spring
-from inerter.systems.coordinates import clean, complete, independent_rows, null_space
+from inerter.systems.coordinates import clean, complete, independent_rows, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.cars import Vehicle, check_vehicle
@@ -169,7 +169,7 @@ def _places(mechanism: Mechanism, graph: Graph) -> _Places:
     choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
     chosen = independent_rows(choices)
     P, P_road = choices[chosen], choices_road[chosen]
-    over_g = clean(choices @ np.linalg.pinv(P)) if chosen else np.zeros((len(choices), 0))
+    over_g = clean(choices @ pseudo_inverse(P)) if chosen else np.zeros((len(choices), 0))
     over_g[chosen] = np.eye(len(chosen))
     over_z = clean(choices_road - over_g @ P_road)
     e_g, e_z = np.zeros((len(branches), len(chosen))), np.zeros(roads.shape)

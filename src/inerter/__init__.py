@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from inerter.indices.index import LoadCarrying as LoadCarrying
     from inerter.indices.index import RideComfort as RideComfort
     from inerter.indices.index import TyreLoad as TyreLoad
+    from inerter.methods.compare import Comparison as Comparison
+    from inerter.methods.compare import compare as compare
+    from inerter.methods.expected_value import ExpectedValue as ExpectedValue
     from inerter.methods.method import Estimate as Estimate
     from inerter.methods.method import evaluate as evaluate
     from inerter.methods.method import evaluate_many as evaluate_many
@@ -32,6 +35,8 @@ if TYPE_CHECKING:
     from inerter.norms.h2 import h2_norm as h2_norm
     from inerter.norms.hinf import hinf_norm as hinf_norm
     from inerter.norms.response import frequency_response as frequency_response
+    from inerter.optimisation.budget import Budget as Budget
+    from inerter.optimisation.budget import budget as budget
     from inerter.optimisation.optimise import Optimum as Optimum
     from inerter.optimisation.optimise import optimise as optimise
     from inerter.signals.harmonics import cosine as cosine
@@ -70,9 +75,12 @@ __all__ = [
     "GROUND",
     "LAYOUTS",
     "Batch",
+    "Budget",
+    "Comparison",
     "Coordinate",
     "Damper",
     "Estimate",
+    "ExpectedValue",
     "Force",
     "Friction",
     "Gap",
@@ -101,8 +109,10 @@ __all__ = [
     "Weighted",
     "__version__",
     "assemble",
+    "budget",
     "bump",
     "chirp",
+    "compare",
     "cosine",
     "evaluate",
     "evaluate_many",
@@ -139,9 +149,14 @@ _HOME = {
     "simulate": "simulation.simulate",
     "Signal": "signals.signal",
     "Rig": "vehicle.cars",
+    "Budget": "optimisation.budget",
+    "budget": "optimisation.budget",
+    "Comparison": "methods.compare",
+    "compare": "methods.compare",
     "Coordinate": "vehicle.mechanism",
     "Damper": "networks.elements",
     "Estimate": "methods.method",
+    "ExpectedValue": "methods.expected_value",
     "Force": "vehicle.mechanism",
     "Friction": "networks.elements",
     "GROUND": "vehicle.mechanism",

@@ -61,6 +61,7 @@ class StatusKind(StrEnum):
     MARGINAL = "marginal"
     DIRECT_TERM = "direct-term"
     INACCURATE = "inaccurate"
+    UNBOUNDED = "unbounded"
     FAILED = "failed"
 
 

@@ -33,6 +33,7 @@ class CompiledQuestion:
     """One question as a function of the free values: the `Objective` of `Norm`."""
 
     problem: LinearProblem
+    costly = False
 
     @cached_property
     def descriptor(self) -> tuple[Any, ...]:

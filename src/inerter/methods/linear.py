@@ -23,20 +23,36 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Conventions:
-    """How the wheelbase delay is taken, and which filter stands in for 1/s where the road arrives at several axles."""
+    """How the wheelbase delay is taken, which filter stands in for 1/s where the road arrives at several axles, and
+    for how long simulated roads are held.
+    """
 
     name: str
     pade_order: int | None
     corner: float | None  # [rad/s]
+    hold: float | None  # [s]
 
 
 CONVENTIONS = {
     row.name: row
     for row in (
-        Conventions("exact", pade_order=None, corner=None),
-        Conventions("paper2008", pade_order=5, corner=2.0 * math.pi),
+        Conventions("exact", pade_order=None, corner=None, hold=None),
+        Conventions("paper2008", pade_order=5, corner=2.0 * math.pi, hold=1e-3),
     )
 }
+
+
+def check_conventions(name: object) -> None:
+    """Raises `IndicatorError` unless there are conventions of this name."""
+    if not isinstance(name, str) or name not in CONVENTIONS:
+        raise IndicatorError(f"There are no conventions named {name!r} (known: {', '.join(CONVENTIONS)}).")
+
+
+def corner_of(question: Question, delays: Array, conventions: Conventions) -> float | None:
+    """Corner [rad/s] of the high-pass filter that the question asks for, or the conventions where roads arrive late."""
+    if question.high_pass is None and question.over_s and np.ptp(delays) > 0.0:
+        return conventions.corner
+    return question.high_pass
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +107,5 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
         distance = {road.name: road.distance for road in mechanism.roads}
         inputs = tuple(sorted(inputs, key=distance.__getitem__))
         delays = np.array([distance[name] for name in inputs]) / question.road.speed
-    corner = question.high_pass
-    if corner is None and question.over_s and np.ptp(delays) > 0.0:
-        corner = conventions.corner
     descriptor = describe(mechanism, inputs, [output.output for output in question.outputs])
-    return LinearProblem(question, descriptor, delays, conventions.pade_order, corner)
+    return LinearProblem(question, descriptor, delays, conventions.pade_order, corner_of(question, delays, conventions))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -30,10 +30,16 @@ class Estimate:
     realisations: int = 0  # random inputs that were averaged
     peaks: tuple[Peak, ...] = ()  # local maxima of the gain, for an index that is a peak gain
     notes: tuple[str, ...] = ()  # what the method left out
+    samples: tuple[float, ...] = field(default=(), repr=False)  # the values that were averaged
 
 
 class Objective(Protocol):
     """An index of a design as a function of its free values, for an optimiser. Points are (values,) or (n, values)."""
+
+    @property
+    def costly(self) -> bool:
+        """Whether a value takes so long, and a gradient so much longer, that searches must make do with few."""
+        ...
 
     def values(self, points: Array) -> Array:
         """The index at each row of `points`."""
@@ -49,6 +55,15 @@ class Objective(Protocol):
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Those smooth functions and their gradients (components,), (components, values)."""
+        ...
+
+
+@runtime_checkable
+class Controlled(Protocol):
+    """A method that knows something of its samples beforehand."""
+
+    def controls(self, vehicle: Vehicle, index: Index, count: int) -> tuple[Array, Array] | None:
+        """What is known of the first `count` samples, and of many more; None if nothing is."""
         ...
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, IndicatorError
+from inerter.errors import DesignError
 from inerter.indices.index import Index
-from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Objective
 from inerter.systems.descriptor import close
 from inerter.vehicle.cars import Vehicle
@@ -32,9 +32,7 @@ class Norm:
     name = "norm"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.conventions, str) or self.conventions not in CONVENTIONS:
-            known = ", ".join(CONVENTIONS)
-            raise IndicatorError(f"There are no conventions named {self.conventions!r} (known: {known}).")
+        check_conventions(self.conventions)
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""

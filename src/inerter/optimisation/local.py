@@ -56,6 +56,27 @@ def descend(objective: Objective, start: Array, lower: Array, upper: Array) -> L
     return LocalOptimum(np.clip(np.exp(result.x), lower, upper), value, int(result.nfev))
 
 
+def creep(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
+    """The local optimum of a costly index near `start`, by quadratic models of a few values, without derivatives."""
+    best = [LocalOptimum(start, np.inf, 0)]
+
+    def logarithm(x: Array) -> float:
+        point = np.clip(np.exp(x), lower, upper)
+        value = float(objective.values(point[None])[0])
+        if value < best[0].value:
+            best[0] = LocalOptimum(point, value, 0)
+        return float(np.log(value)) if 0.0 < value < np.inf else -_HIDDEN
+
+    result = scipy.optimize.minimize(
+        logarithm,
+        np.log(start),
+        method="COBYQA",
+        bounds=scipy.optimize.Bounds(np.log(lower), np.log(upper)),
+        options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-3, "maxfev": 60 * start.size},
+    )
+    return LocalOptimum(best[0].point, best[0].value, int(result.nfev))
+
+
 def approach(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     """Close to a minimax optimum: the level above the peaks, each followed as it moves."""
 

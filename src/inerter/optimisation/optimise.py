@@ -10,16 +10,22 @@ import scipy.spatial
 import scipy.stats
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, Status, StatusKind
+from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.indices.index import Index
+from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Estimate, Method, Objective, check_request
+from inerter.methods.norm import Norm
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
-from inerter.optimisation.local import LocalOptimum, approach, descend, polish
+from inerter.optimisation.local import LocalOptimum, approach, creep, descend, polish
 from inerter.optimisation.threads import one_blas_thread
 from inerter.vehicle.cars import Vehicle
 
 Array = NDArray[np.float64]
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
+COSTLY_AGREEMENT = 1e-4  # the same for values that are simulated
+_MOST_CREEPS = 4  # searches of a costly index
+_APART = 0.05  # logarithmic distance from which on two starts of such searches are two
 _PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is carried to the end
 _SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
@@ -28,6 +34,9 @@ _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on 
 @dataclass(frozen=True)
 class Optimum:
     """The best design found, and what speaks for its being the best.
+
+    `over_linear`, for methods that see friction and gaps: how the optimum differs from the best linear design, by the
+    same method on the same roads (negative: so much lower).
 
     `agreed` of `starts` local searches ended within 1e-6 of the best value (for a peak gain: or approached the very
     place where one did); `ranges` gives for each parameter the
@@ -44,6 +53,7 @@ class Optimum:
     agreed: int
     evaluations: int
     seed: int
+    over_linear: Comparison | None = None
 
     @property
     def value(self) -> float:
@@ -68,6 +78,9 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     (8 for each free value) start a gradient method each: L-BFGS-B, for a peak gain a minimax search with SLSQP. The
     same seed gives the same result.
 
+    A method that simulates is searched without derivatives (COBYQA), from the best linear design and from the local
+    optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the best.
+
     Raises `DesignError` if nothing is free, if a free value has no effect in the method, or if `starts` is not a
     positive whole number; and what `evaluate` raises.
     """
@@ -79,20 +92,33 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     lower = np.array([free.lower for free in variables.values()])
     upper = np.array([free.upper for free in variables.values()])
     objective = method.objective(vehicle, index)
+    agreement = COSTLY_AGREEMENT if objective.costly else AGREEMENT
     with one_blas_thread():
-        first, evaluations = _starting_points(objective, lower, upper, starts, seed)
-        found = _searches(objective, first, lower, upper)
+        linear = None if isinstance(method, Norm) else _linear_optimum(vehicle, index, method, seed, starts)
+        if objective.costly:
+            first = [linear] if linear is not None else []
+            first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)
+            found = [creep(objective, start, lower, upper) for start in _apart(first)]
+            evaluations = 0
+        else:
+            first, evaluations = _starting_points(objective, lower, upper, starts, seed)
+            found = _searches(objective, first, lower, upper)
     evaluations += sum(local.evaluations for local in found)
     best = min(found, key=lambda local: local.value, default=None)
     if best is None or not np.isfinite(best.value):
         best = LocalOptimum(np.sqrt(lower * upper), np.inf, 0)
-    same = [local.point for local in found if local.value <= best.value * (1.0 + AGREEMENT)] or [best.point]
+    same = [local.point for local in found if local.value <= best.value * (1.0 + agreement)] or [best.point]
     point = np.where(np.isclose(best.point, upper, rtol=1e-12, atol=0.0), upper, best.point)
     point = np.where(np.isclose(point, lower, rtol=1e-12, atol=0.0), lower, point)
     parameters = dict(zip(variables, point.tolist(), strict=True))
     design = vehicle.with_values(parameters)
+    over_linear = None
+    if linear is not None:
+        over_linear = compare(
+            design, vehicle.with_values(dict(zip(variables, linear.tolist(), strict=True))), index, method
+        )
     return Optimum(
-        estimate=_confirmed(method.estimate(design, index), best.value),
+        estimate=over_linear.first if over_linear else _confirmed(method.estimate(design, index), best.value),
         parameters=parameters,
         design=design,
         active_bounds=_active_bounds(variables, parameters),
@@ -101,7 +127,43 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
         agreed=len(same) if found else 0,
         evaluations=evaluations,
         seed=int(seed),
+        over_linear=over_linear,
     )
+
+
+def _linear_optimum(vehicle: Vehicle, index: Index, method: Method, seed: int, starts: int) -> Array | None:
+    """The best linear design under the conventions of `method`; None if linear analysis cannot decide all values."""
+    try:
+        found = optimise(vehicle, index, Norm(getattr(method, "conventions", "exact")), seed=seed, starts=starts)
+    except InerterError:
+        return None
+    return np.array(list(found.parameters.values())) if np.isfinite(found.value) else None
+
+
+def _quick_optima(
+    vehicle: Vehicle, index: Index, method: Method, bounds: tuple[Array, Array], starts: int, seed: int
+) -> list[Array]:
+    """Local optima, the best first, of the first quick method that takes the design; else points of a sample."""
+    conventions = getattr(method, "conventions", "exact")
+    for quick in (StatisticalLinearisation(conventions), Norm(conventions)):
+        try:
+            objective = quick.objective(vehicle, index)
+            first, _ = _starting_points(objective, *bounds, starts, seed)
+        except InerterError:
+            continue
+        found = sorted(_searches(objective, first, *bounds), key=lambda local: local.value)
+        return [local.point for local in found if np.isfinite(local.value)]
+    objective = method.objective(vehicle, index)
+    return _starting_points(objective, *bounds, _MOST_CREEPS, seed)[0]
+
+
+def _apart(points: list[Array]) -> list[Array]:
+    """The first few points that are not close to one before."""
+    chosen: list[Array] = []
+    for point in points:
+        if all(np.abs(np.log(point / other)).max() > _APART for other in chosen):
+            chosen.append(point)
+    return [*chosen[:_MOST_CREEPS]]
 
 
 def _searches(objective: Objective, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, SimulationError, Status, StatusKind
 from inerter.kernels import events as kernel
-from inerter.kernels.arrays import ENTRY, ETA, Mechanics, Modes
+from inerter.kernels.arrays import ENTRY, ETA, GUARD, Mechanics, Modes
 from inerter.kernels.march import march_of, padded
 from inerter.networks.elements import Damper
 from inerter.simulation.inputs import InputTable
@@ -72,7 +72,7 @@ class Integration:
             self.modes = Modes(self.modes.number, *more)
         modes, m, self.count = self.modes, self.count, self.count + 1
         modes.state[m, : states.size] = states
-        modes.number[int("".join(str(state + 1) for state in states) or "0", 3)] = m
+        modes.number[_code(states)] = m
         if not build(*self.mechanics, modes.state[m], modes.maps[m], modes.reaction[m], modes.limits[m]):
             return False
         modes.reach[m] = discretise(self.mechanics.sizes, self.used, modes.maps[m], modes.steps[m], self.table.step)
@@ -93,6 +93,21 @@ class Integration:
         """Rows of the maps that hold a', w and the nonlinear elements' forces."""
         return slice(int(self.mechanics.sizes[ETA]), int(self.mechanics.sizes[ENTRY]))
 
+    @property
+    def guards(self) -> slice:
+        """Rows of the maps that hold what each state of an element is judged by: of a slip, its velocity."""
+        first = int(self.mechanics.sizes[GUARD])
+        return slice(first, first + len(self.system.nonlinear))
+
+    def mode(self, states: NDArray[np.int64]) -> Matrix:
+        """The maps of the mode in which the nonlinear elements are in these states.
+
+        Raises `SimulationError` if their forces are not determined there.
+        """
+        if self.modes.number[_code(states)] < 0 and not self.build(states):
+            raise SimulationError(f"Cannot go on: {_SINGULAR}.")
+        return np.asarray(self.modes.maps[self.modes.number[_code(states)]])
+
     def mismatch(self, before: Matrix) -> float:
         """Change of the state since `before`, relative to the largest velocity, or position, so far."""
         na, n = self.system.motions[0].shape[1], self.system.order
@@ -103,6 +118,11 @@ class Integration:
 
     def _failed(self, why: str) -> Status:
         return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; nothing comes after that")
+
+
+def _code(states: NDArray[np.int64]) -> int:
+    """Number of a combination of states of the elements, among all that there are."""
+    return int("".join(str(state + 1) for state in states) or "0", 3)
 
 
 _FAILURES = {

@@ -17,7 +17,7 @@ from inerter.simulation.trajectory import Repetition
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
-_PERIODS = 300
+_PERIODS, _FEW_PERIODS = 300, 30
 _REPEATS, _ENOUGH = 1e-10, 1e-6  # changes of the state over a period, relative to its size
 
 
@@ -46,27 +46,54 @@ def common_period(signals: Sequence[Signal | None]) -> float:
 
 def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
+    quick, settled = _repeated(event_driven.start(system, table, state, keep=False), _REPEATS, _PERIODS)
+    recorded = event_driven.start(system, table, quick.state, account=energy)
+    before, slope, special = quick.record.value_before, quick.record.slope_before, quick.record.special
+    recorded.record = recorded.record._replace(value_before=before, slope_before=slope, special=special)
+    recorded.status = quick.status
+    if quick.status.ok and settled.mismatch > _ENOUGH:
+        recorded.warning = _unsettled(settled)
+    return recorded, settled
+
+
+def mean_squares(
+    system: PiecewiseSystem, table: InputTable, outputs: Sequence[str], state: Matrix, most: int | None = None
+) -> tuple[Matrix, Integration]:
+    """Mean squares of outputs over one period, once the state repeats to a millionth, and the integration.
+
+    Goes through `most` periods at most (30 by default).
+
+    What the integration's `status` or `warning` say holds for the squares.
+    """
+    begun = event_driven.start(system, table, state, outputs, keep=False)
+    integration, settled = _repeated(begun, _ENOUGH, _FEW_PERIODS if most is None else most)
+    if integration.status.ok and settled.mismatch > _ENOUGH:
+        integration.warning = _unsettled(settled)
+    return integration.record.sums / (table.samples - 1), integration
+
+
+def _repeated(integration: Integration, repeats: float, most: int) -> tuple[Integration, Repetition]:
+    """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
+    table, record = integration.table, integration.record
     last = table.time.size - 1
     before, slope = table.value_before.copy(), table.slope_before.copy()
     before[0], slope[0] = before[last], slope[last]
     special = table.special
     if not np.array_equal(before[0], table.value[0]) and special[0] != 0:
         special = np.concatenate([[0], special])
-    quick = event_driven.start(system, table, state, keep=False)
-    quick.advance(last)
-    quick.record = quick.record._replace(value_before=before, slope_before=slope, special=special)
+    integration.advance(last)
+    integration.record = record._replace(value_before=before, slope_before=slope, special=special)
     mismatch, periods = np.inf, 1
-    while quick.status.ok and periods < _PERIODS and mismatch > _REPEATS:
-        begun = quick.state
-        quick.place[[SEGMENT, SPECIAL, EVENTS]] = 0
-        quick.advance(last)
+    while integration.status.ok and periods < most and mismatch > repeats:
+        begun = integration.state
+        integration.place[[SEGMENT, SPECIAL, EVENTS]] = 0
+        record.sums[:] = 0.0
+        integration.advance(last)
         periods += 1
-        mismatch = quick.mismatch(begun)
-    recorded = event_driven.start(system, table, quick.state, account=energy)
-    recorded.record = recorded.record._replace(value_before=before, slope_before=slope, special=special)
-    recorded.status = quick.status
-    if quick.status.ok and mismatch > _ENOUGH:
-        recorded.warning = Status(
-            StatusKind.INACCURATE, f"after {periods} periods the state still changes by {mismatch:.1e} of its size"
-        )
-    return recorded, Repetition(float(table.time[-1] - table.time[0]), periods, mismatch)
+        mismatch = integration.mismatch(begun)
+    return integration, Repetition(float(table.time[-1] - table.time[0]), periods, mismatch)
+
+
+def _unsettled(found: Repetition) -> Status:
+    message = f"after {found.periods} periods the state still changes by {found.mismatch:.1e} of its size"
+    return Status(StatusKind.INACCURATE, message)

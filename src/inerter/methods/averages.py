@@ -1,0 +1,23 @@
+"""Means of independent values, and how far they can be trusted."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+CONFIDENCE = 0.95
+
+
+def mean_and_error(values: NDArray[np.float64]) -> tuple[float, float, tuple[float, float]]:
+    """Mean of independent values, its standard error, and its interval of 95 % confidence."""
+    mean, error = float(np.mean(values)), float(np.std(values, ddof=1) / np.sqrt(values.size))
+    return mean, error, interval_of(mean, error, values.size)
+
+
+def interval_of(mean: float, error: float, count: int) -> tuple[float, float]:
+    """The interval of 95 % confidence about the mean of `count` values, by Student's t."""
+    if error == 0.0 or count < 2:
+        return mean, mean
+    reach = float(scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, count - 1)) * error
+    return mean - reach, mean + reach

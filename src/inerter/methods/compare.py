@@ -1,0 +1,104 @@
+"""Two designs on the same roads: what differs between them is known better than either."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import hypot
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import Status
+from inerter.indices.index import Index
+from inerter.methods.averages import interval_of, mean_and_error
+from inerter.methods.method import Controlled, Estimate, Method, evaluate
+from inerter.vehicle.cars import Vehicle
+
+Controls = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A difference of two estimates with its own standard error; `standard_error` is 0 where nothing scatters."""
+
+    value: float
+    unit: str
+    standard_error: float
+    interval: tuple[float, float]  # of 95 % confidence
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two designs by one index: `difference` is first less second, so negative where the first is better."""
+
+    first: Estimate
+    second: Estimate
+    difference: Difference
+
+    @property
+    def percent(self) -> float:
+        """The difference as a part of the second's value [%]."""
+        return 100.0 * self.difference.value / self.second.value
+
+    @property
+    def percent_error(self) -> float:
+        """The standard error of the difference as a part of the second's value [%]."""
+        return 100.0 * self.difference.standard_error / abs(self.second.value)
+
+    @property
+    def status(self) -> Status:
+        """How far both can be trusted: the first status that is not ok."""
+        return self.first.status if not self.first.status.ok else self.second.status
+
+    def __str__(self) -> str:
+        word = "better" if self.difference.value < 0.0 else "worse"
+        return f"the first is {abs(self.percent):.2g} % ± {self.percent_error:.1g} % {word} than the second"
+
+
+def compare(first: Vehicle, second: Vehicle, index: Index, method: Method) -> Comparison:
+    """Two designs by one index and one method, with the standard error of their difference.
+
+    A method that averages drives both over the same roads, as many for both, and the difference is averaged road by
+    road: what the roads do to both alike cancels. What friction does to first order, which is quickly computed, is
+    averaged over many more roads, and only the rest over these. Standard errors of numbers without samples add up as
+    independent ones.
+
+    Raises what `evaluate` raises.
+    """
+    one, other = (evaluate(design, index, method) for design in (first, second))
+    most = max(one.realisations, other.realisations)
+    if min(one.realisations, other.realisations) < most and hasattr(method, "realisations"):
+        settled: Any = replace(method, realisations=most, relative_error=None)  # type: ignore[type-var]
+        one, other = (
+            estimate if estimate.realisations in (0, most) else evaluate(design, index, settled)
+            for estimate, design in ((one, first), (other, second))
+        )
+    controls: list[Controls | None] = []
+    if one.samples and other.samples and isinstance(method, Controlled):
+        controls = [method.controls(design, index, most) for design in (first, second)]
+    return Comparison(one, other, difference_of(one, other, controls))
+
+
+def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | None] = ()) -> Difference:
+    """The difference of two estimates, sample by sample where both have the same samples.
+
+    `controls` hold for each design what is known of the same samples, and of many more: where it explains some of the
+    scatter, it is taken off sample by sample, and its mean over the many is added again.
+    """
+    samples = np.array(one.samples), np.array(other.samples)
+    if not samples[0].size == samples[1].size > 1:
+        value = one.value - other.value
+        error = hypot(one.standard_error or 0.0, other.standard_error or 0.0)
+        return Difference(value, one.unit, error, interval_of(value, error, max(samples[0].size, samples[1].size)))
+    differences = samples[0] - samples[1]
+    if len(controls) == 2 and controls[0] is not None and controls[1] is not None:
+        here, more = (a - b for a, b in zip(*controls, strict=True))
+        if np.var(differences - here) < np.var(differences):
+            rest, error, _ = mean_and_error(differences - here)
+            added, further, _ = mean_and_error(more)
+            error = hypot(error, further)
+            return Difference(rest + added, one.unit, error, interval_of(rest + added, error, differences.size))
+    value, error, interval = mean_and_error(differences)
+    return Difference(value, one.unit, error, interval)

@@ -1,0 +1,99 @@
+"""What friction does to first order: the linear motion decides where it slips, and its force changes that motion.
+
+With the friction's force f sgn(v) of the frictionless velocity v as an input, the mean square of an output y changes by
+2 <y, dy>. This costs two Fourier transforms for a road, and explains most of what one road does that another does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.indices.index import Question
+from inerter.kernels.arrays import FRICTION, KIND
+from inerter.methods.realisations import Drive, table
+from inerter.simulation import event_driven
+from inerter.simulation.event_driven import Integration
+from inerter.systems.piecewise import PiecewiseSystem, output_rows
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+_LINES = 1000  # of the road: what moves a vehicle lies below 100 Hz
+_TIMES = 8192  # a period
+
+
+@dataclass(frozen=True, eq=False)
+class FirstOrder:
+    """The change of an index of r.m.s. values by friction, to first order, on one road."""
+
+    way: Drive
+    outputs: Complex  # (lines, outputs) per line of the road
+    velocities: Complex  # (lines, frictions) the same
+    responses: Complex  # (lines, outputs, frictions) of the outputs to sgn(v)
+    weights: Array  # (outputs,) of the mean squares in the index
+
+    def __call__(self, seed: int) -> float:
+        """The change on the road of a realisation's seed."""
+        road = self.way.signal(seed).coefficient[:_LINES, None]
+        spectrum = np.zeros((_TIMES // 2 + 1, self.velocities.shape[1]), dtype=complex)
+        spectrum[1 : len(road) + 1] = self.velocities * road
+        sides = np.sign(np.fft.irfft(spectrum, _TIMES, axis=0))
+        forces = np.fft.rfft(sides, axis=0)[1 : len(road) + 1] * (2.0 / _TIMES)
+        change = np.einsum("kof,kf->ko", self.responses, forces)
+        return float(np.real(np.conj(self.outputs * road) * change).sum(axis=0) @ self.weights)
+
+
+def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> FirstOrder | None:
+    """The first-order effect of every friction; None if a gap is there, or if a part is loose without friction."""
+    limit, kinds = system.mechanics.limit, system.mechanics.elements[:, KIND]
+    if not np.any(limit > 0.0) or np.any(limit[kinds != FRICTION] > 0.0):
+        return None
+    count, n, nu = limit.size, system.order, system.inputs
+    integration = event_driven.start(system, table(way, 0), np.zeros(n))
+    slip, forces = _slipping(integration)
+    signal = way.signal(0)
+    omega = 2.0 * np.pi * signal.frequencies[:_LINES]
+    amplitudes = signal.amplitudes[:_LINES]
+    arrival = np.exp(-1j * np.outer(omega, way.delays))
+    inputs = np.zeros((omega.size, nu), dtype=complex)
+    for order in range(3):
+        inputs[:, order * len(way.delays) : (order + 1) * len(way.delays)] = arrival * (1j * omega[:, None]) ** order
+    try:
+        resolvent = np.linalg.inv(1j * omega[:, None, None] * np.eye(n) - slip[:n, :n])
+    except np.linalg.LinAlgError:
+        return None
+    states = np.einsum("kij,kj->ki", resolvent, inputs @ slip[:n, n : n + nu].T)
+    on_columns, on_eta = _over_slip(system, question)
+    rows = on_columns + on_eta @ slip[integration.eta]
+    direct = on_eta @ forces[integration.eta]
+    filtered = 1.0 if way.corner is None else (1j * omega / (1j * omega + way.corner))[:, None]
+    outputs = (states @ rows[:, :n].T + inputs @ rows[:, n : n + nu].T) * filtered
+    responses = np.einsum("oi,kij,jf->kof", rows[:, :n], resolvent, forces[:n]) + direct
+    if way.corner is not None:
+        responses = responses * (1j * omega / (1j * omega + way.corner))[:, None, None]
+    guards = slip[integration.guards]
+    velocities = states @ guards[:, :n].T + inputs @ guards[:, n : n + nu].T
+    power = 0.5 * (np.abs(outputs) ** 2 * amplitudes[:, None] ** 2).sum(axis=0)
+    if not np.all(np.isfinite(power)) or not np.all(power > 0.0) or count == 0:
+        return None
+    weights = np.array([abs(output.weight) for output in question.outputs]) / (2.0 * np.sqrt(power))
+    return FirstOrder(way, outputs, velocities, responses, weights)
+
+
+def _over_slip(system: PiecewiseSystem, question: Question) -> tuple[Array, Array]:
+    """The outputs as rows over (state, inputs, 1), and over eta."""
+    rows = [output_rows(system, system.outputs[output.output]) for output in question.outputs]
+    columns = np.array([np.concatenate([on_x, on_u, [0.0]]) for on_x, on_u, _ in rows])
+    return columns, np.array([on_eta for _, _, on_eta in rows])
+
+
+def _slipping(integration: Integration) -> tuple[Array, Array]:
+    """The maps of the mode in which every friction slips up, without friction's force; and the force's own effect."""
+    count = len(integration.system.nonlinear)
+    sides = np.ones((count + 1, count), dtype=np.int64)
+    sides[np.arange(count), np.arange(count)] = -1
+    maps = np.array([integration.mode(row) for row in sides])
+    forces = 0.5 * (maps[-1, :, -1] - maps[:-1, :, -1])
+    return maps[-1], forces.T

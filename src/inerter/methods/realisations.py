@@ -1,0 +1,100 @@
+"""Random roads laid out once, and what designs do on them: the same roads for every design."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import OK, Status
+from inerter.indices.index import Question
+from inerter.methods.linear import Conventions, corner_of
+from inerter.signals.harmonics import Harmonics, multisine
+from inerter.signals.road import Road
+from inerter.simulation.inputs import InputTable, check_holds, tabulate
+from inerter.simulation.observe import trajectory_of
+from inerter.simulation.start import initial_state
+from inerter.simulation.steady import mean_squares, settle
+from inerter.systems.piecewise import PiecewiseSystem
+
+Array = NDArray[np.float64]
+STEP = 2e-4  # [s] of continuous roads: errors of 1e-6
+_KEPT = 48  # tables, of 4 MB each
+
+
+@dataclass(frozen=True)
+class Drive:
+    """How a mechanism is driven over a road: the speed, when the road reaches each wheel, and the conventions."""
+
+    road: Road
+    delays: tuple[float, ...]  # of each road input [s]
+    forces: int  # external forces, which stay zero
+    hold: float | None  # [s]
+    corner: float | None  # of a high-pass filter on the outputs [rad/s]
+
+    @property
+    def step(self) -> float:
+        """Of the integration [s]."""
+        return STEP if self.hold is None else self.hold
+
+    def signal(self, seed: int) -> Harmonics:
+        """The road of one realisation, before it is held."""
+        return multisine(self.road, seed)
+
+
+def drive(system: PiecewiseSystem, question: Question, conventions: Conventions) -> Drive:
+    """How `question` drives the mechanism of `system`."""
+    assert question.road is not None
+    mechanism, road = system.mechanism, question.road
+    delays = np.array([r.distance for r in mechanism.roads]) / road.speed
+    corner = corner_of(question, delays, conventions)
+    return Drive(road, tuple(delays.tolist()), len(mechanism.forces), conventions.hold, corner)
+
+
+@lru_cache(maxsize=_KEPT)
+def table(way: Drive, seed: int) -> InputTable:
+    """One period of a realisation along the knots of an integration."""
+    signal = way.signal(seed)
+    moved = signal if way.hold is None else signal.held(way.hold)
+    signals = [*(moved for _ in way.delays), *(None for _ in range(way.forces))]
+    return tabulate(signals, [*way.delays, *(0.0 for _ in range(way.forces))], signal.period, way.step)
+
+
+def check_drive(system: PiecewiseSystem, way: Drive) -> None:
+    """Raises `SimulationError` if the mechanism cannot be driven over roads that are held."""
+    if way.hold is not None:
+        held = way.signal(0).held(way.hold)
+        check_holds(system, [held for _ in way.delays])
+
+
+def squares(system: PiecewiseSystem, way: Drive, seed: int, outputs: Sequence[str]) -> tuple[Array, Status]:
+    """Mean squares of the outputs, filtered, over one period of the steady state on one realisation."""
+    inputs = table(way, seed)
+    state = initial_state(system, inputs.value[0], "rest")
+    if way.corner is None:
+        found, integration = mean_squares(system, inputs, outputs, state)
+        return found, integration.status if not integration.status.ok else integration.warning
+    integration, steady = settle(system, inputs, state, energy=False)
+    integration.advance(inputs.time.size - 1)
+    run = trajectory_of(integration, steady, "", state)
+    if not integration.status.ok:
+        return np.full(len(outputs), np.nan), integration.status
+    count = run.time.size - 1
+    s = 2j * np.pi * np.fft.rfftfreq(count, way.step)
+    gain = np.abs(s / (s + way.corner)) ** 2
+    lines = np.array([np.abs(np.fft.rfft(run[name][:count])) ** 2 for name in outputs])
+    lines[:, 1 : (count + 1) // 2] *= 2.0
+    return np.asarray(lines @ gain) / count**2, run.status
+
+
+def realisation_seeds(seed: int, first: int, stop: int) -> list[int]:
+    """Seeds of the realisations `first`, ..., `stop` - 1 of a method's seed."""
+    return [int(np.random.SeedSequence([seed, r]).generate_state(1, np.uint64)[0]) for r in range(first, stop)]
+
+
+def worst(found: Sequence[Status]) -> Status:
+    """The first status that is not ok."""
+    return next((status for status in found if not status.ok), OK)

@@ -1,0 +1,209 @@
+"""How much friction, backlash or softness a design can bear before it loses to another, and where two curves cross."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import scipy.optimize
+import scipy.stats
+
+from inerter.checks import is_number
+from inerter.errors import OK, DesignError, Status, StatusKind
+from inerter.indices.index import Index
+from inerter.methods.compare import Comparison, compare
+from inerter.methods.method import Method, check_request, evaluate
+from inerter.networks.elements import Element, Friction, Gap
+from inerter.networks.transform import map_elements
+from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.mechanism import Mechanism
+
+_POINTS = 16  # between which crossings are looked for
+_REACH = 1e3  # default bounds lie so many times below and above the present value
+_SLOPE = 0.02  # relative step of the slope's difference
+_FROM_ZERO = {Friction: (0.1, 1e4), Gap: (1e-6, 1e-2)}  # default bounds where the present value is zero
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A value of the parameter at which design and baseline are equally good."""
+
+    value: float  # SI
+    standard_error: float
+    interval: tuple[float, float]  # of 95 % confidence
+    better: str  # on which side the design beats the baseline: "below" or "above"
+    status: Status = OK
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The values of a parameter for which a design beats a baseline.
+
+    `value` is the end of that range: the largest friction or gap, the smallest stiffness, damping or inertance. It is
+    nan, and `status` says why, where the design is better (or worse) at every value between `bounds`.
+    """
+
+    parameter: str
+    unit: str
+    value: float
+    standard_error: float
+    interval: tuple[float, float]
+    crossings: tuple[Crossing, ...]  # all that were found, in rising order
+    bounds: tuple[float, float]
+    status: Status
+    evaluations: int
+
+
+def budget(
+    design: Vehicle,
+    baseline: Vehicle,
+    index: Index,
+    *,
+    parameter: str,
+    method: Method,
+    bounds: tuple[float, float] | None = None,
+) -> Budget:
+    """The values of `parameter` for which `design` has a lower `index` than `baseline`.
+
+    `parameter` names elements of the struts by their label, or is "friction" or "gap" for all that there are. Where
+    the baseline has it too, it changes there alike: the crossing of two curves over a stiffness is found so. Values
+    between `bounds` (SI; by default a thousandth to a thousand times the present value) are tried on a grid in
+    logarithms, and each change of sign is found by Brent's method, on the same roads throughout. The standard error of
+    a crossing is that of the difference, over the slope.
+
+    Raises `DesignError` if no element has that name, or if the bounds are not positive and in order; and what
+    `evaluate` raises.
+    """
+    check_request(design, index, method)
+    check_request(baseline, index, method)
+    chosen = _elements(design.mechanism(), parameter)
+    lower, upper = _bounds(chosen, parameter, bounds)
+    known: dict[float, Comparison] = {}
+    fixed = _as_many_roads(design, index, method)
+    own = None if _has(baseline, parameter) else baseline
+
+    def difference(logarithm: float) -> float:
+        if logarithm not in known:
+            value = float(np.exp(logarithm))
+            other = own or with_element(baseline, parameter, value)
+            known[logarithm] = compare(with_element(design, parameter, value), other, index, fixed)
+        return known[logarithm].difference.value
+
+    grid = np.linspace(np.log(lower), np.log(upper), _POINTS).tolist()
+    gaps = [difference(at) for at in grid]
+    crossings = tuple(
+        _crossing(difference, known, a, b)
+        for (a, left), (b, right) in pairwise(zip(grid, gaps, strict=True))
+        if left * right < 0.0
+    )
+    wanted = "below" if isinstance(chosen[0], Friction | Gap) else "above"
+    ends = [c for c in crossings if c.better == wanted]
+    end = None if not ends else ends[0] if wanted == "below" else ends[-1]
+    failed = next((c.status for c in crossings if not c.status.ok), OK)
+    return Budget(
+        parameter=parameter,
+        unit=chosen[0].unit,
+        value=np.nan if end is None else end.value,
+        standard_error=np.nan if end is None else end.standard_error,
+        interval=(np.nan, np.nan) if end is None else end.interval,
+        crossings=crossings,
+        bounds=(lower, upper),
+        status=_status(gaps, end, failed, parameter, chosen[0].unit, lower, upper),
+        evaluations=len(known),
+    )
+
+
+def with_element(vehicle: Vehicle, parameter: str, value: float) -> Mechanism:
+    """The vehicle's mechanism with another value of the elements of its struts that `parameter` names."""
+    mechanism = vehicle.mechanism()
+    chosen = {id(element) for element in _elements(mechanism, parameter)}
+
+    def change(element: Element) -> Element:
+        return element.with_value(value) if id(element) in chosen else element
+
+    return replace(
+        mechanism, struts=tuple(replace(s, network=map_elements(s.network, change)) for s in mechanism.struts)
+    )
+
+
+def _elements(mechanism: Mechanism, parameter: str) -> list[Element]:
+    """The elements that a name stands for; raises `DesignError` if there is none, or if they are of several kinds."""
+    all_elements = [element for strut in mechanism.struts for element in strut.network.elements()]
+    named = [e for e in all_elements if e.label == parameter]
+    kind: list[Element] = [
+        e for e in all_elements if isinstance(e, Friction | Gap) and type(e).__name__.lower() == parameter
+    ]
+    chosen = named or kind
+    if not chosen:
+        labels = ", ".join(dict.fromkeys(e.label for e in all_elements))
+        raise DesignError(
+            f'No strut has an element named {parameter!r} (there are: {labels}; or take "friction" or "gap" '
+            f"for all). To find how much friction or backlash a design bears, put in a Friction(0.0) or Gap(0.0)."
+        )
+    if len({e.unit for e in chosen}) > 1:
+        raise DesignError(f"{parameter!r} names elements of different kinds. Give them different names.")
+    return chosen
+
+
+def _has(vehicle: Vehicle, parameter: str) -> bool:
+    try:
+        return bool(_elements(vehicle.mechanism(), parameter))
+    except DesignError:
+        return False
+
+
+def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[float, float]:
+    if given is not None:
+        if not isinstance(given, Sequence) or len(given) != 2 or not all(map(is_number, given)):
+            raise DesignError(f"The bounds of {parameter!r} are two numbers in SI units, got {given!r}.")
+        lower, upper = float(given[0]), float(given[1])
+        if not 0.0 < lower < upper:
+            raise DesignError(f"The bounds of {parameter!r} must be positive and in order, got {lower:g}, {upper:g}.")
+        return lower, upper
+    present: Any = chosen[0].value
+    if not is_number(present):
+        raise DesignError(f"The value of {parameter!r} is free; fix it, or give bounds=(lower, upper).")
+    if present == 0.0:
+        return _FROM_ZERO[type(chosen[0])]  # others cannot be zero
+    return present / _REACH, present * _REACH
+
+
+def _as_many_roads(design: Vehicle, index: Index, method: Any) -> Any:
+    """The method with a fixed number of roads, so that differences are continuous in the parameter."""
+    if getattr(method, "relative_error", None) is None:
+        return method
+    found = evaluate(design, index, method)
+    return replace(method, relative_error=None, realisations=found.realisations) if found.realisations else method
+
+
+def _crossing(difference: Callable[[float], float], known: dict[float, Comparison], a: float, b: float) -> Crossing:
+    root = float(scipy.optimize.brentq(difference, a, b, xtol=1e-5))
+    rising = difference(b) > difference(a)
+    slope = (difference(root + _SLOPE) - difference(root - _SLOPE)) / (2.0 * _SLOPE)
+    difference(root)
+    here = known[root]
+    error = here.difference.standard_error / abs(slope) if slope else np.inf
+    count = max(here.first.realisations, here.second.realisations)
+    reach = float(scipy.stats.t.ppf(0.975, count - 1)) * error if count > 1 else 0.0
+    value = float(np.exp(root))
+    with np.errstate(over="ignore"):
+        interval = (value * float(np.exp(-reach)), value * float(np.exp(reach)))
+    return Crossing(value, value * error, interval, "below" if rising else "above", here.status)
+
+
+def _status(
+    gaps: Sequence[float], end: Crossing | None, failed: Status, parameter: str, unit: str, lower: float, upper: float
+) -> Status:
+    if not failed.ok:
+        return failed
+    if end is not None:
+        return OK
+    between = f"for every {parameter} from {lower:.4g} to {upper:.4g} {unit}"
+    if all(gap < 0.0 for gap in gaps):
+        return Status(StatusKind.UNBOUNDED, f"the design is better {between}")
+    if all(gap >= 0.0 for gap in gaps):
+        return Status(StatusKind.UNBOUNDED, f"the design is not better {between}")
+    return Status(StatusKind.UNBOUNDED, f"the design is better only beyond the crossings {between}")

@@ -7,41 +7,52 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing.connection import wait as wait_for_end
+from typing import TypeVar
 
 from inerter.errors import WorkError
 from inerter.study.cases import Case, Outcome, run_case
 from inerter.study.values import Study
 
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 _SHORT = 3.0  # seconds: to start processes takes about as long
 
 
 def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcome]:
-    """Outcomes of `pending` as they are ready.
+    """Outcomes of `pending` as they are ready; see `spread`."""
+    return spread(partial(run_case, study), pending, jobs, lambda case: case.index)
 
-    The first case of each index runs here, so that compiled code is in the cache before others look for it, and so do
-    the next ones for as long as it would take to start processes. Those are spawned afresh (a fork of a threaded
-    process may hang) and end when this one is gone, however it went.
+
+def spread(
+    work: Callable[[Item], Result], pending: Sequence[Item], jobs: int, kind: Callable[[Item], object]
+) -> Iterator[Result]:
+    """Results of `work` on each of `pending` as they are ready.
+
+    The first item of each kind is worked on here, so that compiled code is in the cache before others look for it, and
+    so are the next ones for as long as it would take to start processes. Those are spawned afresh (a fork of a
+    threaded process may hang) and end when this one is gone, however it went.
 
     Raises `WorkError` if a process is killed from outside.
     """
-    firsts = list({case.index: case for case in reversed(pending)}.values())
-    for case in firsts:
-        yield run_case(study, case)
-    rest = [case for case in pending if case not in firsts]
+    firsts = list({kind(item): item for item in reversed(pending)}.values())
+    for item in firsts:
+        yield work(item)
+    rest = [item for item in pending if item not in firsts]
     start = time.monotonic()
     while rest and (jobs == 1 or time.monotonic() - start < _SHORT):
-        yield run_case(study, rest.pop(0))
+        yield work(rest.pop(0))
     if not rest:
         return
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(min(jobs, len(rest)), context, initializer=_begin_worker) as pool:
         with _deaf_to_interrupts():
-            waiting: set[Future[Outcome]] = {pool.submit(run_case, study, case) for case in rest}
+            waiting: set[Future[Result]] = {pool.submit(work, item) for item in rest}
         try:
             while waiting:
                 done, waiting = wait(waiting, return_when=FIRST_COMPLETED)

@@ -1,0 +1,224 @@
+"""Schematics of networks: upper end at the top, parallel parts side by side between bars, series parts in a column.
+
+`schematic` only says where things are, in points; what draws only draws it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from inerter.errors import NetworkError
+from inerter.figures.labels import printed
+from inerter.figures.style import WIDE, save, styled
+from inerter.figures.symbols import (
+    HALF_HEIGHT,
+    HALF_WIDTH,
+    LEADING,
+    SYMBOLS,
+    TO_LABEL,
+    Line,
+    Point,
+    blank_figure,
+    circle,
+    moved,
+    stroke,
+    symbol,
+    text_width,
+    write,
+)
+from inerter.networks.elements import (
+    Element,
+    Free,
+    Network,
+    Parallel,
+    Series,
+    check_network,
+)
+
+_STUB = 7.0  # lead between a bar and the end of what it joins
+_OVERHANG = 4.0  # of a bar over its outermost parts
+_BETWEEN = 9.0  # space between parts side by side
+_TERMINAL = 1.6  # radius of the open circle at an end
+_MARGIN, _TITLE, _COLUMN, _ROW = 6.0, 4.0, 24.0, 22.0  # around a figure, below a title, between networks and rows
+
+
+@dataclass(frozen=True)
+class Placed:
+    """An element with the middle of its symbol, and the label to the right of it."""
+
+    element: Element
+    label: str
+    x: float
+    y: float
+
+    @property
+    def right(self) -> float:
+        """Where its label ends."""
+        return self.x + HALF_WIDTH + TO_LABEL + text_width(self.label)
+
+
+@dataclass(frozen=True)
+class Schematic:
+    """A drawing whose upper end is at (0, 0) and whose lower end is at (0, -height)."""
+
+    left: float  # how far it reaches to either side of its ends
+    right: float
+    height: float
+    placed: tuple[Placed, ...]
+    lines: tuple[Line, ...] = ()
+
+    def moved(self, x: float, y: float) -> tuple[tuple[Placed, ...], tuple[Line, ...]]:
+        """Its elements and lines with the upper end at (x, y)."""
+        placed = tuple(Placed(p.element, p.label, p.x + x, p.y + y) for p in self.placed)
+        return placed, tuple(moved(line, x, y) for line in self.lines)
+
+
+def draw_networks(networks: Mapping[str, Network], folder: Path, name: str, *, values: bool = False) -> list[Path]:
+    """Write the figure of some networks by their titles into `folder`; returns the files."""
+    with styled():
+        return save(network_figure(networks, values=values), folder, name)
+
+
+def network_figure(networks: Mapping[str, Network], *, values: bool = False, width: float = WIDE) -> Figure:
+    """Networks below their titles, in rows of up to `width` [inch]; wider only where one network alone is.
+
+    Raises `NetworkError` if there are none.
+    """
+    if not networks:
+        raise NetworkError("A figure of networks needs at least one, got none.")
+    cells = [_Cell(_plain(title), schematic(network, values=values)) for title, network in networks.items()]
+    rows = list(_rows(cells, 72.0 * width - 2.0 * _MARGIN))
+    widths, heights = [_row_width(row) for row in rows], [max(cell.height for cell in row) for row in rows]
+    y = _MARGIN + sum(heights) + _ROW * (len(rows) - 1)
+    figure, axes = blank_figure(max(widths) + 2.0 * _MARGIN, y + _MARGIN)
+    for row, row_width, height in zip(rows, widths, heights, strict=True):
+        x = _MARGIN + (max(widths) - row_width) / 2.0
+        for cell in row:
+            write(axes, cell.title, x + cell.left, y - cell.title_height / 2.0)
+            _draw(cell.drawing, axes, (x + cell.left, y - cell.title_height - _TITLE - 2.0 * _TERMINAL))
+            x += cell.left + cell.right + _COLUMN
+        y -= height + _ROW
+    return figure
+
+
+def draw_network(network: Network, axes: Axes, at: Point = (0.0, 0.0), *, values: bool = False) -> Axes:
+    """Draw a network with its upper end `at` a point of axes whose unit is the point, such as of `blank_figure`.
+
+    Raises `NetworkError` if `network` is none.
+    """
+    return _draw(schematic(network, values=values), axes, at)
+
+
+def schematic(network: Network, *, values: bool = False) -> Schematic:
+    """Where everything in the drawing of a network is; with `values`, numbers stand below their names.
+
+    Raises `NetworkError` if `network` is none.
+    """
+    network = check_network(network)
+    if isinstance(network, Parallel | Series):
+        parts = [schematic(part, values=values) for part in network.parts]
+        if not parts:
+            raise NetworkError("A network without elements cannot be drawn. Give it at least one.")
+        return _side_by_side(parts) if isinstance(network, Parallel) else _in_a_column(parts)
+    (element,) = network.elements()
+    middle = Placed(element, element_label(element, values=values), 0.0, -HALF_HEIGHT)
+    return Schematic(HALF_WIDTH, middle.right, 2.0 * HALF_HEIGHT, (middle,))
+
+
+def element_label(element: Element, *, values: bool = False) -> str:
+    """The name of an element as it is drawn, with its value (if that is a number) in a second line if asked for."""
+    name, value = symbol(element.label), element.value
+    return name if isinstance(value, Free) or not values else f"{name}\n{printed(value, element.unit)}"
+
+
+def _side_by_side(parts: Sequence[Schematic]) -> Schematic:
+    """Parts between two bars; the ends of the whole are at the middle part, or between the two in the middle."""
+    xs = [0.0, *accumulate(one.right + _BETWEEN + other.left for one, other in pairwise(parts))]
+    middle = (xs[(len(xs) - 1) // 2] + xs[len(xs) // 2]) / 2.0
+    xs = [x - middle for x in xs]
+    inside = max(part.height for part in parts)
+    top, bottom = -_STUB, -_STUB - inside
+    lines: list[Line] = [((0.0, y), (0.0, y - _STUB)) for y in (0.0, bottom)]
+    lines += [((xs[0] - _OVERHANG, y), (xs[-1] + _OVERHANG, y)) for y in (top, bottom)]
+    at: list[Point] = []
+    for x, part in zip(xs, parts, strict=True):
+        lead = (inside - part.height) / 2.0
+        at.append((x, top - lead))
+        if lead:
+            lines += [((x, y), (x, y - lead)) for y in (top, bottom + lead)]
+    size = (parts[0].left - xs[0], parts[-1].right + xs[-1], inside + 2.0 * _STUB)
+    return _joined(parts, at, size, lines)
+
+
+def _in_a_column(parts: Sequence[Schematic]) -> Schematic:
+    heights = [part.height for part in parts]
+    at = [(0.0, -y) for y in accumulate(heights[:-1], initial=0.0)]
+    left, right = max(part.left for part in parts), max(part.right for part in parts)
+    return _joined(parts, at, (left, right, sum(heights)))
+
+
+def _joined(
+    parts: Sequence[Schematic], at: Sequence[Point], size: tuple[float, float, float], lines: Iterable[Line] = ()
+) -> Schematic:
+    there = [part.moved(*point) for part, point in zip(parts, at, strict=True)]
+    placed = tuple(one for elements, _ in there for one in elements)
+    return Schematic(*size, placed, (*lines, *(line for _, wires in there for line in wires)))
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A network and its title above its upper end, in a figure."""
+
+    title: str
+    drawing: Schematic
+
+    @property
+    def left(self) -> float:
+        return max(self.drawing.left, text_width(self.title) / 2.0)
+
+    @property
+    def right(self) -> float:
+        return max(self.drawing.right, text_width(self.title) / 2.0)
+
+    @property
+    def title_height(self) -> float:
+        return LEADING * len(self.title.splitlines())
+
+    @property
+    def height(self) -> float:
+        return self.title_height + _TITLE + self.drawing.height + 4.0 * _TERMINAL
+
+
+def _rows(cells: Iterable[_Cell], width: float) -> Iterator[list[_Cell]]:
+    row: list[_Cell] = []
+    for cell in cells:
+        if row and _row_width([*row, cell]) > width:
+            yield row
+            row = []
+        row.append(cell)
+    yield row
+
+
+def _row_width(row: Sequence[_Cell]) -> float:
+    return sum(cell.left + cell.right for cell in row) + (len(row) - 1) * _COLUMN
+
+
+def _draw(drawing: Schematic, axes: Axes, at: Point) -> Axes:
+    placed, lines = drawing.moved(*at)
+    x, y = at
+    strokes = [*lines, circle(x, y + _TERMINAL, _TERMINAL), circle(x, y - drawing.height - _TERMINAL, _TERMINAL)]
+    for one in placed:
+        strokes += [moved(line, one.x, one.y) for line in SYMBOLS[type(one.element)]]
+        write(axes, one.label, one.x + HALF_WIDTH + TO_LABEL, one.y, ha="left")
+    return stroke(strokes, axes)
+
+
+def _plain(title: str) -> str:
+    """Text in which a dollar begins no formula."""
+    return title.replace("$", r"\$")

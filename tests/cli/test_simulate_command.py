@@ -35,8 +35,7 @@ def test_everything_is_written_and_said(rattle: Path, tmp_path: Path, capsys: py
     assert out.isascii()
     assert str(folder) in err
     assert {path.name for path in folder.iterdir()} - {".lock"} == FILES
-    figures = {path.name for path in (folder / "figures").iterdir()}
-    assert figures == {"simulation.svg", "simulation.pdf", "simulation.png"}
+    assert {path.name for path in (folder / "figures").iterdir()} == {"simulation.svg", "simulation.png"}
 
 
 def test_files_hold_the_same_motion(rattle: Path, tmp_path: Path) -> None:

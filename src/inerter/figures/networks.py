@@ -82,7 +82,7 @@ class Schematic:
 def draw_networks(networks: Mapping[str, Network], folder: Path, name: str, *, values: bool = False) -> list[Path]:
     """Write the figure of some networks by their titles into `folder`; returns the files."""
     with styled():
-        return save(network_figure(networks, values=values), folder, name)
+        return save(network_figure(networks, values=values), folder, name, pdf=True)
 
 
 def network_figure(networks: Mapping[str, Network], *, values: bool = False, width: float = WIDE) -> Figure:

@@ -55,7 +55,7 @@ class Panel:
 
 
 def draw_simulation(result: SimulationResult, folder: Path, window: Window | None = None) -> list[Path]:
-    """Write the figure into `folder` as SVG, PDF and PNG; returns the files.
+    """Write the figure into `folder` as SVG and as PNG; returns the files.
 
     Raises `StudyError` for a `window` [s] with less than two samples.
     """

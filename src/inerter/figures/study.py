@@ -32,7 +32,7 @@ def study_figures(results: xr.Dataset) -> list[StudyFigure]:
 
 
 def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:
-    """Write all figures of a study into `folder`, each as SVG, PDF and PNG; returns the files."""
+    """Write all figures of a study into `folder`, each as SVG and as PNG; returns the files."""
     with styled():
         return [path for figure in study_figures(results) for path in save(figure.draw(), folder, figure.name)]
 

@@ -148,16 +148,16 @@ def log_axis(ax: Axes, which: str, *, least_ratio: float = _LEAST_RATIO) -> None
     axis.set_tick_params(which="minor", labelsize=7.0, width=0.4)
 
 
-def save(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write the figure as SVG, PDF and PNG (300 dpi) into `folder`; the same figure gives the same bytes.
+def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False) -> list[Path]:
+    """Write the figure as SVG and PNG, on request as PDF too, into `folder`; the same figure gives the same bytes.
 
     >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
     ...     [path.name for path in save(new_figure(height=2.0)[0], Path(folder), "empty")]
-    ['empty.svg', 'empty.pdf', 'empty.png']
+    ['empty.svg', 'empty.png']
     """
     folder.mkdir(parents=True, exist_ok=True)
-    files = [folder / f"{name}.{kind}" for kind in ("svg", "pdf", "png")]
+    files = [folder / f"{name}.{kind}" for kind in ("svg", "pdf", "png") if pdf or kind != "pdf"]
     with styled():
         for file in files:
             figure.savefig(file, dpi=_DPI, metadata=_UNDATED[file.suffix])

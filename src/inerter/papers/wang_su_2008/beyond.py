@@ -1,0 +1,85 @@
+"""What the paper did not do: designs that are best with friction, and how much of what is real a design can bear."""
+
+from __future__ import annotations
+
+from inerter.methods.expected_value import ExpectedValue
+from inerter.methods.method import Method
+from inerter.methods.norm import Norm
+from inerter.optimisation.budget import budget
+from inerter.optimisation.optimise import optimise
+from inerter.papers.wang_su_2008.rows import RUNS
+from inerter.papers.wang_su_2008.source import index_of, linear_rows, study
+from inerter.vehicle.cars import Vehicle
+
+_ROADS = ExpectedValue(realisations=RUNS, jobs=1)
+_OPTIMA = {
+    "J1": ("S2-10N", "S2-100N", "S3-10N", "S3-100N", "S3-soft-10N"),
+    "J3": ("S2-10N", "S2-100N", "S3-10N", "S3-100N", "S3-soft-10N"),
+    "J5": ("S2-100N", "S3-100N"),
+}
+_BUDGETS: dict[str, tuple[str, str, tuple[float, float], Method]] = {  # what is asked of which layout: the element, its bounds in SI units, and how
+    "friction": ("-10N", "f_10", (1.0, 1e4), ExpectedValue(realisations=8, jobs=1)),
+    "shaft stiffness": ("-soft", "ks", (1e4, 1e8), Norm()),
+    "backlash": ("-gap", "e", (1e-6, 1e-2), ExpectedValue(realisations=8, jobs=1)),
+}
+
+
+def optimum_names() -> list[str]:
+    """The designs to be found: index and layout."""
+    return [f"{index} {layout}" for index, layouts in _OPTIMA.items() for layout in layouts]
+
+
+def compute_optimum(name: str) -> dict[str, object]:
+    """The design that is best with friction, and how much better it is than the best linear one with friction."""
+    index, layout = name.split()
+    source = study("friction1")
+    found = optimise(source.design(layout), index_of(index, source), _ROADS, seed=source.seed)
+    over = found.over_linear
+    assert over is not None
+    return {
+        "value": found.value,
+        "error": found.estimate.standard_error or 0.0,
+        "unit": found.unit,
+        "parameters": found.parameters,
+        "linear_value": over.second.value,
+        "percent": over.percent,
+        "percent_error": over.percent_error,
+        "status": str(found.status),
+    }
+
+
+def budget_names() -> list[str]:
+    """The budgets to be found: index, layout and what it is about."""
+    return [f"{index} {layout} {what}" for what in _BUDGETS for index in ("J1", "J3") for layout in ("S2", "S3")]
+
+
+def compute_budget(name: str) -> dict[str, object]:
+    """The most friction or backlash, or the softest shaft, with which a printed design still beats the printed S1."""
+    index, layout, what = name.split(maxsplit=2)
+    kind, element, bounds, method = _BUDGETS[what]
+    found = budget(
+        _printed(index, layout, kind),
+        _printed(index, "S1", ""),
+        index_of(index, study("friction1")),
+        parameter=element,
+        method=method,
+        bounds=bounds,
+    )
+    return {
+        "value": found.value,
+        "error": found.standard_error,
+        "low": found.interval[0],
+        "high": found.interval[1],
+        "unit": found.unit,
+        "status": str(found.status),
+    }
+
+
+def _printed(index: str, layout: str, kind: str) -> Vehicle:
+    """The printed design of Table 1 for an index, with what is asked of it."""
+    twin = "-soft" if kind in ("-soft", "-gap") and layout != "S1" else ""
+    row = next(r for r in linear_rows() if (r.table, r.index, r.layout) == (1, index, layout + twin))
+    source = study("table1" if kind in ("", "-soft") else "friction1")
+    vehicle: Vehicle = source.design(layout + kind).with_values(row.parameters)
+    return vehicle
+

@@ -1,0 +1,204 @@
+"""The whole paper: its parts as lists of small tasks, spread over processes, kept as they are done, put together."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+import inerter
+from inerter.errors import StudyError
+from inerter.optimisation.threads import one_blas_thread
+from inerter.papers.wang_su_2008 import agreement, beyond, curves, linear, rows
+from inerter.papers.wang_su_2008.claims import Claim, Evidence, judge
+from inerter.papers.wang_su_2008.linear import Linear
+from inerter.papers.wang_su_2008.rows import SimulatedRow
+from inerter.papers.wang_su_2008.source import study
+from inerter.study.run import FIGURES, REPORT, StudyResult, claimed, run_study, write_text
+from inerter.study.workers import spread
+
+JOURNAL = "tasks.jsonl"
+PARTS = (
+    "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims", "methods", "optima", "budgets"
+)  # fmt: skip
+_CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
+Numbers = dict[str, Any]
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One small piece of work: a row of a table, a point of a curve, an optimum, a budget."""
+
+    part: str
+    name: str
+    given: tuple[tuple[str, float], ...] = ()  # parameters that another part has found
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """What tells it from others."""
+        return self.part, self.name
+
+
+def work(task: Task) -> tuple[tuple[str, str], Numbers]:
+    """The numbers of one task."""
+    with one_blas_thread():
+        match task.part:
+            case "table1" | "table2" | "table3":
+                return task.key, rows.compute(int(task.part[-1]), task.name)
+            case "curves":
+                return task.key, curves.compute(task.name, dict(task.given))
+            case "methods":
+                return task.key, agreement.compute(task.name)
+            case "optima":
+                return task.key, beyond.compute_optimum(task.name)
+            case "budgets":
+                return task.key, beyond.compute_budget(task.name)
+    raise ValueError(task.part)
+
+
+@dataclass(frozen=True, eq=False)
+class Reproduction:
+    """What was computed; what was not asked for is None or empty."""
+
+    parts: tuple[str, ...]
+    studies: dict[str, StudyResult] = field(default_factory=dict)
+    linear: Linear | None = None
+    rows: dict[tuple[int, str], SimulatedRow] = field(default_factory=dict)
+    curves: xr.Dataset | None = None  # Figures 11, 13 and 14 over k
+    methods: dict[str, Numbers] = field(default_factory=dict)
+    optima: dict[str, Numbers] = field(default_factory=dict)
+    budgets: dict[str, Numbers] = field(default_factory=dict)
+    claims: list[Claim] = field(default_factory=list)
+
+    @property
+    def figure11(self) -> xr.Dataset | None:
+        """Figure 11's data."""
+        return self.studies["figure11"].data.sel({"method": "norm"}) if "figure11" in self.studies else None
+
+
+def reproduce(
+    folder: Path,
+    *,
+    only: Sequence[str] = (),
+    jobs: int = 1,
+    resume: bool = False,
+    force: bool = False,
+    progress: Progress = lambda what, done, total: None,
+) -> Reproduction:
+    """Recompute the paper, or some of its `PARTS`, into `folder`; what was finished before is kept with `resume`.
+
+    Raises `StudyError` if `folder` holds something and neither `resume` nor `force` is given, or for an unknown part.
+    """
+    unknown = [part for part in only if part not in PARTS]
+    if unknown:
+        raise StudyError(f"There is no part named {unknown[0]!r} (there are: {', '.join(PARTS)}).")
+    wanted = {part for part in only or PARTS} | (set(_CLAIMS) if not only or "claims" in only else set())
+    drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
+    needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
+    with claimed(folder, own=(*linear.STUDIES, JOURNAL, FIGURES, REPORT), resume=resume, force=force):
+        studies = {
+            name: run_study(study(name), folder / name, jobs=jobs, resume=resume, progress=_named(progress, name))
+            for name in needed
+        }
+        tasks = [Task(part, name) for part in ("table1", "table2", "table3") if part in wanted for name in _rows(part)]
+        tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
+        listed = {"methods": agreement.names, "optima": beyond.optimum_names, "budgets": beyond.budget_names}
+        tasks += [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
+        found = _run(tasks, folder / JOURNAL, jobs, resume, progress)
+    return _put_together(tuple(part for part in PARTS if part in wanted), studies, found)
+
+
+def _put_together(
+    parts: tuple[str, ...], studies: dict[str, StudyResult], found: dict[tuple[str, str], Numbers]
+) -> Reproduction:
+    figure11 = studies["figure11"].data.sel({"method": "norm"}) if "figure11" in studies else None
+
+    def of(part: str) -> dict[str, Numbers]:
+        return {name: numbers for (p, name), numbers in found.items() if p == part}
+
+    recomputed = linear.recompute(studies) if "linear" in parts else None
+    judged = {
+        (table, name): rows.judged(table, name, numbers)
+        for table in (1, 2, 3)
+        for name, numbers in of(f"table{table}").items()
+    }
+    points = of("curves")
+    drawn = curves.dataset(points, figure11) if points and figure11 is not None else None
+    evidence = Evidence(
+        figure11=figure11 if "linear" in parts else None,
+        curves=drawn if {"figure13", "figure14"} <= set(parts) else None,
+        rows=judged,
+        linear={(c.row.table, f"{c.row.index} {c.row.case}"): c.exact for c in recomputed.compared} if recomputed else {},
+    )
+    return Reproduction(
+        parts=parts,
+        studies=studies,
+        linear=recomputed,
+        rows=judged,
+        curves=drawn,
+        methods=of("methods"),
+        optima=of("optima"),
+        budgets=of("budgets"),
+        claims=judge(evidence),
+    )
+
+
+def _rows(part: str) -> list[str]:
+    return rows.names(int(part[-1]))
+
+
+def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
+    """A point of Figure 13 or 14 with the parameters of its linear optimum, which Figure 11 has found."""
+    layout, index, point = name.split()
+    best = studies["figure11"].data.sel({"layout": curves.linear_twin(layout), "index": index}).isel(k=int(point))
+    values = zip(best.parameter.values.tolist(), best.parameter_value.values.tolist(), strict=True)
+    return Task("curves", name, tuple((p, value) for p, value in values if value == value))
+
+
+def _run(
+    tasks: list[Task], journal: Path, jobs: int, resume: bool, progress: Progress
+) -> dict[tuple[str, str], Numbers]:
+    """The numbers of all tasks; each is in the journal as soon as it is there."""
+    found = _read(journal) if resume else {}
+    pending = [task for task in tasks if task.key not in found]
+    if not found:
+        write_text(journal, json.dumps({"inerter": inerter.__version__}) + "\n")
+    if tasks:
+        progress("simulations", len(tasks) - len(pending), len(tasks))
+    with journal.open("a", encoding="utf-8") as stream:
+        for i, (key, numbers) in enumerate(spread(work, pending, jobs, lambda task: task.part), 1):
+            found[key] = numbers
+            stream.write(json.dumps([*key, numbers]) + "\n")
+            stream.flush()
+            progress("simulations", len(tasks) - len(pending) + i, len(tasks))
+    asked = {task.key for task in tasks}
+    return {task.key: found[task.key] for task in tasks if task.key in asked}
+
+
+def _read(journal: Path) -> dict[tuple[str, str], Numbers]:
+    """What was finished before by this version; a line that was cut short is left out."""
+    try:
+        header, *lines = journal.read_text(encoding="utf-8").splitlines()
+        if json.loads(header) != {"inerter": inerter.__version__}:
+            raise StudyError(f"{journal}: written by another version. Start anew with --force.")
+    except (OSError, ValueError) as error:
+        if isinstance(error, StudyError):
+            raise
+        return {}
+    found = {}
+    for line in lines:
+        try:
+            part, name, numbers = json.loads(line)
+        except ValueError:
+            break
+        found[part, name] = numbers
+    return found
+
+
+def _named(progress: Progress, name: str) -> Callable[[int, int, object], None]:
+    return lambda done, total, outcome: progress(name, done, total)

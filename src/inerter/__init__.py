@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from inerter.indices.index import LoadCarrying as LoadCarrying
     from inerter.indices.index import RideComfort as RideComfort
     from inerter.indices.index import TyreLoad as TyreLoad
+    from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
+    from inerter.methods.excitation import MultisineExcitation as MultisineExcitation
+    from inerter.methods.excitation import NoiseExcitation as NoiseExcitation
     from inerter.methods.method import Estimate as Estimate
     from inerter.methods.method import evaluate as evaluate
     from inerter.methods.method import evaluate_many as evaluate_many
@@ -69,6 +72,7 @@ __version__ = version("inerter")
 __all__ = [
     "GROUND",
     "LAYOUTS",
+    "ApproximateLinear",
     "Batch",
     "Coordinate",
     "Damper",
@@ -83,6 +87,8 @@ __all__ = [
     "LoadCarrying",
     "Measures",
     "Mechanism",
+    "MultisineExcitation",
+    "NoiseExcitation",
     "Norm",
     "Optimum",
     "QuarterCar",
@@ -124,6 +130,7 @@ __all__ = [
 ]
 
 _HOME = {
+    "ApproximateLinear": "methods.approximate_linear",
     "Batch": "simulation.batch",
     "simulate_many": "simulation.batch",
     "profile": "signals.records",
@@ -154,6 +161,8 @@ _HOME = {
     "LoadCarrying": "indices.index",
     "Measures": "vehicle.mechanism",
     "Mechanism": "vehicle.mechanism",
+    "MultisineExcitation": "methods.excitation",
+    "NoiseExcitation": "methods.excitation",
     "Norm": "methods.norm",
     "Optimum": "optimisation.optimise",
     "QuarterCar": "vehicle.cars",

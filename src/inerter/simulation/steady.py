@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +14,12 @@ from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
+from inerter.simulation.start import initial_state
 from inerter.simulation.trajectory import Repetition
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
-_PERIODS = 300
+_PERIODS, _RECORDED = 300, 12
 _REPEATS, _ENOUGH = 1e-10, 1e-6  # changes of the state over a period, relative to its size
 
 
@@ -44,14 +46,42 @@ def common_period(signals: Sequence[Signal | None]) -> float:
     return period
 
 
-def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
-    """Repeat one period until the state repeats; an integration at the start of the one to record."""
-    last = table.time.size - 1
+def repeating(table: InputTable) -> InputTable:
+    """The same period with its own end before it, so that inputs may jump where it begins anew."""
     before, slope = table.value_before.copy(), table.slope_before.copy()
-    before[0], slope[0] = before[last], slope[last]
+    before[0], slope[0] = before[-1], slope[-1]
     special = table.special
     if not np.array_equal(before[0], table.value[0]) and special[0] != 0:
         special = np.concatenate([[0], special])
+    return replace(table, value_before=before, slope_before=slope, special=special)
+
+
+def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integration, float]:
+    """From rest, one period to settle and then the next, again until the state repeats; the last one, recorded.
+
+    Also how well it repeats: the change of the state over that period, relative to its size. `table` is one period
+    that is repeated.
+    """
+    last = table.time.size - 1
+    state = initial_state(system, table.value_before[0], "rest")
+    run = event_driven.start(system, table, state, keep=False)
+    run.advance(last)
+    mismatch = np.inf
+    for _ in range(_RECORDED):
+        if not run.status.ok or mismatch <= _ENOUGH:
+            break
+        begun = run.state
+        run = event_driven.start(system, table, begun)
+        run.advance(last)
+        mismatch = run.mismatch(begun)
+    return run, mismatch
+
+
+def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
+    """Repeat one period until the state repeats; an integration at the start of the one to record."""
+    last = table.time.size - 1
+    again = repeating(table)
+    before, slope, special = again.value_before, again.slope_before, again.special
     quick = event_driven.start(system, table, state, keep=False)
     quick.advance(last)
     quick.record = quick.record._replace(value_before=before, slope_before=slope, special=special)

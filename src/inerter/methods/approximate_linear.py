@@ -7,8 +7,8 @@ gain is the size of the output over that of the input, and takes the place of th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,26 +18,21 @@ from inerter.checks import is_number
 from inerter.errors import OK, IndicatorError, MechanismError, Status, StatusKind
 from inerter.indices.index import Combination, Index, Question
 from inerter.methods.excitation import Drive, Excitation, MultisineExcitation, NoiseExcitation
+from inerter.methods.gains import LinearModel, Runs, largest_gain
 from inerter.methods.linear import CONVENTIONS, LinearProblem, arrivals, corner_of, linear_problem
 from inerter.methods.method import Estimate, Objective
 from inerter.networks.elements import Friction, Gap
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak
-from inerter.norms.response import frequency_response
-from inerter.simulation.inputs import check_holds
-from inerter.simulation.observe import trajectory_of
-from inerter.simulation.steady import recorded_period
 from inerter.systems.descriptor import close
 from inerter.systems.graph import full_graph
-from inerter.systems.linear import LinearSystem
-from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.systems.piecewise import piecewise
 from inerter.vehicle.cars import Vehicle
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _ROAD_RMS = math.sqrt(1e-8 / 1e-3)  # [m] noise of 1e-8 m^2/Hz, held for 1 ms
 _FORCE_RMS = math.sqrt(200.0 / 1e-3) / 181.75  # [N/kg] 200 N^2/Hz on the quarter car, twice the size on the half car
-_REPEATS = 1e-4  # change of the state over a period, relative to its size, that leaves an estimate alone
 _DECAYED = math.log(100.0)  # what a period must take off the linear model's motions for its harmonics to resolve them
 _MOST = 1000  # realisations
 
@@ -57,14 +52,15 @@ class ApproximateLinear:
     is no linear model, or its motions outlast the period, gains stand alone, and a note says so. A linear design gets
     its norm.
 
-    With "paper2008" the input is the paper's noise, held for 1 ms and repeated after 100 s, and squared gains are the
-    mean of the raw ratios |Y/U|^2 at the instants of the samples, without the linear model; J3 of a half car is
-    divided by s + 2 pi instead of s. Peak gains are smoothed here too, as mean |Y|^2 over mean |U|^2: the maximum of
-    raw ratios over 50 000 frequencies has no expectation.
+    With "paper2008" the input is the paper's noise, held for 1 ms and repeated after 100 s, and gains are the raw
+    ratios |Y/U| at the instants of the samples, without the linear model; J3 of a half car is divided by s + 2 pi
+    instead of s. The value is the median over realisations, because the square of a raw ratio has no mean where
+    friction adds what is not of the input: |U| may come close to zero. Peak gains are smoothed here too, as mean |Y|^2
+    over mean |U|^2: the largest of 50 000 raw ratios says nothing of the design.
 
-    `seed` decides the realisations, which are the same for every design. The standard error is that of the mean over
-    realisations, the interval Student's. `relative_error` asks for realisations until the standard error is below that
-    part of the value.
+    `seed` decides the realisations, which are the same for every design. The standard error is that of the mean (or
+    median) over realisations, the interval Student's. `relative_error` asks for realisations until the standard error
+    is below that part of the value.
 
     Raises `IndicatorError` for settings that cannot be.
 
@@ -79,7 +75,7 @@ class ApproximateLinear:
 
     road: Excitation | None = None
     force: Excitation | None = None
-    realisations: int = 8
+    realisations: int = 6
     relative_error: float | None = None
     smoothing: float = 0.2
     seed: int = 0
@@ -113,16 +109,15 @@ class ApproximateLinear:
         """
         mechanism = vehicle.mechanism()
         questions = [index.question(mechanism) for index in indices]
-        linears = [_linear_model(mechanism, question, self.conventions) for question in questions]
         if not always and not _is_nonlinear(mechanism):
-            problems = [linear_problem(mechanism, question, CONVENTIONS[self.conventions]) for question in questions]
-            return [_known(problem.estimate(close(problem.descriptor, {}))) for problem in problems]
+            return [self._known(mechanism, question) for question in questions]
+        linears = [_linear_model(mechanism, question, self.conventions) for question in questions]
         drives = [self._drive(mechanism, question) for question in questions]
-        system, runs = piecewise(vehicle), dict[Drive, _Runs]()
+        system, runs = piecewise(vehicle), dict[Drive, Runs]()
         for question, drive in zip(questions, drives, strict=True):
             names = runs[drive].outputs if drive in runs else ()
             names = tuple(dict.fromkeys((*names, *(output.output for output in question.outputs))))
-            runs[drive] = _Runs(system, drive, names, self.seed)
+            runs[drive] = Runs(system, drive, names, int(self.seed))
         return [
             self._answer(question, linear, runs[drive])
             for question, linear, drive in zip(questions, linears, drives, strict=True)
@@ -146,6 +141,12 @@ class ApproximateLinear:
     def _raw(self) -> bool:
         return self.conventions == "paper2008"
 
+    def _known(self, mechanism: Mechanism, question: Question) -> Estimate:
+        """A linear design's norm, as an estimate without scatter."""
+        problem = linear_problem(mechanism, question, CONVENTIONS[self.conventions])
+        norm = problem.estimate(close(problem.descriptor, {}))
+        return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
+
     def _drive(self, mechanism: Mechanism, question: Question) -> Drive:
         """Which inputs are moved, by what and how late."""
         named, late = arrivals(mechanism, question)
@@ -157,26 +158,26 @@ class ApproximateLinear:
         inputs = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
         return Drive(excitation, rms, tuple(delays.get(name) for name in inputs))
 
-    def _answer(self, question: Question, linear: _LinearModel | None, runs: _Runs) -> Estimate:
+    def _answer(self, question: Question, linear: LinearModel | None, runs: Runs) -> Estimate:
         if linear is not None and linear.status.kind is StatusKind.DIRECT_TERM:
             return Estimate(math.inf, question.unit, linear.status)
         known, notes = self._control(linear, runs.drive)
         if question.amplitude is not None:
             notes = (*notes, "the amplitude of a sine says nothing here: the excitation has its own size")
-        count, estimate = self.realisations, None
+        count, estimate = int(self.realisations), None
         while estimate is None or not self._is_settled(estimate, count):
             count = count if estimate is None else min(2 * count, _MOST)
             squares, inputs = runs.upto(count)
             if not runs.status.ok:
                 return Estimate(math.nan, question.unit, runs.status, notes=notes)
             places = [runs.outputs.index(output.output) for output in question.outputs]
-            scale = inputs if self._raw and question.combination is not Combination.PEAK_GAIN else inputs.mean(axis=0)
-            gains = squares[:, places] / np.broadcast_to(scale, inputs.shape)[:, None]
+            pooled = not self._raw or question.combination is Combination.PEAK_GAIN
+            gains = _gains(squares[:, places], inputs[:, None], pooled)
             estimate = self._combine(question, known, gains * self._filter(question, runs.drive), runs.drive)
         status = runs.warning
         if status.ok and self.relative_error is not None and not self._reached(estimate):
             status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
-        return _with(estimate, status, notes)
+        return replace(estimate, status=status, notes=notes)
 
     def _is_settled(self, estimate: Estimate, count: int) -> bool:
         return self.relative_error is None or count >= _MOST or self._reached(estimate)
@@ -185,7 +186,7 @@ class ApproximateLinear:
         error, asked = estimate.standard_error or 0.0, self.relative_error or math.inf
         return error <= asked * estimate.value
 
-    def _control(self, linear: _LinearModel | None, drive: Drive) -> tuple[_LinearModel | None, tuple[str, ...]]:
+    def _control(self, linear: LinearModel | None, drive: Drive) -> tuple[LinearModel | None, tuple[str, ...]]:
         """The linear model if it can serve, and what to say if not."""
         if self._raw:
             return None, ()
@@ -205,29 +206,34 @@ class ApproximateLinear:
         corner = corner_of(question, delays, CONVENTIONS[self.conventions]) or 0.0
         return np.asarray(1.0 / (drive.omega**2 + corner**2))
 
-    def _combine(self, question: Question, known: _LinearModel | None, gains: Array, drive: Drive) -> Estimate:
+    def _combine(self, question: Question, known: LinearModel | None, gains: Array, drive: Drive) -> Estimate:
         """The index from squared gains (realisations, outputs, harmonics)."""
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
         scale = 1.0 if question.road is None else question.road.velocity_intensity
         weights = scale * np.array([abs(output.weight) for output in question.outputs])
         if question.combination is Combination.PEAK_GAIN:
-            value, scatter, peaks = _peak(rest[:, 0], lines, known, drive.omega, self._window(drive.omega[0]))
-            value, scatter = weights[0] * value, weights[0] * scatter
-            peaks = tuple(Peak(peak.omega, weights[0] * peak.gain) for peak in peaks)
+            weight = float(weights[0])
+            value, scatter, found = largest_gain(rest[:, 0], lines, known, drive.omega, self._window(drive.omega))
+            value, scatter = weight * value, weight * scatter
+            peaks = tuple(Peak(peak.omega, weight * peak.gain) for peak in found)
         else:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
             value, peaks = float(weights @ sizes), ()
             scatter = (sums - sums.mean(axis=0)) @ (0.5 * weights / np.maximum(sizes, 1e-300))
+            if self._raw:
+                single = np.sqrt(sums) @ weights
+                value = float(np.median(single))
+                scatter = math.sqrt(0.5 * math.pi) * (single - single.mean())
         count = scatter.size
         error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
         reach = float(student.ppf(0.975, count - 1)) * error
         return Estimate(value, question.unit, OK, error, (value - reach, value + reach), count, peaks)
 
-    def _window(self, spacing: float) -> Array:
-        reach = int(2.0 * math.pi * self.smoothing / spacing * (1.0 + 1e-9))
+    def _window(self, omega: Array) -> Array:
+        reach = min(int(2.0 * math.pi * self.smoothing / omega[0] * (1.0 + 1e-9)), (omega.size - 1) // 2)
         window: Array = np.hanning(2 * reach + 3)[1:-1]
         return np.asarray(window / window.sum())
 
@@ -264,98 +270,19 @@ class SampledObjective:
         return np.array([value]), gradient[None]
 
 
-@dataclass(frozen=True, eq=False)
-class _LinearModel:
-    """What is known of the linear model of a design for one question."""
+def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
+    """Squared gains of each realisation; their mean is that of the ratios, or, if `pooled`, the ratio of the means.
 
-    system: LinearSystem
-    norms: Array  # of its outputs; infinite for a peak gain, which needs none
-    slowest: float  # rate of its slowest motion [rad/s]
-    status: Status
-
-    def squares(self, omega: Array) -> Array:
-        """Squared gains (outputs, frequencies) from the road's velocity or the force."""
-        return np.asarray(np.abs(frequency_response(self.system, omega)[:, :, 0].T) ** 2)
-
-
-@dataclass(eq=False)
-class _Runs:
-    """Power spectra of some outputs of a design, one realisation after the other as they are asked for."""
-
-    system: PiecewiseSystem
-    drive: Drive
-    outputs: tuple[str, ...]
-    seed: int
-    squares: list[Array] = field(default_factory=list)  # (outputs, harmonics)
-    inputs: list[Array] = field(default_factory=list)  # (harmonics,)
-    status: Status = OK
-    warning: Status = OK
-
-    def upto(self, count: int) -> tuple[Array, Array]:
-        """Of the first `count` realisations, or fewer if one had to stop, which `status` then tells."""
-        while len(self.squares) < count and self.status.ok:
-            self._add(len(self.squares))
-        return np.array(self.squares), np.array(self.inputs)
-
-    def _add(self, number: int) -> None:
-        seed = int(np.random.SeedSequence([self.seed, number]).generate_state(1)[0])
-        if number == 0:
-            check_holds(self.system, self.drive.signals(seed))
-        table, power = self.drive.realisation(seed)
-        run, mismatch = recorded_period(self.system, table)
-        if not run.status.ok:
-            self.status = Status(StatusKind.FAILED, f"realisation {number + 1}: {run.status.message}")
-            return
-        if mismatch > _REPEATS:
-            self.warning = Status(
-                StatusKind.INACCURATE,
-                f"in realisation {number + 1} the state still changes by {mismatch:.1e} of its size over a period; "
-                f"take a longer one",
-            )
-        trajectory = trajectory_of(run, None, "", run.state)
-        self.squares.append(np.array([self.drive.power(trajectory[name]) for name in self.outputs]))
-        self.inputs.append(power)
-
-
-def _peak(
-    rest: Array, lines: Array | None, known: _LinearModel | None, omega: Array, window: Array
-) -> tuple[float, Array, tuple[Peak, ...]]:
-    """The largest gain, its deviation in each realisation, and the local maxima, the highest first.
-
-    Squared gains less those of the linear model, `rest` (realisations, harmonics), are smoothed; those of the model,
-    `lines`, are not, and between harmonics too they are known.
+    What a realisation adds to a ratio of means is its deviation from it, to first order.
     """
-    share = np.convolve(np.ones(omega.size), window, "same")
-    smooth = np.array([np.convolve(row, window, "same") for row in rest]) / share
-    mean = smooth.mean(axis=0)
-    total = mean if lines is None else mean + lines[0]
-
-    def between(at: Array) -> Array:
-        """Squared gains at any frequencies of the band."""
-        linear = 0.0 if known is None else known.squares(at)[0]
-        return np.asarray(np.maximum(np.interp(at, omega, mean) + linear, 0.0))
-
-    found = sorted((_refined(between, omega, i) for i in _summits(total, window.size)), key=lambda peak: -peak.gain)
-    best = found[0]
-    deviation = np.array([np.interp(best.omega, omega, row) for row in smooth - mean])
-    return best.gain, deviation / (2.0 * max(best.gain, 1e-300)), tuple(found)
+    if not pooled:
+        return np.asarray(outputs / inputs)
+    size = inputs.mean(axis=0)
+    ratio = outputs.mean(axis=0) / size
+    return np.asarray(ratio + (outputs - ratio * inputs) / size)
 
 
-def _summits(values: Array, reach: int) -> list[int]:
-    """Places of values that are the largest within `reach` to both sides, and not below a quarter of the largest."""
-    high = np.flatnonzero(values >= 0.25 * values.max())
-    return [int(i) for i in high if values[i] >= values[max(i - reach, 0) : i + reach + 1].max()]
-
-
-def _refined(squares: Callable[[Array], Array], omega: Array, i: int) -> Peak:
-    """The maximum between the neighbours of a harmonic."""
-    at = np.linspace(omega[max(i - 1, 0)], omega[min(i + 1, omega.size - 1)], 129)
-    values = squares(at)
-    best = int(np.argmax(values))
-    return Peak(float(at[best]), float(np.sqrt(values[best])))
-
-
-def _linear_model(mechanism: Mechanism, question: Question, conventions: str) -> _LinearModel | None:
+def _linear_model(mechanism: Mechanism, question: Question, conventions: str) -> LinearModel | None:
     """The linear model of a mechanism, or None where friction or a gap alone holds something."""
     try:
         problem: LinearProblem = linear_problem(mechanism, question, CONVENTIONS[conventions])
@@ -366,9 +293,9 @@ def _linear_model(mechanism: Mechanism, question: Question, conventions: str) ->
         return None
     slowest = float(-np.linalg.eigvals(system.A).real.max(initial=-math.inf))
     if question.combination is Combination.PEAK_GAIN:
-        return _LinearModel(system, np.full(1, np.inf), slowest, OK)
+        return LinearModel(system, np.full(1, np.inf), slowest, OK)
     norms = h2(system, problem.pade_order)
-    return _LinearModel(system, norms.outputs, slowest, norms.status)
+    return LinearModel(system, norms.outputs, slowest, norms.status)
 
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:
@@ -382,17 +309,6 @@ def _inertia_felt(mechanism: Mechanism, name: str) -> float:
     inertia = {coordinate.name: coordinate.inertia for coordinate in mechanism.coordinates}
     (port,) = (force.port for force in mechanism.forces if force.name == name)
     return 1.0 / sum(lever**2 / inertia[coordinate] for coordinate, lever in port.items() if lever)
-
-
-def _known(estimate: Estimate) -> Estimate:
-    """A norm as an estimate without scatter."""
-    value = estimate.value
-    return Estimate(value, estimate.unit, estimate.status, 0.0, (value, value), 0, estimate.peaks, estimate.notes)
-
-
-def _with(estimate: Estimate, status: Status, notes: tuple[str, ...]) -> Estimate:
-    e = estimate
-    return Estimate(e.value, e.unit, status, e.standard_error, e.interval, e.realisations, e.peaks, notes)
 
 
 def _check_whole(what: str, value: object, least: int, most: int) -> None:

@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     from inerter.indices.index import LoadCarrying as LoadCarrying
     from inerter.indices.index import RideComfort as RideComfort
     from inerter.indices.index import TyreLoad as TyreLoad
+    from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
     from inerter.methods.compare import Comparison as Comparison
     from inerter.methods.compare import compare as compare
     from inerter.methods.expected_value import ExpectedValue as ExpectedValue
+    from inerter.methods.excitation import MultisineExcitation as MultisineExcitation
+    from inerter.methods.excitation import NoiseExcitation as NoiseExcitation
     from inerter.methods.method import Estimate as Estimate
     from inerter.methods.method import evaluate as evaluate
     from inerter.methods.method import evaluate_many as evaluate_many
@@ -74,6 +77,7 @@ __version__ = version("inerter")
 __all__ = [
     "GROUND",
     "LAYOUTS",
+    "ApproximateLinear",
     "Batch",
     "Budget",
     "Comparison",
@@ -91,6 +95,8 @@ __all__ = [
     "LoadCarrying",
     "Measures",
     "Mechanism",
+    "MultisineExcitation",
+    "NoiseExcitation",
     "Norm",
     "Optimum",
     "QuarterCar",
@@ -134,6 +140,7 @@ __all__ = [
 ]
 
 _HOME = {
+    "ApproximateLinear": "methods.approximate_linear",
     "Batch": "simulation.batch",
     "simulate_many": "simulation.batch",
     "profile": "signals.records",
@@ -169,6 +176,8 @@ _HOME = {
     "LoadCarrying": "indices.index",
     "Measures": "vehicle.mechanism",
     "Mechanism": "vehicle.mechanism",
+    "MultisineExcitation": "methods.excitation",
+    "NoiseExcitation": "methods.excitation",
     "Norm": "methods.norm",
     "Optimum": "optimisation.optimise",
     "QuarterCar": "vehicle.cars",

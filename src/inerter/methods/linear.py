@@ -48,13 +48,6 @@ def check_conventions(name: object) -> None:
         raise IndicatorError(f"There are no conventions named {name!r} (known: {', '.join(CONVENTIONS)}).")
 
 
-def corner_of(question: Question, delays: Array, conventions: Conventions) -> float | None:
-    """Corner [rad/s] of the high-pass filter that the question asks for, or the conventions where roads arrive late."""
-    if question.high_pass is None and question.over_s and np.ptp(delays) > 0.0:
-        return conventions.corner
-    return question.high_pass
-
-
 @dataclass(frozen=True, eq=False)
 class LinearProblem:
     """A question put to the linear model of a mechanism: a descriptor, and what to do with its system."""
@@ -102,10 +95,23 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
         len(question.outputs) != 1 or len(question.inputs) != 1 or question.road or question.high_pass
     ):
         raise IndicatorError("A peak gain goes from one force to one output, without a road and without a filter.")
-    inputs, delays = question.inputs, np.zeros(len(question.inputs))
-    if question.road is not None:
-        distance = {road.name: road.distance for road in mechanism.roads}
-        inputs = tuple(sorted(inputs, key=distance.__getitem__))
-        delays = np.array([distance[name] for name in inputs]) / question.road.speed
+    inputs, delays = arrivals(mechanism, question)
+    corner = corner_of(question, delays, conventions)
     descriptor = describe(mechanism, inputs, [output.output for output in question.outputs])
-    return LinearProblem(question, descriptor, delays, conventions.pade_order, corner_of(question, delays, conventions))
+    return LinearProblem(question, descriptor, delays, conventions.pade_order, corner)
+
+
+def arrivals(mechanism: Mechanism, question: Question) -> tuple[tuple[str, ...], Array]:
+    """The inputs of a question in the order in which its source reaches them, and when it does [s]."""
+    if question.road is None:
+        return question.inputs, np.zeros(len(question.inputs))
+    distance = {road.name: road.distance for road in mechanism.roads}
+    inputs = tuple(sorted(question.inputs, key=distance.__getitem__))
+    return inputs, np.array([distance[name] for name in inputs]) / question.road.speed
+
+
+def corner_of(question: Question, delays: Array, conventions: Conventions) -> float | None:
+    """The corner [rad/s] of the high-pass filter on every output: the question's own, or that of the conventions."""
+    if question.high_pass is None and question.over_s and np.ptp(delays) > 0.0:
+        return conventions.corner
+    return question.high_pass

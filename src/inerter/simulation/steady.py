@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +14,12 @@ from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
+from inerter.simulation.start import initial_state
 from inerter.simulation.trajectory import Repetition
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
-_PERIODS, _FEW_PERIODS = 300, 30
+_PERIODS, _RECORDED, _FEW_PERIODS = 300, 12, 30
 _REPEATS, _ENOUGH = 1e-10, 1e-6  # changes of the state over a period, relative to its size
 
 
@@ -44,12 +46,42 @@ def common_period(signals: Sequence[Signal | None]) -> float:
     return period
 
 
+def repeating(table: InputTable) -> InputTable:
+    """The same period with its own end before it, so that inputs may jump where it begins anew."""
+    before, slope = table.value_before.copy(), table.slope_before.copy()
+    before[0], slope[0] = before[-1], slope[-1]
+    special = table.special
+    if not np.array_equal(before[0], table.value[0]) and special[0] != 0:
+        special = np.concatenate([[0], special])
+    return replace(table, value_before=before, slope_before=slope, special=special)
+
+
+def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integration, float]:
+    """From rest, one period to settle and then the next, again until the state repeats; the last one, recorded.
+
+    Also how well it repeats: the change of the state over that period, relative to its size. `table` is one period
+    that is repeated.
+    """
+    last = table.time.size - 1
+    state = initial_state(system, table.value_before[0], "rest")
+    run = event_driven.start(system, table, state, keep=False)
+    run.advance(last)
+    mismatch = np.inf
+    for _ in range(_RECORDED):
+        if not run.status.ok or mismatch <= _ENOUGH:
+            break
+        begun = run.state
+        run = event_driven.start(system, table, begun)
+        run.advance(last)
+        mismatch = run.mismatch(begun)
+    return run, mismatch
+
+
 def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
-    quick, settled = _repeated(event_driven.start(system, table, state, keep=False), _REPEATS, _PERIODS)
-    recorded = event_driven.start(system, table, quick.state, account=energy)
-    before, slope, special = quick.record.value_before, quick.record.slope_before, quick.record.special
-    recorded.record = recorded.record._replace(value_before=before, slope_before=slope, special=special)
+    again = repeating(table)
+    quick, settled = _repeated(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
+    recorded = event_driven.start(system, again, quick.state, account=energy)
     recorded.status = quick.status
     if quick.status.ok and settled.mismatch > _ENOUGH:
         recorded.warning = _unsettled(settled)
@@ -57,32 +89,28 @@ def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bo
 
 
 def mean_squares(
-    system: PiecewiseSystem, table: InputTable, outputs: Sequence[str], state: Matrix, most: int | None = None
+    system: PiecewiseSystem, table: InputTable, outputs: Sequence[str], state: Matrix, most: int = _FEW_PERIODS
 ) -> tuple[Matrix, Integration]:
     """Mean squares of outputs over one period, once the state repeats to a millionth, and the integration.
 
-    Goes through `most` periods at most (30 by default).
-
-    What the integration's `status` or `warning` say holds for the squares.
+    Goes through `most` periods at most. What the integration's `status` or `warning` say holds for the squares.
     """
     begun = event_driven.start(system, table, state, outputs, keep=False)
-    integration, settled = _repeated(begun, _ENOUGH, _FEW_PERIODS if most is None else most)
+    integration, settled = _repeated(begun, repeating(table), _ENOUGH, most)
     if integration.status.ok and settled.mismatch > _ENOUGH:
         integration.warning = _unsettled(settled)
     return integration.record.sums / (table.samples - 1), integration
 
 
-def _repeated(integration: Integration, repeats: float, most: int) -> tuple[Integration, Repetition]:
+def _repeated(
+    integration: Integration, again: InputTable, repeats: float, most: int
+) -> tuple[Integration, Repetition]:
     """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
-    table, record = integration.table, integration.record
-    last = table.time.size - 1
-    before, slope = table.value_before.copy(), table.slope_before.copy()
-    before[0], slope[0] = before[last], slope[last]
-    special = table.special
-    if not np.array_equal(before[0], table.value[0]) and special[0] != 0:
-        special = np.concatenate([[0], special])
+    record, last = integration.record, again.time.size - 1
     integration.advance(last)
-    integration.record = record._replace(value_before=before, slope_before=slope, special=special)
+    integration.record = record._replace(
+        value_before=again.value_before, slope_before=again.slope_before, special=again.special
+    )
     mismatch, periods = np.inf, 1
     while integration.status.ok and periods < most and mismatch > repeats:
         begun = integration.state
@@ -91,7 +119,7 @@ def _repeated(integration: Integration, repeats: float, most: int) -> tuple[Inte
         integration.advance(last)
         periods += 1
         mismatch = integration.mismatch(begun)
-    return integration, Repetition(float(table.time[-1] - table.time[0]), periods, mismatch)
+    return integration, Repetition(float(again.time[-1] - again.time[0]), periods, mismatch)
 
 
 def _unsettled(found: Repetition) -> Status:

@@ -1,0 +1,282 @@
+"""`ApproximateLinear`: gains of the nonlinear design on a random input, read as if it were linear.
+
+Method 1 of Wang and Su (2008). The design is excited periodically until its response repeats; at every harmonic the
+gain is the size of the output over that of the input, and takes the place of the linear gain in the index.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import OK, IndicatorError, MechanismError, Status, StatusKind
+from inerter.indices.index import Combination, Index, Question
+from inerter.methods.averages import interval_of
+from inerter.methods.excitation import Drive, Excitation, MultisineExcitation, NoiseExcitation
+from inerter.methods.gains import LinearModel, Runs, largest_gain
+from inerter.methods.linear import CONVENTIONS, LinearProblem, arrivals, check_conventions, corner_of, linear_problem
+from inerter.methods.method import Estimate, Objective
+from inerter.methods.sampled import SampledObjective
+from inerter.networks.elements import Friction, Gap
+from inerter.norms.h2 import h2
+from inerter.norms.hinf import Peak
+from inerter.systems.descriptor import close
+from inerter.systems.graph import full_graph
+from inerter.systems.piecewise import piecewise
+from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+_ROAD_RMS = math.sqrt(1e-8 / 1e-3)  # [m] noise of 1e-8 m^2/Hz, held for 1 ms
+_FORCE_RMS = math.sqrt(200.0 / 1e-3) / 181.75  # [N/kg] 200 N^2/Hz on the quarter car, twice the size on the half car
+_DECAYED = math.log(100.0)  # what a period must take off the linear model's motions for its harmonics to resolve them
+_MOST = 1000  # realisations
+
+
+@dataclass(frozen=True)
+class ApproximateLinear:
+    """Gains |Y|/|U| of the design itself on a random input, in the place of linear gains.
+
+    An index of r.m.s. values adds up the squared gains of all harmonics; a peak gain is the largest. `road` (heights,
+    in m) and `force` are the excitations; without, multisines of the paper's size, 3.162 mm and 2.461 N for each kg of
+    the body that the force acts on, from 0.1 to 500 Hz.
+
+    With the conventions "exact", squared gains are mean |Y|^2 over mean |U|^2 over `realisations`. Of those of the
+    linear model of the same design (no friction, gaps closed), which are known, only the difference is estimated: an
+    r.m.s. value is the root of norm^2 + sum of (gain^2 - linear gain^2), and for a peak gain the difference alone is
+    smoothed over neighbouring frequencies, by a Hann window that reaches `smoothing` [Hz] to both sides. Where there
+    is no linear model, or its motions outlast the period, gains stand alone, and a note says so. A linear design gets
+    its norm.
+
+    With "paper2008" the input is the paper's noise, held for 1 ms and repeated after 100 s, and gains are the raw
+    ratios |Y/U| at the instants of the samples, without the linear model; J3 of a half car is divided by s + 2 pi
+    instead of s. The value is the median over realisations, because the square of a raw ratio has no mean where
+    friction adds what is not of the input: |U| may come close to zero. Peak gains are smoothed here too, as mean |Y|^2
+    over mean |U|^2: the largest of 50 000 raw ratios says nothing of the design.
+
+    `seed` decides the realisations, which are the same for every design. The standard error is that of the mean (or
+    median) over realisations, the interval Student's. `relative_error` asks for realisations until the standard error
+    is below that part of the value.
+
+    Raises `IndicatorError` for settings that cannot be.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(7544.2) - (it.Inerter(366.52) | it.Friction(10.0))
+    >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
+    >>> estimate = it.evaluate(car, comfort, it.ApproximateLinear(seed=0))
+    >>> estimate.value > 1.02 * it.evaluate(car, comfort, it.Norm()).value  # on this input, friction costs 2.7 %
+    True
+    """
+
+    road: Excitation | None = None
+    force: Excitation | None = None
+    realisations: int = 6
+    relative_error: float | None = None
+    smoothing: float = 0.2
+    seed: int = 0
+    conventions: str = "exact"
+    name = "approximate-linear"
+
+    def __post_init__(self) -> None:
+        check_conventions(self.conventions)
+        for what, given in (("road", self.road), ("force", self.force)):
+            if given is not None and not isinstance(given, Excitation):
+                raise IndicatorError(
+                    f"The {what} is excited by MultisineExcitation(...) or NoiseExcitation(...), got {given!r}."
+                )
+        _check_whole("The number of realisations", self.realisations, 2, _MOST)
+        _check_whole("A seed", self.seed, 0, 2**63)
+        if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
+            raise IndicatorError(f"A relative error lies between 0 and 1, got {self.relative_error!r}.")
+        if not is_number(self.smoothing) or self.smoothing < 0.0:
+            raise IndicatorError(f"The reach of the smoothing is 0 Hz or more, got {self.smoothing!r}.")
+
+    def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
+        """The index of a vehicle without free values."""
+        return self.estimates(vehicle, [index])[0]
+
+    def estimates(self, vehicle: Vehicle, indices: Sequence[Index], always: bool = False) -> list[Estimate]:
+        """Several indices of one vehicle: those with the same input share the simulations.
+
+        `always` simulates a linear design too, which then gets its norm back.
+        """
+        mechanism = vehicle.mechanism()
+        questions = [index.question(mechanism) for index in indices]
+        if not always and not _is_nonlinear(mechanism):
+            return [self._known(mechanism, question) for question in questions]
+        linears = [_linear_model(mechanism, question, self.conventions) for question in questions]
+        drives = [self._drive(mechanism, question) for question in questions]
+        system, runs = piecewise(vehicle), dict[Drive, Runs]()
+        for question, drive in zip(questions, drives, strict=True):
+            names = runs[drive].outputs if drive in runs else ()
+            names = tuple(dict.fromkeys((*names, *(output.output for output in question.outputs))))
+            runs[drive] = Runs(system, drive, names, int(self.seed))
+        return [
+            self._answer(question, linear, runs[drive])
+            for question, linear, drive in zip(questions, linears, drives, strict=True)
+        ]
+
+    def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
+        """The indices (designs, indices) at many values of the free values; nan where an estimate is not ok."""
+        count = next(iter(points.values())).size if points else 1
+        result = np.full((count, len(indices)), np.nan)
+        for i in range(count):
+            design = vehicle.with_values({name: float(column[i]) for name, column in points.items()})
+            estimates = self.estimates(design, indices)
+            result[i] = [estimate.value if estimate.status.ok else np.nan for estimate in estimates]
+        return result
+
+    def objective(self, vehicle: Vehicle, index: Index) -> Objective:
+        """The index as a function of the free values: one estimate a point, on the same realisations everywhere."""
+        return SampledObjective(self.estimate, vehicle, index)
+
+    @property
+    def _raw(self) -> bool:
+        return self.conventions == "paper2008"
+
+    def _known(self, mechanism: Mechanism, question: Question) -> Estimate:
+        """A linear design's norm, as an estimate without scatter."""
+        problem = linear_problem(mechanism, question, CONVENTIONS[self.conventions])
+        norm = problem.estimate(close(problem.descriptor, {}))
+        return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
+
+    def _drive(self, mechanism: Mechanism, question: Question) -> Drive:
+        """Which inputs are moved, by what and how late."""
+        named, late = arrivals(mechanism, question)
+        delays = dict(zip(named, late.tolist(), strict=True))
+        on_road = question.road is not None
+        default = NoiseExcitation() if self._raw else MultisineExcitation()
+        excitation = (self.road if on_road else self.force) or default
+        rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(mechanism, named[0]))
+        inputs = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
+        return Drive(excitation, rms, tuple(delays.get(name) for name in inputs))
+
+    def _answer(self, question: Question, linear: LinearModel | None, runs: Runs) -> Estimate:
+        if linear is not None and linear.status.kind is StatusKind.DIRECT_TERM:
+            return Estimate(math.inf, question.unit, linear.status)
+        known, notes = self._control(linear, runs.drive)
+        if question.amplitude is not None:
+            notes = (*notes, "the amplitude of a sine says nothing here: the excitation has its own size")
+        count, estimate = int(self.realisations), None
+        while estimate is None or not self._is_settled(estimate, count):
+            count = count if estimate is None else min(2 * count, _MOST)
+            squares, inputs = runs.upto(count)
+            if not runs.status.ok:
+                return Estimate(math.nan, question.unit, runs.status, notes=notes)
+            places = [runs.outputs.index(output.output) for output in question.outputs]
+            pooled = not self._raw or question.combination is Combination.PEAK_GAIN
+            gains = _gains(squares[:, places], inputs[:, None], pooled)
+            estimate = self._combine(question, known, gains * self._filter(question, runs.drive), runs.drive)
+        status = runs.warning
+        if status.ok and self.relative_error is not None and not self._reached(estimate):
+            status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
+        return replace(estimate, status=status, notes=notes)
+
+    def _is_settled(self, estimate: Estimate, count: int) -> bool:
+        return self.relative_error is None or count >= _MOST or self._reached(estimate)
+
+    def _reached(self, estimate: Estimate) -> bool:
+        error, asked = estimate.standard_error or 0.0, self.relative_error or math.inf
+        return error <= asked * estimate.value
+
+    def _control(self, linear: LinearModel | None, drive: Drive) -> tuple[LinearModel | None, tuple[str, ...]]:
+        """The linear model if it can serve, and what to say if not."""
+        if self._raw:
+            return None, ()
+        if linear is None:
+            return None, ("there is no linear model: gains stand alone, up to the highest frequency excited",)
+        if drive.excitation.is_held:
+            return None, ("noise is held: gains at the instants of its samples stand alone, without the linear model",)
+        if not linear.status.ok or linear.slowest * drive.excitation.period < _DECAYED:
+            return None, ("motions of the linear model outlast the period: gains stand alone, without it",)
+        return linear, ()
+
+    def _filter(self, question: Question, drive: Drive) -> Array:
+        """From the squared gain to what the index adds up, at the excited frequencies."""
+        if question.road is None:
+            return np.ones(drive.omega.size)
+        delays = np.array([delay for delay in drive.delays if delay is not None])
+        corner = corner_of(question, delays, CONVENTIONS[self.conventions]) or 0.0
+        return np.asarray(1.0 / (drive.omega**2 + corner**2))
+
+    def _combine(self, question: Question, known: LinearModel | None, gains: Array, drive: Drive) -> Estimate:
+        """The index from squared gains (realisations, outputs, harmonics)."""
+        lines = None if known is None else known.squares(drive.omega)
+        rest = gains if lines is None else gains - lines
+        scale = 1.0 if question.road is None else question.road.velocity_intensity
+        weights = scale * np.array([abs(output.weight) for output in question.outputs])
+        if question.combination is Combination.PEAK_GAIN:
+            weight = float(weights[0])
+            value, scatter, found = largest_gain(rest[:, 0], lines, known, drive.omega, self._window(drive.omega))
+            value, scatter = weight * value, weight * scatter
+            peaks = tuple(Peak(peak.omega, weight * peak.gain) for peak in found)
+        else:
+            sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
+            squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
+            sizes = np.sqrt(np.maximum(squares, 0.0))
+            value, peaks = float(weights @ sizes), ()
+            scatter = (sums - sums.mean(axis=0)) @ (0.5 * weights / np.maximum(sizes, 1e-300))
+            if self._raw:
+                single = np.sqrt(sums) @ weights
+                value = float(np.median(single))
+                scatter = math.sqrt(0.5 * math.pi) * (single - single.mean())
+        count = scatter.size
+        error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
+        return Estimate(value, question.unit, OK, error, interval_of(value, error, count), count, peaks)
+
+    def _window(self, omega: Array) -> Array:
+        reach = min(int(2.0 * math.pi * self.smoothing / omega[0] * (1.0 + 1e-9)), (omega.size - 1) // 2)
+        window: Array = np.hanning(2 * reach + 3)[1:-1]
+        return np.asarray(window / window.sum())
+
+
+def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
+    """Squared gains of each realisation; their mean is that of the ratios, or, if `pooled`, the ratio of the means.
+
+    What a realisation adds to a ratio of means is its deviation from it, to first order.
+    """
+    if not pooled:
+        return np.asarray(outputs / inputs)
+    size = inputs.mean(axis=0)
+    ratio = outputs.mean(axis=0) / size
+    return np.asarray(ratio + (outputs - ratio * inputs) / size)
+
+
+def _linear_model(mechanism: Mechanism, question: Question, conventions: str) -> LinearModel | None:
+    """The linear model of a mechanism, or None where friction or a gap alone holds something."""
+    try:
+        problem: LinearProblem = linear_problem(mechanism, question, CONVENTIONS[conventions])
+        system = problem.system(close(problem.descriptor, {}))
+    except MechanismError:
+        if not _is_nonlinear(mechanism):
+            raise
+        return None
+    slowest = float(-np.linalg.eigvals(system.A).real.max(initial=-math.inf))
+    if question.combination is Combination.PEAK_GAIN:
+        return LinearModel(system, np.full(1, np.inf), slowest, OK)
+    norms = h2(system, problem.pade_order)
+    return LinearModel(system, norms.outputs, slowest, norms.status)
+
+
+def _is_nonlinear(mechanism: Mechanism) -> bool:
+    """Whether there is a friction or a gap that is not zero."""
+    elements = (branch.element for branch in full_graph(mechanism).branches)
+    return any(isinstance(e, Friction | Gap) and isinstance(e.value, float | int) and e.value > 0.0 for e in elements)
+
+
+def _inertia_felt(mechanism: Mechanism, name: str) -> float:
+    """Inertia that resists a force where it acts [kg]."""
+    inertia = {coordinate.name: coordinate.inertia for coordinate in mechanism.coordinates}
+    (port,) = (force.port for force in mechanism.forces if force.name == name)
+    return 1.0 / sum(lever**2 / inertia[coordinate] for coordinate, lever in port.items() if lever)
+
+
+def _check_whole(what: str, value: object, least: int, most: int) -> None:
+    if not is_number(value) or value != int(value) or not least <= value <= most:
+        raise IndicatorError(f"{what} is a whole number from {least} to {most}, got {value!r}.")

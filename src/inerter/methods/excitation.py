@@ -1,0 +1,161 @@
+"""Excitations of the approximate linear model: periodic inputs of known size and band, as values."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import check_positive
+from inerter.errors import IndicatorError
+from inerter.signals.harmonics import flat_multisine
+from inerter.signals.records import held_noise
+from inerter.signals.signal import Signal
+from inerter.simulation.inputs import InputTable, tabulate
+from inerter.simulation.observe import sampled_input
+from inerter.simulation.steady import repeating
+
+Array = NDArray[np.float64]
+_COARSEST = 5e-4  # [s] longest step for an input without steps of its own
+_SMALL = 100_000  # entries of a table that is kept for the next design: a few MB
+
+
+@dataclass(frozen=True)
+class MultisineExcitation:
+    """Harmonics `lowest`, 2 `lowest`, ... up to `highest` [Hz] of one amplitude, with independent random phases.
+
+    Every harmonic has the same size in every realisation, so that gains have no small divisors. It repeats after
+    1 / `lowest` seconds. `rms` is in m for a road and in N for a force; None stands for that of Wang and Su (2008).
+
+    Raises `IndicatorError` unless all are positive and lowest < highest.
+    """
+
+    rms: float | None = None
+    lowest: float = 0.1
+    highest: float = 500.0
+    is_held = False
+
+    def __post_init__(self) -> None:
+        _check_rms(self.rms)
+        for which in ("lowest", "highest"):
+            check_positive(IndicatorError, f"The {which} frequency of an excitation", getattr(self, which), "Hz")
+        if not 2.0 * self.lowest <= self.highest <= 1e6 * self.lowest:
+            raise IndicatorError(
+                f"An excitation needs from 2 to 1e6 harmonics, got a band from {self.lowest:g} to {self.highest:g} Hz."
+            )
+
+    @property
+    def period(self) -> float:
+        """Time after which it repeats [s]."""
+        return 1.0 / self.lowest
+
+    @property
+    def harmonics(self) -> int:
+        """How many harmonics it has."""
+        return math.floor(self.highest / self.lowest * (1.0 + 1e-12))
+
+    @property
+    def samples(self) -> int:
+        """Four for the shortest wave, or more."""
+        return max(4 * self.harmonics, math.ceil(self.period / _COARSEST * (1.0 - 1e-12)))
+
+    def signal(self, rms: float, seed: int) -> Signal:
+        """One realisation."""
+        return flat_multisine(seed, rms, self.lowest, self.highest)
+
+
+@dataclass(frozen=True)
+class NoiseExcitation:
+    """Band-limited white noise as in Wang and Su (2008): normal samples held for `interval` that repeat after `period`.
+
+    Outputs are sampled at the same instants. `rms` is in m for a road and in N for a force; None stands for that of
+    the paper, 3.162 mm for a road.
+
+    Raises `IndicatorError` unless all are positive and the period is a whole number, four or more, of intervals.
+    """
+
+    rms: float | None = None
+    interval: float = 1e-3  # [s]
+    period: float = 100.0  # [s]
+    is_held = True
+
+    def __post_init__(self) -> None:
+        _check_rms(self.rms)
+        for which in ("interval", "period"):
+            check_positive(IndicatorError, f"The {which} of an excitation", getattr(self, which), "s")
+        count = self.period / self.interval
+        if not 4.0 <= count <= 1e8 or abs(count - round(count)) > 1e-6:
+            raise IndicatorError(
+                f"The period of an excitation is a whole number of intervals, from 4 to 1e8; got {self.period:g} s in "
+                f"intervals of {self.interval:g} s."
+            )
+
+    @property
+    def samples(self) -> int:
+        """One for each interval."""
+        return round(self.period / self.interval)
+
+    @property
+    def harmonics(self) -> int:
+        """Up to half the rate of its samples, without that frequency itself."""
+        return (self.samples - 1) // 2
+
+    def signal(self, rms: float, seed: int) -> Signal:
+        """One realisation."""
+        return held_noise(seed, rms**2 * self.interval, self.interval, self.period)
+
+
+Excitation = MultisineExcitation | NoiseExcitation
+
+
+@dataclass(frozen=True)
+class Drive:
+    """An excitation of some inputs of a mechanism, each with its delay."""
+
+    excitation: Excitation
+    rms: float  # [m or N]
+    delays: tuple[float | None, ...]  # [s] of roads, then forces; None: at rest
+
+    @property
+    def first(self) -> int:
+        """The input that it reaches first, to which gains refer."""
+        return min((d, i) for i, d in enumerate(self.delays) if d is not None)[1]
+
+    @property
+    def omega(self) -> Array:
+        """Excited frequencies [rad/s]."""
+        return 2.0 * math.pi / self.excitation.period * np.arange(1.0, self.excitation.harmonics + 1.0)
+
+    def signals(self, seed: int) -> list[Signal | None]:
+        """One realisation: a signal for each input, or None."""
+        signal = self.excitation.signal(self.rms, seed)
+        return [None if delay is None else signal for delay in self.delays]
+
+    def realisation(self, seed: int) -> tuple[InputTable, Array]:
+        """One along the steps of a period that is repeated, and its `power`."""
+        small = self.excitation.samples * len(self.delays) <= _SMALL
+        return _kept(self, seed) if small else _laid_out(self, seed)
+
+    def power(self, samples: Array) -> Array:
+        """Squared sizes of the excited harmonics in the samples of a period, both ends included."""
+        spectrum = np.fft.rfft(samples[:-1])
+        return np.asarray(np.abs(spectrum[1 : self.excitation.harmonics + 1]) ** 2)
+
+
+def _laid_out(drive: Drive, seed: int) -> tuple[InputTable, Array]:
+    signals, period = drive.signals(seed), drive.excitation.period
+    delays = [delay or 0.0 for delay in drive.delays]
+    table = tabulate(signals, delays, period, period / drive.excitation.samples)
+    power = drive.power(sampled_input(table, 0, drive.first))
+    return (repeating(table) if drive.excitation.is_held else table), power
+
+
+_kept = lru_cache(maxsize=32)(_laid_out)
+
+
+def _check_rms(rms: object) -> None:
+    if rms is not None:
+        check_positive(IndicatorError, "The r.m.s. value of an excitation", rms, "m for a road, of N for a force")

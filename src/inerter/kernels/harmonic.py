@@ -43,7 +43,7 @@ def transfer(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float,
 
 
 @compiled
-def slip(blocked: complex, admittance: complex, limit: float) -> complex:
+def slip(blocked: complex, admittance: complex, limit: float) -> Any:
     """Velocity across a friction with a force of amplitude `limit`, between what pushes with `blocked` if it sticks.
 
     Its force is blocked - admittance v, of amplitude `limit` and along v: |limit + admittance |v|| = |blocked|, a

@@ -10,7 +10,7 @@ friction sticks and c is infinite.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -34,16 +34,17 @@ class Equivalent:
     mechanism: Mechanism
     dampers: tuple[str, ...]  # names of the dampers, as variables and as elements
     frictions: tuple[str, ...]  # in words, for each damper
+    locked: tuple[str, ...]  # in words, those replaced by a rigid link instead
     forces: tuple[Value, ...]  # of each friction [N]
     design: tuple[str, ...]  # free values of the mechanism that it stands for
     scale: float  # a damping typical of the mechanism [N s/m]
 
     def limits(self, points: Array) -> Array:
         """Friction forces (designs, frictions) [N] at each row of `points`, the values of the design."""
-        columns = [points[:, self.places[i]] if self.places[i] >= 0 else f for i, f in enumerate(self.forces)]
-        return np.array(np.broadcast_arrays(np.zeros(points.shape[0]), *columns)[1:], dtype=float).T.reshape(
-            points.shape[0], len(self.forces)
-        )
+        result = np.empty((points.shape[0], len(self.forces)))
+        for i, (force, place) in enumerate(zip(self.forces, self.places, strict=True)):
+            result[:, i] = points[:, place] if isinstance(force, Free) else force
+        return result
 
     @cached_property
     def places(self) -> tuple[int, ...]:
@@ -84,28 +85,32 @@ def has_friction(mechanism: Mechanism) -> bool:
     return any(_acts(element) for mount in mechanism.mounts() for element in mount.network.elements())
 
 
-def equivalent(mechanism: Mechanism, without: Sequence[str] = ()) -> Equivalent:
-    """`mechanism` with a free damper in the place of each friction; those named in `without` (in words) are left out.
+def equivalent(
+    mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = (), scale: float | None = None
+) -> Equivalent:
+    """`mechanism` with a free damper in the place of each friction.
 
-    A friction beside a closed gap cannot move and is left out too.
+    Those in `without` are left out, those in `locked` become rigid links (both named by their damper). A friction
+    beside a rigid link cannot move and is left out too. `scale` is a damping near which the dampers are looked for.
 
     Raises `MechanismError` for what is ill-posed.
     """
-    scale = _typical_damping(mechanism)
+    scale = _typical_damping(mechanism) if scale is None else scale
     taken = {element.label for mount in mechanism.mounts() for element in mount.network.elements()}
     found: dict[str, tuple[str, Value]] = {}
 
     def changed(mount: str, network: Network) -> Network:
         def damped(element: Element) -> Network:
-            words = f"friction {element.label!r} in {mount!r}"
             if not _acts(element):
                 return element
-            if words in without:
-                return Friction(0.0, element.label)
             name = f"equivalent_damper_{len(found) + 1}"
             while name in taken:
                 name += "_"
-            found[name] = (words, element.value)
+            found[name] = (f"friction {element.label!r} in {mount!r}", element.value)
+            if name in without:
+                return Friction(0.0, element.label)
+            if name in locked:
+                return Gap(0.0, name)
             return Damper(Free(1e-3 * scale, 1e3 * scale, name), name)
 
         return map_elements(network, damped)
@@ -121,6 +126,7 @@ def equivalent(mechanism: Mechanism, without: Sequence[str] = ()) -> Equivalent:
         mechanism=other,
         dampers=names,
         frictions=tuple(found[name][0] for name in names),
+        locked=tuple(found[name][0] for name in locked),
         forces=tuple(found[name][1] for name in names),
         design=tuple(mechanism.free_values()),
         scale=scale,

@@ -82,6 +82,6 @@ class StatisticalLinearisation:
             from inerter.methods.describing_function import harmonic_balance
 
             return harmonic_balance(mechanism, question)
-        from inerter.methods.gaussian_closure import gaussian_closure
+        from inerter.methods.gaussian_closure import GaussianClosure
 
-        return gaussian_closure(mechanism, question, CONVENTIONS[self.conventions])
+        return GaussianClosure(mechanism, question, CONVENTIONS[self.conventions])

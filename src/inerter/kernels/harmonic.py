@@ -14,12 +14,13 @@ from inerter.kernels import compiled
 from inerter.kernels.closing import close
 from inerter.kernels.gain import frequencies, resolve
 from inerter.kernels.h2 import units
-from inerter.kernels.linalg import solve
+from inerter.kernels.linalg import factor, solve
 
 Array = Any
 _GOLDEN = 0.6180339887498949
-_SWEEPS = 2000
-_SETTLED = 1e-12  # change of the forces in a sweep, relative to the largest
+_SWEEPS = 1000
+_SETTLED = 1e-13  # change of the forces in a sweep, relative to the largest, pushes included
+_WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
 
@@ -63,33 +64,52 @@ def slip(blocked: complex, admittance: complex, limit: float) -> Any:
 def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
     """Gain of the first output with every friction slipping or sticking as it must, and whether that settled.
 
-    One friction is one closed form. Several are solved one after the other until none changes; each sees the others
-    as a damper of `reference` and a force, waves that a passive mechanism does not amplify.
+    One friction is one closed form. Several are solved one after the other until none changes. Each sees the others
+    as a damper and a force: waves, which a passive mechanism does not amplify, and which are small if the damper is
+    near what its friction amounts to.
     """
     count = limit.size
-    extra = np.zeros(count, np.complex128)  # force of each friction beyond that of its reference damper
+    Z, velocity, damper = -G[1:, 1:], G[1:, 0] * amplitude, np.full(count, reference)
+    if count > 1:
+        for k in range(count):
+            if abs(velocity[k]) > 0.0:
+                damper[k] = limit[k] / abs(velocity[k])
+        M, pivots = Z * (damper - reference), np.empty(count, np.int64)
+        for k in range(count):
+            M[k, k] += 1.0
+        if not factor(M, pivots):
+            return np.nan, False
+        solve(M, pivots, velocity)
+        for k in range(count):
+            column = Z[:, k].copy()
+            solve(M, pivots, column)
+            Z[:, k] = column
+    extra = np.zeros(count, np.complex128)  # force of each friction beyond that of its damper
     settled = count == 0
     for _ in range(_SWEEPS):
         change, largest = 0.0, 0.0
         for j in range(count):
-            velocity = G[1 + j, 0] * amplitude
-            for k in range(count):
-                if k != j:
-                    velocity += G[1 + j, 1 + k] * extra[k]
-            impedance = -G[1 + j, 1 + j]
+            impedance = Z[j, j]
             if impedance == 0.0:  # nothing moves there
                 continue
-            v = slip(velocity / impedance, 1.0 / impedance - reference, limit[j])
-            new = (velocity - v) / impedance
+            push = velocity[j]
+            for k in range(count):
+                if k != j:
+                    push -= Z[j, k] * extra[k]
+            v = slip(push / impedance, 1.0 / impedance - damper[j], limit[j])
+            new = (push - v) / impedance
             change = max(change, abs(new - extra[j]))
-            largest = max(largest, abs(new), limit[j])
+            largest = max(largest, abs(new), limit[j], 0.1 * abs(push / impedance))
             extra[j] = new
         if count == 1 or change <= _SETTLED * largest:
             settled = True
             break
     response = G[0, 0] * amplitude
-    for k in range(count):
-        response += G[0, 1 + k] * extra[k]
+    for j in range(count):
+        v = velocity[j]
+        for k in range(count):
+            v -= Z[j, k] * extra[k]
+        response += G[0, 1 + j] * (extra[j] + (damper[j] - reference) * v)
     return abs(response) / amplitude, settled
 
 
@@ -140,7 +160,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
 @compiled
 def top(system: Array, low: float, high: float, limit: Array, amplitude: float, reference: float, G: Array) -> float:
     """Where the gain is largest between `low` and `high`, by golden section."""
-    width = 1e-9 * high
+    width = 1e-10 * high
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     ga, gb = (
         gain_at(system, a, limit, amplitude, reference, G)[0],
@@ -179,7 +199,7 @@ def finer(grid: Array, values: Array) -> Array:
 def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude: float, reference: float) -> Any:
     """Frequencies and values of the local maxima of the gain, 0 standing for the limit of low frequencies; all well.
 
-    None is found where the system cannot be closed; the value at 0 is infinite if the gain grows without bound there.
+    None is found where the system cannot be closed; the value is infinite where the gain grows without bound.
     """
     A, B, C, D, _, _, good = close(row, descriptor)
     if not good:
@@ -225,6 +245,9 @@ def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude
             found[number] = gain_at(system, omegas[number], limit, amplitude, reference, G)[0]
             if values[k] > found[number]:
                 omegas[number], found[number] = grid[k], values[k]
+            beside = gain_at(system, omegas[number] * (1.0 + _WIDTH), limit, amplitude, reference, G)[0]
+            if found[number] > 100.0 * beside:  # a resonance that friction cannot hold
+                found[number] = np.inf
         number += 1
     return omegas[:number], found[:number], fine
 

@@ -25,10 +25,11 @@ from inerter.vehicle.mechanism import Mechanism, Weighted
 
 Array = NDArray[np.float64]
 _SHARE = math.sqrt(2.0 / math.pi)  # r.m.s. force of the equivalent damper over the friction force
-_STEPS = 80
+_STEPS = 160
 _SETTLED = 1e-10  # relative error of a damper's r.m.s. force
 _NUDGE = 1e-4  # relative change of a damper for differences
 _LOCKED = 1e-3  # d log(force) / d log(damper) below which a friction whose force is too small will not slip
+_STIFFEST = 1e7  # dampers beyond so many times a typical one stand for rigid links too
 _RIGID = 1e-5  # the same for a damper that stands for a rigid link
 
 Speeds = Callable[[Array, NDArray[np.intp]], Array]
@@ -61,11 +62,12 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
             break
         ratio, slope = _forces(speeds, damping[left], limits[left], left)
         own = np.einsum("rii->ri", slope)
-        stuck = held[left] | (ratio * (1.0 + 2.0 * own) < 1.0) & (own < _LOCKED) | (ratio == 0.0)
+        saturated = (own < _LOCKED) | (damping[left] > _STIFFEST * start[left])
+        stuck = held[left] | (ratio * (1.0 + 2.0 * own) < 1.0) & saturated | (ratio == 0.0)
         miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
         settled = (miss <= _SETTLED) | np.isnan(miss)
         error[left], sticks[left] = miss, stuck
-        factor = np.where(stuck, 1.0, _newton(ratio, slope, stuck, careful=step > _STEPS // 2))
+        factor = np.where(stuck, 1.0, _newton(ratio, slope, stuck, alone=step % 40 >= 15))
         rigid = np.where(stuck & ~held[left], np.clip(own / _RIGID, 1.0, 1.0 / _RIGID), 1.0)
         damping[left] *= np.where(settled[:, None], rigid, factor)
         left = left[~settled]
@@ -84,15 +86,18 @@ def _forces(speeds: Speeds, damping: Array, limits: Array, designs: NDArray[np.i
     return np.where(still, 0.0, damping * found[:, 0] / limits), slope
 
 
-def _newton(ratio: Array, slope: Array, stuck: NDArray[np.bool_], careful: bool) -> Array:
-    """Factors by which to multiply the dampers; `careful` takes short steps."""
+def _newton(ratio: Array, slope: Array, stuck: NDArray[np.bool_], alone: bool) -> Array:
+    """Factors by which to multiply the dampers; `alone` as if each force depended on its own damper only.
+
+    The matrix is singular where two frictions slip as one, such as two end to end; a single one slips as it must then.
+    """
     identity = np.eye(ratio.shape[1])
-    free = ~stuck[:, :, None] & ~stuck[:, None, :]
-    matrix = np.where(free & np.isfinite(slope), slope, identity) + 1e-12 * identity
+    free = ~stuck[:, :, None] & ~stuck[:, None, :] & np.isfinite(slope)
+    if alone:
+        free &= identity > 0.0
+    matrix = np.where(free, slope, identity) + 1e-12 * identity
     miss = np.where(stuck | np.isnan(ratio), 0.0, ratio - 1.0)
-    relative = np.linalg.solve(matrix, miss[..., None])[..., 0]
-    if careful:
-        return np.asarray(np.exp(-0.3 * np.clip(relative, -1.0, 1.0)))
+    relative = np.linalg.solve(matrix, (0.5 if alone else 1.0) * miss[..., None])[..., 0]
     return np.asarray(1.0 / np.clip(1.0 + relative, 0.1, 1e4))
 
 
@@ -216,7 +221,9 @@ class GaussianClosure:
                 solved += self._solve(points, designs[here], part.damping[:, still], locked | more)
                 continue
             if more:
+                too_stiff = np.any(part.sticks & (part.damping > _STIFFEST * pattern.parts.scale), axis=1)
                 part = pattern.dampers(points[designs[here]], part.damping, part.sticks)
+                part.error[too_stiff] = np.nan
             solved.append(Solved(pattern, designs[here], part))
         return solved
 

@@ -19,7 +19,7 @@ from inerter.kernels.linalg import factor, solve
 Array = Any
 _GOLDEN = 0.6180339887498949
 _SWEEPS = 1000
-_SETTLED = 1e-13  # change of the forces in a sweep, relative to the largest, pushes included
+_SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pushes included
 _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
@@ -124,8 +124,12 @@ def gain_at(system: Array, omega: float, limit: Array, amplitude: float, referen
 
 @compiled
 def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> Array:
-    """Frequencies that show every resonance, from frictions that hardly act to frictions that hardly move."""
+    """Frequencies that show every resonance, from frictions that hardly act to frictions that hardly move.
+
+    The lowest is far below the slowest motion.
+    """
     found = np.empty(0)
+    floor = 0.0
     point = row.copy()
     for exponent in (0, -4, -2, -1, 1, 2, 4):
         for place in dampers:
@@ -143,6 +147,10 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
             continue
         if exponent == 0:
             found = frequencies(poles)
+            floor = np.abs(poles).max()
+            for pole in poles:
+                if abs(pole) > 1e-9 * np.abs(poles).max():
+                    floor = min(floor, 0.01 * abs(pole))
             continue
         near = np.empty(9 * poles.size)
         count = 0
@@ -154,7 +162,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
                         near[count] = omega
                         count += 1
         found = np.concatenate((found, near[:count]))
-    return np.sort(found)
+    return np.sort(found[found >= floor])
 
 
 @compiled
@@ -210,7 +218,7 @@ def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude
     if grid.size < 2:
         return np.zeros(0), np.zeros(0), False
     fine = True
-    points = grid[grid > 0.0]
+    points = grid
     grid, values = np.empty(0), np.empty(0)
     for _ in range(6):
         new = np.empty(points.size)
@@ -235,7 +243,7 @@ def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude
         if (k > 0 and not values[k] > values[k - 1]) or (k < grid.size - 1 and not values[k] > values[k + 1]):
             continue
         if k == 0:
-            lower = 1e-4 * grid[0]
+            lower = 1e-5 * grid[0]
             omegas[0], found[0] = 0.0, gain_at(system, lower, limit, amplitude, reference, G)[0]
             if found[0] > 2.0 * values[0]:
                 found[0] = np.inf

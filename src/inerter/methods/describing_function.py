@@ -106,7 +106,7 @@ class HarmonicBalance:
         """Gains at the frequencies `which`, and their gradients over the free values."""
         steps = _NUDGE * np.diag(point)
         rows, limits = self._rows(np.vstack([point, point + steps, point - steps]))
-        low = 1e-4 * float(np.min(which[which > 0.0], initial=1.0))
+        low = 1e-7 * float(np.min(which[which > 0.0], initial=1.0))
         found = self.weight * kernels.gains(
             rows, limits, self.arrays, self.amplitude, self.parts.scale, np.ascontiguousarray(which, dtype=float), low
         )

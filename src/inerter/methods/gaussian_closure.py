@@ -28,8 +28,8 @@ _SHARE = math.sqrt(2.0 / math.pi)  # r.m.s. force of the equivalent damper over 
 _STEPS = 160
 _SETTLED = 1e-10  # relative error of a damper's r.m.s. force
 _NUDGE = 1e-4  # relative change of a damper for differences
-_LOCKED = 1e-3  # d log(force) / d log(damper) below which a friction whose force is too small will not slip
-_STIFFEST = 1e7  # dampers beyond so many times a typical one stand for rigid links too
+_LOCKED = 0.02  # d log(force) / d log(damper) below which a friction whose force is too small will not slip
+_STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 _RIGID = 1e-5  # the same for a damper that stands for a rigid link
 
 Speeds = Callable[[Array, NDArray[np.intp]], Array]
@@ -63,7 +63,7 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
         ratio, slope = _forces(speeds, damping[left], limits[left], left)
         own = np.einsum("rii->ri", slope)
         saturated = (own < _LOCKED) | (damping[left] > _STIFFEST * start[left])
-        stuck = held[left] | (ratio * (1.0 + 2.0 * own) < 1.0) & saturated | (ratio == 0.0)
+        stuck = held[left] | (ratio * (1.0 + 20.0 * np.maximum(own, 0.0)) < 1.0) & saturated | (ratio == 0.0)
         miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
         settled = (miss <= _SETTLED) | np.isnan(miss)
         error[left], sticks[left] = miss, stuck

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from inerter.methods.method import evaluate as evaluate
     from inerter.methods.method import evaluate_many as evaluate_many
     from inerter.methods.norm import Norm as Norm
+    from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
     from inerter.networks.catalogue import LAYOUTS as LAYOUTS
     from inerter.networks.elements import Damper as Damper
     from inerter.networks.elements import Friction as Friction
@@ -106,6 +107,7 @@ __all__ = [
     "RoadInput",
     "Signal",
     "Spring",
+    "StatisticalLinearisation",
     "Status",
     "StatusKind",
     "Strut",
@@ -185,6 +187,7 @@ _HOME = {
     "Road": "signals.road",
     "RoadInput": "vehicle.mechanism",
     "Spring": "networks.elements",
+    "StatisticalLinearisation": "methods.statistical_linearisation",
     "Status": "errors",
     "StatusKind": "errors",
     "Strut": "vehicle.mechanism",

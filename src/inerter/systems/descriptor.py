@@ -94,17 +94,19 @@ def describe(
 
     By default all inputs, and every output that needs no state of its own; the displacement of a body over a moving
     road is such a state (it drifts like the road) and comes only when it is named. A road that is not an input lies
-    still.
+    still. By name there are also, for every element, its `<label>_velocity` as an output, and `<label>_force` as an
+    input: a force beside the element, positive in tension.
 
     Raises `MechanismError` for what is ill-posed, `LinearSystemError` for a name that is not there.
     """
     graph = linear_graph(mechanism)
     names = [r.name for r in mechanism.roads] + [f.name for f in mechanism.forces]
+    beside = [f"{branch.label}_force" for branch in graph.branches]
     chosen = list(names) if inputs is None else list(inputs)
     for name in chosen:
-        if name not in names:
+        if name not in (*names, *beside):
             raise LinearSystemError(f"There is no input named {name!r} (there are: {', '.join(names) or 'none'}).")
-    equations = _Equations(mechanism, graph, [name for name in names if name in chosen])
+    equations = _Equations(mechanism, graph, [n for n in dict.fromkeys((*names, *beside)) if n in chosen])
     equations.add_balance()
     for name in equations.possible_outputs() if outputs is None else outputs:
         equations.add_output(name)
@@ -132,8 +134,10 @@ class _Equations:
         count = len(self.graph.nodes)
         self.road_names = [r.name for r in self.mechanism.roads if r.name in self.inputs]
         self.road_columns = [i for i, r in enumerate(self.mechanism.roads) if r.name in self.inputs]
-        self.forces = [f for f in self.mechanism.forces if f.name in self.inputs]
-        self.force_rows = np.array([self._port(f.port) for f in self.forces]).reshape(len(self.forces), count)
+        pairs = {f"{branch.label}_force": -branch.nodes for branch in branches}
+        rows = pairs | {force.name: self._port(force.port) for force in self.mechanism.forces}
+        forces = [rows[name] for name in self.inputs if name not in self.road_names]
+        self.force_rows = np.array(forces).reshape(len(forces), count)
         self.springs = [b for b in branches if isinstance(b.element, Spring)]
         self.spring_number = {id(branch): i for i, branch in enumerate(self.springs)}
         inerters = [b for b in branches if isinstance(b.element, Inerter)]
@@ -287,6 +291,7 @@ class _Equations:
         stem, _, what = name.rpartition("_")
         displacements = self._displacements()
         mounts = {m.name: "force" if m in self.mechanism.struts else "load" for m in self.mechanism.mounts()}
+        branches = {branch.label: branch for branch in self.graph.branches}
         if stem in coordinates and what == "velocity":
             rows = self._constant(*self._velocity(coordinates[stem]))
         elif stem in coordinates and what == "acceleration":
@@ -297,6 +302,8 @@ class _Equations:
             rows = self._displacement_output(name, *displacements[name])
         elif mounts.get(stem) == what:
             rows = self._force(stem)
+        elif stem in branches and what == "velocity":
+            rows = self._constant(*self._velocity(branches[stem].nodes, branches[stem].roads))
         else:
             known = [*(f"{c}_{w}" for c in coordinates for w in ("velocity", "acceleration")), *displacements]
             known += [f"{mount}_{w}" for mount, w in mounts.items()]

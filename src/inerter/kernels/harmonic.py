@@ -1,0 +1,290 @@
+"""Harmonic balance in one harmonic: gains of a mechanism whose frictions are dampers that depend on the motion.
+
+The descriptor is one of `inerter.systems.descriptor` with the inputs (force, a force beside each friction) and the
+outputs (displacement, velocity across each friction); the frictions are dampers of `reference` [N s/m] there.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels import compiled
+from inerter.kernels.closing import close
+from inerter.kernels.gain import frequencies, resolve
+from inerter.kernels.h2 import units
+from inerter.kernels.linalg import factor, solve
+
+Array = Any
+_GOLDEN = 0.6180339887498949
+_SWEEPS = 1000
+_SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pushes included
+_WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
+_BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
+
+
+@compiled
+def transfer(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float, G: Array) -> bool:
+    """G becomes the frequency response; False at a pole."""
+    n, m, o = A.shape[0], B.shape[1], C.shape[0]
+    M, pivots, x = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
+    if not resolve(A, scale, omega, M, pivots):
+        return False
+    for j in range(m):
+        for i in range(n):
+            x[i] = B[i, j] / scale[i]
+        solve(M, pivots, x)
+        for k in range(o):
+            total = D[k, j] + 0j
+            for i in range(n):
+                total += C[k, i] * scale[i] * x[i]
+            G[k, j] = total
+    return True
+
+
+@compiled
+def slip(blocked: complex, admittance: complex, limit: float) -> Any:
+    """Velocity across a friction with a force of amplitude `limit`, between what pushes with `blocked` if it sticks.
+
+    Its force is blocked - admittance v, of amplitude `limit` and along v: |limit + admittance |v|| = |blocked|, a
+    quadratic in |v|.
+    """
+    excess = abs(blocked) ** 2 - limit**2
+    if not excess > 0.0:
+        return 0j
+    along = limit * admittance.real
+    size = abs(admittance) ** 2
+    root = np.sqrt(max(along**2 + size * excess, 0.0))
+    speed = excess / (along + root) if along > 0.0 else (root - along) / size
+    return blocked * speed / (limit + admittance * speed)
+
+
+@compiled
+def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
+    """Gain of the first output with every friction slipping or sticking as it must, and whether that settled.
+
+    One friction is one closed form. Several are solved one after the other until none changes. Each sees the others
+    as a damper and a force: waves, which a passive mechanism does not amplify, and which are small if the damper is
+    near what its friction amounts to.
+    """
+    count = limit.size
+    Z, velocity, damper = -G[1:, 1:], G[1:, 0] * amplitude, np.full(count, reference)
+    if count > 1:
+        for k in range(count):
+            if abs(velocity[k]) > 0.0:
+                damper[k] = limit[k] / abs(velocity[k])
+        M, pivots = Z * (damper - reference), np.empty(count, np.int64)
+        for k in range(count):
+            M[k, k] += 1.0
+        if not factor(M, pivots):
+            return np.nan, False
+        solve(M, pivots, velocity)
+        for k in range(count):
+            column = Z[:, k].copy()
+            solve(M, pivots, column)
+            Z[:, k] = column
+    extra = np.zeros(count, np.complex128)  # force of each friction beyond that of its damper
+    settled = count == 0
+    for _ in range(_SWEEPS):
+        change, largest = 0.0, 0.0
+        for j in range(count):
+            impedance = Z[j, j]
+            if impedance == 0.0:  # nothing moves there
+                continue
+            push = velocity[j]
+            for k in range(count):
+                if k != j:
+                    push -= Z[j, k] * extra[k]
+            v = slip(push / impedance, 1.0 / impedance - damper[j], limit[j])
+            new = (push - v) / impedance
+            change = max(change, abs(new - extra[j]))
+            largest = max(largest, abs(new), limit[j], 0.1 * abs(push / impedance))
+            extra[j] = new
+        if count == 1 or change <= _SETTLED * largest:
+            settled = True
+            break
+    response = G[0, 0] * amplitude
+    for j in range(count):
+        v = velocity[j]
+        for k in range(count):
+            v -= Z[j, k] * extra[k]
+        response += G[0, 1 + j] * (extra[j] + (damper[j] - reference) * v)
+    return abs(response) / amplitude, settled
+
+
+@compiled
+def gain_at(system: Array, omega: float, limit: Array, amplitude: float, reference: float, G: Array) -> Any:
+    """Gain at one frequency, infinite at a pole."""
+    A, B, C, D, scale = system
+    if not transfer(A, B, C, D, scale, omega, G):
+        return np.inf, True
+    return balance(G, limit, amplitude, reference)
+
+
+@compiled
+def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> Array:
+    """Frequencies that show every resonance, from frictions that hardly act to frictions that hardly move.
+
+    The lowest is far below the slowest motion.
+    """
+    found = np.empty(0)
+    floor = 0.0
+    point = row.copy()
+    for exponent in (0, -4, -2, -1, 1, 2, 4):
+        for place in dampers:
+            point[place] = reference * 10.0**exponent
+        A, _, _, _, _, _, good = close(point, descriptor)
+        if not good:
+            continue
+        scale = units(A)
+        scaled = np.empty(A.shape, np.complex128)
+        for i in range(A.shape[0]):
+            for j in range(A.shape[0]):
+                scaled[i, j] = A[i, j] * scale[j] / scale[i]
+        poles = np.linalg.eigvals(scaled)
+        if not np.isfinite(np.abs(poles).sum()):
+            continue
+        if exponent == 0:
+            found = frequencies(poles)
+            floor = np.abs(poles).max()
+            for pole in poles:
+                if abs(pole) > 1e-9 * np.abs(poles).max():
+                    floor = min(floor, 0.01 * abs(pole))
+            continue
+        near = np.empty(9 * poles.size)
+        count = 0
+        for pole in poles:
+            if pole.imag > 0.0:
+                for offset in (-4.0, -2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0, 4.0):
+                    omega = pole.imag + offset * abs(pole.real)
+                    if omega > 0.0:
+                        near[count] = omega
+                        count += 1
+        found = np.concatenate((found, near[:count]))
+    return np.sort(found[found >= floor])
+
+
+@compiled
+def top(system: Array, low: float, high: float, limit: Array, amplitude: float, reference: float, G: Array) -> float:
+    """Where the gain is largest between `low` and `high`, by golden section."""
+    width = 1e-10 * high
+    a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    ga, gb = (
+        gain_at(system, a, limit, amplitude, reference, G)[0],
+        gain_at(system, b, limit, amplitude, reference, G)[0],
+    )
+    while high - low > width:
+        if ga > gb:
+            high, b, gb = b, a, ga
+            a = high - _GOLDEN * (high - low)
+            ga = gain_at(system, a, limit, amplitude, reference, G)[0]
+        else:
+            low, a, ga = a, b, gb
+            b = low + _GOLDEN * (high - low)
+            gb = gain_at(system, b, limit, amplitude, reference, G)[0]
+    return 0.5 * (low + high)
+
+
+@compiled
+def finer(grid: Array, values: Array) -> Array:
+    """Points between those where the gain bends."""
+    extra = np.empty(grid.size)
+    count = 0
+    for k in range(1, grid.size - 2):
+        bend = 0.0
+        for i in (k, k + 1):
+            left, right = grid[i] - grid[i - 1], grid[i + 1] - grid[i]
+            straight = (np.log(values[i - 1]) * right + np.log(values[i + 1]) * left) / (left + right)
+            bend = max(bend, abs(np.log(values[i]) - straight))
+        if bend > _BEND and grid[k + 1] - grid[k] > 1e-7 * grid[k + 1]:
+            extra[count] = 0.5 * (grid[k] + grid[k + 1])
+            count += 1
+    return extra[:count]
+
+
+@compiled
+def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude: float, reference: float) -> Any:
+    """Frequencies and values of the local maxima of the gain, 0 standing for the limit of low frequencies; all well.
+
+    None is found where the system cannot be closed; the value is infinite where the gain grows without bound.
+    """
+    A, B, C, D, _, _, good = close(row, descriptor)
+    if not good:
+        return np.zeros(0), np.zeros(0), False
+    system = (A, B, C, D, units(A))
+    G = np.empty((C.shape[0], B.shape[1]), np.complex128)
+    grid = grid_of(row, dampers, reference, descriptor)
+    if grid.size < 2:
+        return np.zeros(0), np.zeros(0), False
+    fine = True
+    points = grid
+    grid, values = np.empty(0), np.empty(0)
+    for _ in range(6):
+        new = np.empty(points.size)
+        for k in range(points.size):
+            new[k], settled = gain_at(system, points[k], limit, amplitude, reference, G)
+            fine = fine and settled
+        both, heights = np.concatenate((grid, points)), np.concatenate((values, new))
+        order = np.argsort(both)
+        both, heights = both[order], heights[order]
+        count = 0
+        for k in range(both.size):  # points of equal gain count once, or a top between two of them would be lost
+            if count == 0 or abs(heights[k] - heights[count - 1]) > 1e-12 * heights[k]:
+                both[count], heights[count] = both[k], heights[k]
+                count += 1
+        grid, values = both[:count].copy(), heights[:count].copy()
+        points = finer(grid, values)
+        if points.size == 0:
+            break
+    omegas, found = np.empty(grid.size), np.empty(grid.size)
+    number = 0
+    for k in range(grid.size):
+        if (k > 0 and not values[k] > values[k - 1]) or (k < grid.size - 1 and not values[k] > values[k + 1]):
+            continue
+        if k == 0:
+            lower = 1e-5 * grid[0]
+            omegas[0], found[0] = 0.0, gain_at(system, lower, limit, amplitude, reference, G)[0]
+            if found[0] > 2.0 * values[0]:
+                found[0] = np.inf
+        else:
+            high = grid[k + 1] if k < grid.size - 1 else grid[k]
+            omegas[number] = top(system, grid[k - 1], high, limit, amplitude, reference, G)
+            found[number] = gain_at(system, omegas[number], limit, amplitude, reference, G)[0]
+            if values[k] > found[number]:
+                omegas[number], found[number] = grid[k], values[k]
+            beside = gain_at(system, omegas[number] * (1.0 + _WIDTH), limit, amplitude, reference, G)[0]
+            if found[number] > 100.0 * beside:  # a resonance that friction cannot hold
+                found[number] = np.inf
+        number += 1
+    return omegas[:number], found[:number], fine
+
+
+@compiled
+def largest_gains(
+    rows: Array, limits: Array, dampers: Array, descriptor: Array, amplitude: float, reference: float
+) -> Array:
+    """Largest gain at each row of values; nan where it could not be found."""
+    result = np.full(rows.shape[0], np.nan)
+    for i in range(rows.shape[0]):
+        _, found, fine = peaks(rows[i], limits[i], dampers, descriptor, amplitude, reference)
+        if fine and found.size > 0:
+            result[i] = found.max()
+    return result
+
+
+@compiled
+def gains(
+    rows: Array, limits: Array, descriptor: Array, amplitude: float, reference: float, omegas: Array, low: float
+) -> Array:
+    """Gains (designs, frequencies) at each row of values; a frequency below `low` is taken there."""
+    result = np.full((rows.shape[0], omegas.size), np.nan)
+    for i in range(rows.shape[0]):
+        A, B, C, D, _, _, good = close(rows[i], descriptor)
+        if not good:
+            continue
+        system = (A, B, C, D, units(A))
+        G = np.empty((C.shape[0], B.shape[1]), np.complex128)
+        for k in range(omegas.size):
+            result[i, k] = gain_at(system, max(omegas[k], low), limits[i], amplitude, reference, G)[0]
+    return result

@@ -1,0 +1,147 @@
+"""Harmonic balance of dry friction in one harmonic: a peak gain under a sinusoidal force.
+
+A Coulomb friction f across which the velocity has the amplitude V acts as a damper of 4 f / (pi V) on that harmonic.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import OK, IndicatorError, Status, StatusKind
+from inerter.indices.index import Question
+from inerter.kernels import harmonic as kernels
+from inerter.methods.equivalent import Equivalent, equivalent
+from inerter.methods.method import Estimate
+from inerter.norms.hinf import Peak
+from inerter.systems.descriptor import Descriptor, describe
+from inerter.vehicle.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+_NUDGE = 1e-6  # relative change of a value for differences
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicBalance:
+    """A peak gain with friction as a function of the free values: an `Objective`.
+
+    The gains at given frequencies are its components, with gradients by central differences.
+    """
+
+    question: Question
+    descriptor: Descriptor  # inputs: the force, a force beside each friction; outputs: displacement, velocities
+    parts: Equivalent
+
+    @property
+    def amplitude(self) -> float:
+        """Of the force [N]."""
+        assert self.question.amplitude is not None
+        return self.question.amplitude
+
+    @property
+    def weight(self) -> float:
+        """What the gain is multiplied by in the index."""
+        return abs(self.question.outputs[0].weight)
+
+    @cached_property
+    def arrays(self) -> tuple[Any, ...]:
+        """The descriptor as compiled code takes it."""
+        names = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
+        return tuple(np.ascontiguousarray(getattr(self.descriptor, name), dtype=float) for name in names)
+
+    @cached_property
+    def places(self) -> NDArray[np.int64]:
+        """Where the dampers stand among the variables of the descriptor."""
+        names = list(self.descriptor.variables)
+        return np.array([names.index(name) for name in self.parts.dampers], dtype=np.int64)
+
+    def check_idle(self) -> None:
+        """Raises `DesignError` if a free value has no effect."""
+        self.parts.check_idle(self.descriptor)
+
+    def _rows(self, points: Array) -> tuple[Array, Array]:
+        """Values for the descriptor, and amplitudes of the friction forces."""
+        dampers = np.full((points.shape[0], len(self.parts.dampers)), self.parts.scale)
+        rows = np.hstack([points, dampers])[:, self.parts.order(self.descriptor)]
+        return np.ascontiguousarray(rows), np.ascontiguousarray(4.0 / math.pi * self.parts.limits(points))
+
+    def known(self, points: Array) -> Array:
+        """The index at each row of `points`; nan where it could not be found."""
+        rows, limits = self._rows(points)
+        found = kernels.largest_gains(rows, limits, self.places, self.arrays, self.amplitude, self.parts.scale)
+        return np.asarray(self.weight * found)
+
+    def values(self, points: Array) -> Array:
+        """The index at each row of `points`; infinite where it could not be found."""
+        known = self.known(points)
+        return np.where(np.isnan(known), np.inf, known)
+
+    def value_and_gradient(self, point: Array) -> tuple[float, Array]:
+        """The index, and the gradient of the highest peak."""
+        which = self.active(point)[:1]
+        if which.size == 0:
+            return math.inf, np.zeros_like(point)
+        values, gradients = self.components(point, which)
+        return float(values[0]), gradients[0]
+
+    def peaks(self, point: Array) -> tuple[tuple[Peak, ...], bool]:
+        """Local maxima of the index's gain, the highest first, and whether all went well."""
+        rows, limits = self._rows(point[None])
+        omegas, gains, fine = kernels.peaks(
+            rows[0], limits[0], self.places, self.arrays, self.amplitude, self.parts.scale
+        )
+        order = np.argsort(-gains, kind="stable")
+        return tuple(Peak(float(omegas[i]), self.weight * float(gains[i])) for i in order), bool(fine)
+
+    def active(self, point: Array) -> Array:
+        """Frequencies [rad/s] of the local maxima of the gain, the highest first; 0 for the limit of low ones."""
+        return np.array([peak.omega for peak in self.peaks(point)[0] if peak.gain > 0.0])
+
+    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
+        """Gains at the frequencies `which`, and their gradients over the free values."""
+        steps = _NUDGE * np.diag(point)
+        rows, limits = self._rows(np.vstack([point, point + steps, point - steps]))
+        low = 1e-7 * float(np.min(which[which > 0.0], initial=1.0))
+        found = self.weight * kernels.gains(
+            rows, limits, self.arrays, self.amplitude, self.parts.scale, np.ascontiguousarray(which, dtype=float), low
+        )
+        ahead, behind = found[1 : 1 + point.size], found[1 + point.size :]
+        return found[0], np.asarray((ahead - behind).T / (2.0 * _NUDGE * point))
+
+    def estimate(self) -> Estimate:
+        """The index of a design without free values."""
+        peaks, fine = self.peaks(np.zeros(0))
+        result = Estimate(math.nan, self.question.unit, peaks=peaks, notes=self.descriptor.notes)
+        if not peaks:
+            return replace(result, status=Status(StatusKind.FAILED, "the frequency response could not be computed"))
+        status = OK if fine else Status(StatusKind.INACCURATE, "the frictions did not settle at every frequency")
+        if not np.isfinite(peaks[0].gain):
+            status = Status(StatusKind.MARGINAL, "a motion that nothing holds: the gain grows without bound")
+        words = [f"{said} by its describing function" for said in self.parts.frictions]
+        return replace(result, value=peaks[0].gain, status=status, notes=(*result.notes, *words))
+
+
+def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalance:
+    """The balance for a peak gain.
+
+    Raises `IndicatorError` if the question does not go from one force to one output or says no amplitude.
+    """
+    if len(question.outputs) != 1 or len(question.inputs) != 1 or question.road or question.high_pass:
+        raise IndicatorError("A peak gain goes from one force to one output, without a road and without a filter.")
+    if question.amplitude is None:
+        raise IndicatorError(
+            "A peak gain with friction depends on the amplitude of the force. Give it, as in "
+            "LoadCarrying(amplitude=1000.0), in N."
+        )
+    parts = equivalent(mechanism)
+    descriptor = describe(
+        parts.mechanism,
+        (*question.inputs, *(f"{name}_force" for name in parts.dampers)),
+        (question.outputs[0].output, *(f"{name}_velocity" for name in parts.dampers)),
+    )
+    return HarmonicBalance(question, descriptor, parts)

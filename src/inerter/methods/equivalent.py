@@ -1,0 +1,152 @@
+"""A mechanism whose frictions are dampers: what statistical linearisation and harmonic balance share.
+
+Either closure asks for dampers c whose force has a given size, c |v(c)| = limit, where |v| is the r.m.s. or the
+amplitude of the velocity across the friction. That force is limit v / |v|, of fixed size and against the motion; on the
+space of stationary (or sinusoidal) motions it is a monotone law, and a passive mechanism is one too, so there is one
+solution for any number of frictions. Where the force through a rigid link would be smaller than the limit, the
+friction sticks and c is infinite.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import DesignError, IndicatorError
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Spring, Value
+from inerter.networks.transform import map_elements
+from inerter.systems.descriptor import Descriptor
+from inerter.systems.graph import linear_graph
+from inerter.vehicle.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Equivalent:
+    """A mechanism with a free damper in the place of each friction that can move, and what those frictions were."""
+
+    mechanism: Mechanism
+    dampers: tuple[str, ...]  # names of the dampers, as variables and as elements
+    frictions: tuple[str, ...]  # in words, for each damper
+    locked: tuple[str, ...]  # in words, those replaced by a rigid link instead
+    forces: tuple[Value, ...]  # of each friction [N]
+    design: tuple[str, ...]  # free values of the mechanism that it stands for
+    scale: float  # a damping typical of the mechanism [N s/m]
+
+    def limits(self, points: Array) -> Array:
+        """Friction forces (designs, frictions) [N] at each row of `points`, the values of the design."""
+        result = np.empty((points.shape[0], len(self.forces)))
+        for i, (force, place) in enumerate(zip(self.forces, self.places, strict=True)):
+            result[:, i] = points[:, place] if isinstance(force, Free) else force
+        return result
+
+    @cached_property
+    def places(self) -> tuple[int, ...]:
+        """For each friction the number of the free value that is its force, or -1 if its force is fixed."""
+        names = [force.name if isinstance(force, Free) else None for force in self.forces]
+        return tuple(-1 if name is None else self.design.index(name) for name in names)
+
+    def order(self, descriptor: Descriptor) -> list[int]:
+        """For each variable of `descriptor`, where it stands in (values of the design, dampers)."""
+        known = (*self.design, *self.dampers)
+        return [known.index(name) for name in descriptor.variables]
+
+    def check_idle(self, descriptor: Descriptor) -> None:
+        """Raises `DesignError` if a free value is neither in `descriptor` nor the force of a friction."""
+        seen = {*descriptor.variables, *(self.design[i] for i in self.places if i >= 0)}
+        idle = ", ".join(name for name in self.design if name not in seen)
+        if idle:
+            raise DesignError(
+                f"The free value of {idle} has no effect: its element is beside a closed gap, or in series with "
+                f"nothing that moves. Fix it, or leave the element out."
+            )
+
+
+def check_gaps(mechanism: Mechanism) -> None:
+    """Raises `IndicatorError` for a gap with play."""
+    for mount in mechanism.mounts():
+        for element in mount.network.elements():
+            if isinstance(element, Gap) and element.value != 0.0:
+                raise IndicatorError(
+                    f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is a gap "
+                    f"with play. Use ExpectedValue() or ApproximateLinear(), which simulate it, or give the gap a "
+                    f"half-width of 0."
+                )
+
+
+def has_friction(mechanism: Mechanism) -> bool:
+    """Whether any friction has a force."""
+    return any(_acts(element) for mount in mechanism.mounts() for element in mount.network.elements())
+
+
+def equivalent(
+    mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = (), scale: float | None = None
+) -> Equivalent:
+    """`mechanism` with a free damper in the place of each friction.
+
+    Those in `without` are left out, those in `locked` become rigid links (both named by their damper). A friction
+    beside a rigid link cannot move and is left out too. `scale` is a damping near which the dampers are looked for.
+
+    Raises `MechanismError` for what is ill-posed.
+    """
+    scale = _typical_damping(mechanism) if scale is None else scale
+    taken = {element.label for mount in mechanism.mounts() for element in mount.network.elements()}
+    found: dict[str, tuple[str, Value]] = {}
+
+    def changed(mount: str, network: Network) -> Network:
+        def damped(element: Element) -> Network:
+            if not _acts(element):
+                return element
+            name = f"equivalent_damper_{len(found) + 1}"
+            while name in taken:
+                name += "_"
+            found[name] = (f"friction {element.label!r} in {mount!r}", element.value)
+            if name in without:
+                return Friction(0.0, element.label)
+            if name in locked:
+                return Gap(0.0, name)
+            return Damper(Free(1e-3 * scale, 1e3 * scale, name), name)
+
+        return map_elements(network, damped)
+
+    other = replace(
+        mechanism,
+        struts=tuple(replace(s, network=changed(s.name, s.network)) for s in mechanism.struts),
+        tyres=tuple(replace(t, network=changed(t.name, t.network)) for t in mechanism.tyres),
+    )
+    moving = {branch.label for branch in linear_graph(other).branches}
+    names = tuple(name for name in found if name in moving)
+    return Equivalent(
+        mechanism=other,
+        dampers=names,
+        frictions=tuple(found[name][0] for name in names),
+        locked=tuple(found[name][0] for name in locked),
+        forces=tuple(found[name][1] for name in names),
+        design=tuple(mechanism.free_values()),
+        scale=scale,
+    )
+
+
+def _acts(element: Element) -> bool:
+    return isinstance(element, Friction) and element.value != 0.0
+
+
+def _typical_damping(mechanism: Mechanism) -> float:
+    """Root of the largest stiffness times the largest inertia: the impedance at a natural frequency."""
+    elements = [element for mount in mechanism.mounts() for element in mount.network.elements()]
+    springs = [_size(e.value) for e in elements if isinstance(e, Spring)]
+    inertias = [coordinate.inertia for coordinate in mechanism.coordinates]
+    dampers = [_size(e.value) for e in elements if isinstance(e, Damper)]
+    if springs and inertias:
+        return math.sqrt(max(springs) * max(inertias))
+    return max(dampers, default=1e3)
+
+
+def _size(value: Value) -> float:
+    return math.sqrt(value.lower * value.upper) if isinstance(value, Free) else value

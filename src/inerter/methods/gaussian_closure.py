@@ -1,0 +1,309 @@
+"""Statistical linearisation of dry friction: the dampers whose r.m.s. force is that of the friction, and what follows.
+
+With a Gaussian velocity of r.m.s. sigma across it, the damper nearest to a Coulomb friction f in the mean square is
+c = sqrt(2/pi) f / sigma (Caughey 1963; Roberts and Spanos 1990), and sigma follows from c by one Lyapunov equation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import MechanismError, Status, StatusKind
+from inerter.indices.index import Question
+from inerter.methods.compiled_norm import CompiledQuestion
+from inerter.methods.equivalent import Equivalent, equivalent
+from inerter.methods.linear import Conventions, LinearProblem, linear_problem
+from inerter.methods.method import Estimate
+from inerter.systems.descriptor import Descriptor, close
+from inerter.vehicle.mechanism import Mechanism, Weighted
+
+Array = NDArray[np.float64]
+_SHARE = math.sqrt(2.0 / math.pi)  # r.m.s. force of the equivalent damper over the friction force
+_STEPS = 160
+_SETTLED = 1e-10  # relative error of a damper's r.m.s. force
+_NUDGE = 1e-4  # relative change of a damper for differences
+_LOCKED = 0.02  # d log(force) / d log(damper) below which a friction whose force is too small will not slip
+_STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
+_RIGID = 1e-5  # the same for a damper that stands for a rigid link
+
+Speeds = Callable[[Array, NDArray[np.intp]], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Dampers:
+    """Equivalent dampers (designs, frictions) [N s/m], those that stand for a friction that sticks, and the error.
+
+    `error` is the largest relative error of the force of a friction that slips; nan where the covariance was lost.
+    """
+
+    damping: Array
+    sticks: NDArray[np.bool_]
+    error: Array  # (designs,)
+
+
+def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.bool_] | None = None) -> Dampers:
+    """Dampers c with c speeds(c) = `limits`, by Newton's method in 1/c, for many designs side by side.
+
+    `speeds(c, designs)` gives the r.m.s. velocities (rows, frictions) for rows of dampers of the numbered designs.
+    1/force is nearly linear in 1/c both for small and for large c, so few steps are needed. A friction whose force
+    saturates below its limit sticks; its damper ends so large that it hardly moves. `held` ones stick from the start.
+    """
+    damping, error = start.copy(), np.full(limits.shape[0], np.inf)
+    held = np.zeros(limits.shape, dtype=bool) if held is None else held
+    sticks, left = held.copy(), np.arange(limits.shape[0])
+    for step in range(_STEPS):
+        if left.size == 0:
+            break
+        ratio, slope = _forces(speeds, damping[left], limits[left], left)
+        own = np.einsum("rii->ri", slope)
+        saturated = (own < _LOCKED) | (damping[left] > _STIFFEST * start[left])
+        stuck = held[left] | (ratio * (1.0 + 20.0 * np.maximum(own, 0.0)) < 1.0) & saturated | (ratio == 0.0)
+        miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
+        settled = (miss <= _SETTLED) | np.isnan(miss)
+        error[left], sticks[left] = miss, stuck
+        factor = np.where(stuck, 1.0, _newton(ratio, slope, stuck, alone=step % 40 >= 15))
+        rigid = np.where(stuck & ~held[left], np.clip(own / _RIGID, 1.0, 1.0 / _RIGID), 1.0)
+        damping[left] *= np.where(settled[:, None], rigid, factor)
+        left = left[~settled]
+    return Dampers(damping, sticks, error)
+
+
+def _forces(speeds: Speeds, damping: Array, limits: Array, designs: NDArray[np.intp]) -> tuple[Array, Array]:
+    """Forces over their limits, and d log(force i) / d log(damper j)."""
+    frictions = damping.shape[1]
+    nudged = damping[:, None, :] * (1.0 + _NUDGE * np.vstack([np.zeros(frictions), np.eye(frictions)]))
+    found = speeds(nudged.reshape(-1, frictions), np.repeat(designs, frictions + 1)).reshape(nudged.shape)
+    still = found[:, 0] <= 1e-12 * found[:, 0].max(axis=1, keepdims=True)
+    logs = np.log(np.where(still[:, None] | ~(found > 0.0), np.nan, found))
+    slope = np.eye(frictions) + np.swapaxes(logs[:, 1:] - logs[:, :1], 1, 2) / np.log1p(_NUDGE)
+    slope = np.where(still[:, :, None] | still[:, None, :], np.eye(frictions), slope)
+    return np.where(still, 0.0, damping * found[:, 0] / limits), slope
+
+
+def _newton(ratio: Array, slope: Array, stuck: NDArray[np.bool_], alone: bool) -> Array:
+    """Factors by which to multiply the dampers; `alone` as if each force depended on its own damper only.
+
+    The matrix is singular where two frictions slip as one, such as two end to end; a single one slips as it must then.
+    """
+    identity = np.eye(ratio.shape[1])
+    free = ~stuck[:, :, None] & ~stuck[:, None, :] & np.isfinite(slope)
+    if alone:
+        free &= identity > 0.0
+    matrix = np.where(free, slope, identity) + 1e-12 * identity
+    miss = np.where(stuck | np.isnan(ratio), 0.0, ratio - 1.0)
+    relative = np.linalg.solve(matrix, (0.5 if alone else 1.0) * miss[..., None])[..., 0]
+    return np.asarray(1.0 / np.clip(1.0 + relative, 0.1, 1e4))
+
+
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """The linear model while certain frictions stick (rigid links) and the others slip (dampers)."""
+
+    index: CompiledQuestion
+    velocities: CompiledQuestion  # across the frictions that slip; without the index's filter
+    parts: Equivalent
+
+    @cached_property
+    def columns(self) -> list[int]:
+        """For each variable of the descriptor, where it stands in (values of the design, dampers)."""
+        return self.parts.order(self.index.problem.descriptor)
+
+    @cached_property
+    def single(self) -> tuple[CompiledQuestion, ...]:
+        """The velocity across each friction by itself."""
+        problem = self.velocities.problem
+        return tuple(CompiledQuestion(_part(problem, slice(i, i + 1))) for i in range(len(problem.question.outputs)))
+
+    def rows(self, points: Array, damping: Array) -> Array:
+        """Rows of values for the descriptors."""
+        return np.ascontiguousarray(np.hstack([points, damping])[:, self.columns])
+
+    def dampers(self, points: Array, start: Array, held: NDArray[np.bool_] | None = None) -> Dampers:
+        """The equivalent dampers at each row of `points`."""
+        weight = self.velocities.problem.weights
+
+        def speeds(damping: Array, designs: NDArray[np.intp]) -> Array:
+            return np.asarray(weight * self.velocities.output_norms(self.rows(points[designs], damping)))
+
+        if not start.shape[1]:
+            return Dampers(start, np.zeros(start.shape, dtype=bool), np.zeros(points.shape[0]))
+        return solve_dampers(speeds, _SHARE * self.parts.limits(points), start, held)
+
+    def value_and_gradient(self, question: CompiledQuestion, row: Array) -> tuple[float, Array]:
+        """A value and its gradient over (values of the design, dampers)."""
+        value, over_variables = question.value_and_gradient(row)
+        gradient = np.zeros(len(self.parts.design) + len(self.parts.dampers))
+        gradient[self.columns] = over_variables
+        return value, gradient
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Some designs that share a pattern, and their dampers there."""
+
+    pattern: Pattern
+    designs: NDArray[np.intp]
+    dampers: Dampers
+
+
+@dataclass(frozen=True, eq=False)
+class GaussianClosure:
+    """An index of r.m.s. values as a function of the free values, with friction: an `Objective`.
+
+    Gradients are those of the norms, with the dampers by implicit differentiation of their equations. The index is
+    smooth but where a friction begins to slip.
+    """
+
+    mechanism: Mechanism
+    question: Question
+    conventions: Conventions
+    patterns: dict[frozenset[str], Pattern | None] = field(default_factory=dict)  # those met so far
+
+    @cached_property
+    def without(self) -> frozenset[str]:
+        """Frictions that white noise passes straight to, as one in a tyre: with a velocity of infinite variance across
+        them, their dampers are zero.
+        """
+        left_out: frozenset[str] = frozenset()
+        while True:
+            pattern = _pattern(self, left_out, frozenset())
+            direct = _direct(pattern.velocities.problem.descriptor)
+            if not direct:
+                self.patterns[frozenset()] = pattern
+                return left_out
+            left_out |= {pattern.parts.dampers[i] for i in direct}
+
+    def pattern(self, locked: frozenset[str]) -> Pattern | None:
+        """The linear model with these frictions stuck; None if that makes a mount rigid, which has no model."""
+        without = self.without
+        if locked not in self.patterns:
+            try:
+                self.patterns[locked] = _pattern(self, without, locked)
+            except MechanismError:
+                self.patterns[locked] = None
+        return self.patterns[locked]
+
+    @property
+    def free(self) -> Pattern:
+        """The linear model with every friction slipping."""
+        pattern = self.pattern(frozenset())
+        assert pattern is not None
+        return pattern
+
+    def check_idle(self) -> None:
+        """Raises `DesignError` if a free value has no effect."""
+        self.free.parts.check_idle(self.free.index.problem.descriptor)
+
+    def solve(self, points: Array) -> list[Solved]:
+        """The dampers of every row of `points`, by which frictions stick."""
+        start = np.full((points.shape[0], len(self.free.parts.dampers)), self.free.parts.scale)
+        return self._solve(points, np.arange(points.shape[0]), start, frozenset())
+
+    def _solve(self, points: Array, designs: NDArray[np.intp], start: Array, locked: frozenset[str]) -> list[Solved]:
+        pattern = self.pattern(locked)
+        assert pattern is not None
+        found = pattern.dampers(points[designs], start)
+        kinds, kind_of = np.unique(found.sticks, axis=0, return_inverse=True)
+        solved: list[Solved] = []
+        for number, sticks in enumerate(kinds):
+            here = np.flatnonzero(kind_of.ravel() == number)
+            part = Dampers(found.damping[here], found.sticks[here], found.error[here])
+            more = {name for name, sticks_too in zip(pattern.parts.dampers, sticks, strict=True) if sticks_too}
+            inner = self.pattern(locked | more) if more else None
+            if inner is not None:
+                still = [i for i, name in enumerate(pattern.parts.dampers) if name in inner.parts.dampers]
+                solved += self._solve(points, designs[here], part.damping[:, still], locked | more)
+                continue
+            if more:
+                too_stiff = np.any(part.sticks & (part.damping > _STIFFEST * pattern.parts.scale), axis=1)
+                part = pattern.dampers(points[designs[here]], part.damping, part.sticks)
+                part.error[too_stiff] = np.nan
+            solved.append(Solved(pattern, designs[here], part))
+        return solved
+
+    def values(self, points: Array) -> Array:
+        """The index at each row of `points`: infinite where it cannot be told."""
+        known = self.known(points)
+        return np.where(np.isnan(known), np.inf, known)
+
+    def known(self, points: Array) -> Array:
+        """The index at each row of `points`; nan where it cannot be told."""
+        result = np.full(points.shape[0], np.nan)
+        for solved in self.solve(points):
+            good = solved.dampers.error <= 1e-6
+            rows = solved.pattern.rows(points[solved.designs[good]], solved.dampers.damping[good])
+            result[solved.designs[good]] = solved.pattern.index.known(rows)
+        return result
+
+    def value_and_gradient(self, point: Array) -> tuple[float, Array]:
+        """The index and its gradient over the free values."""
+        (solved,) = self.solve(point[None])
+        pattern, parts = solved.pattern, solved.pattern.parts
+        row = pattern.rows(point[None], solved.dampers.damping)[0]
+        value, gradient = pattern.value_and_gradient(pattern.index, row)
+        slips = np.flatnonzero(~solved.dampers.sticks[0])
+        design, on_damping = gradient[: point.size], gradient[point.size :]
+        damping = solved.dampers.damping[0, slips]
+        force, force_damping = np.zeros((slips.size, point.size)), np.eye(slips.size)  # derivatives of logarithms
+        for row_of, i in enumerate(slips):
+            speed, slope = pattern.value_and_gradient(pattern.single[i], row)
+            force[row_of] += slope[: point.size] / speed
+            force_damping[row_of] += slope[point.size :][slips] * damping / speed
+            if parts.places[i] >= 0:
+                force[row_of, parts.places[i]] -= 1.0 / point[parts.places[i]]
+        return value, design - (on_damping[slips] * damping) @ np.linalg.solve(force_damping, force)
+
+    def active(self, point: Array) -> Array | None:
+        """None: the index is smooth."""
+        return None
+
+    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
+        """Not asked for where `active` gives None."""
+        raise NotImplementedError
+
+    def estimate(self) -> Estimate:
+        """The index of a design without free values."""
+        (solved,) = self.solve(np.zeros((1, 0)))
+        parts, dampers, problem = solved.pattern.parts, solved.dampers, solved.pattern.index.problem
+        if np.isnan(dampers.error[0]):
+            message = "the r.m.s. velocity across a friction could not be computed: rounding hides it"
+            return Estimate(math.nan, self.question.unit, Status(StatusKind.FAILED, message))
+        result = problem.estimate(close(problem.descriptor, dict(zip(parts.dampers, dampers.damping[0], strict=True))))
+        if dampers.error[0] > _SETTLED and result.status.ok:
+            message = f"the equivalent dampers are known to {dampers.error[0]:.1e} only"
+            result = replace(result, status=Status(StatusKind.INACCURATE, message))
+        told = [f"{words} sticks" for words in parts.locked]
+        told += [
+            f"{words} sticks" if sticks else f"{words} taken as a damper of {c:.6g} N s/m"
+            for words, c, sticks in zip(parts.frictions, dampers.damping[0], dampers.sticks[0], strict=True)
+        ]
+        return replace(result, notes=(*self.free.index.problem.descriptor.notes, *told))
+
+
+def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozenset[str]) -> Pattern:
+    parts = equivalent(closure.mechanism, without, locked)
+    wanted = tuple(Weighted(f"{name}_velocity") for name in parts.dampers)
+    outputs = closure.question.outputs
+    joint = linear_problem(parts.mechanism, replace(closure.question, outputs=(*outputs, *wanted)), closure.conventions)
+    index, velocities = _part(joint, slice(0, len(outputs))), _part(joint, slice(len(outputs), None))
+    return Pattern(CompiledQuestion(index), CompiledQuestion(replace(velocities, corner=None)), parts)
+
+
+def _part(problem: LinearProblem, which: slice) -> LinearProblem:
+    """The problem with some of its outputs."""
+    d = problem.descriptor
+    descriptor = replace(d, Y_eta=d.Y_eta[:, which], Y_x=d.Y_x[:, which], Y_u=d.Y_u[:, which], outputs=d.outputs[which])
+    question = replace(problem.question, outputs=problem.question.outputs[which])
+    return replace(problem, question=question, descriptor=descriptor)
+
+
+def _direct(descriptor: Descriptor) -> list[int]:
+    """Numbers of the outputs that white noise passes straight to."""
+    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in descriptor.variables.items()}
+    return [int(i) for i in np.flatnonzero(np.any(close(descriptor, middle).D != 0.0, axis=1))]

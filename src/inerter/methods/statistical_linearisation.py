@@ -1,0 +1,87 @@
+"""`StatisticalLinearisation`: dry friction as the damper that it resembles most under the motion that results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.indices.index import Combination, Index
+from inerter.methods.equivalent import check_gaps, has_friction
+from inerter.methods.linear import CONVENTIONS
+from inerter.methods.method import Estimate, Objective
+from inerter.methods.norm import Norm
+from inerter.vehicle.cars import Vehicle
+
+if TYPE_CHECKING:
+    from inerter.methods.describing_function import HarmonicBalance
+    from inerter.methods.gaussian_closure import GaussianClosure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StatisticalLinearisation:
+    """Dry friction without simulation, for surrogates and trends.
+
+    Indices of r.m.s. values: each friction f [N] becomes a damper sqrt(2/pi) f / sigma, with sigma [m/s] the r.m.s.
+    velocity across it on the true (white-velocity) road, taken as Gaussian; all dampers are found together, and the
+    index is the norm with them. Peak gains: each friction becomes a damper 4 f / (pi V) at each frequency, with V [m/s]
+    the amplitude of the velocity across it under a sinusoidal force of the index's amplitude (harmonic balance in one
+    harmonic). A friction that the motion cannot overcome sticks. Without friction the values are those of `Norm`.
+
+    `conventions` is that of `Norm`, for the wheelbase delay and the filter of the index.
+
+    Source: Caughey (1963); Roberts and Spanos, Random Vibration and Statistical Linearization (1990).
+
+    Raises `IndicatorError` for other conventions; where it is used, for a gap with play, and for a peak gain with
+    friction whose index says no amplitude.
+    """
+
+    conventions: str = "exact"
+    name = "statistical-linearisation"
+
+    def __post_init__(self) -> None:
+        Norm(self.conventions)  # refuses what it does not know
+
+    def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
+        """The index of a vehicle without free values; `notes` tell what became of each friction."""
+        closure = self._closure(vehicle, index)
+        return Norm(self.conventions).estimate(vehicle, index) if closure is None else closure.estimate()
+
+    def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
+        """The indices (designs, indices) at many values of the free values; nan where one cannot be told."""
+        return np.column_stack([self._many(vehicle, index, points) for index in indices])
+
+    def objective(self, vehicle: Vehicle, index: Index) -> Objective:
+        """The index as a function of the free values, compiled; friction forces may be among them."""
+        closure = self._closure(vehicle, index)
+        if closure is None:
+            return Norm(self.conventions).objective(vehicle, index)
+        closure.check_idle()
+        return closure
+
+    def _many(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array:
+        closure = self._closure(vehicle, index)
+        if closure is None:
+            return Norm(self.conventions).estimate_many(vehicle, [index], points)[:, 0]
+        columns = [points[name] for name in vehicle.free_values()]
+        return closure.known(np.column_stack(columns) if columns else np.zeros((1, 0)))
+
+    def _closure(self, vehicle: Vehicle, index: Index) -> GaussianClosure | HarmonicBalance | None:
+        """The closure that serves the index; None if no friction acts."""
+        mechanism = vehicle.mechanism()
+        question = index.question(mechanism)
+        check_gaps(mechanism)
+        if not has_friction(mechanism):
+            return None
+        if question.combination is Combination.PEAK_GAIN:
+            from inerter.methods.describing_function import harmonic_balance
+
+            return harmonic_balance(mechanism, question)
+        from inerter.methods.gaussian_closure import GaussianClosure
+
+        return GaussianClosure(mechanism, question, CONVENTIONS[self.conventions])

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
     from inerter.methods.compare import Comparison as Comparison
     from inerter.methods.compare import compare as compare
-    from inerter.methods.expected_value import ExpectedValue as ExpectedValue
     from inerter.methods.excitation import MultisineExcitation as MultisineExcitation
     from inerter.methods.excitation import NoiseExcitation as NoiseExcitation
+    from inerter.methods.expected_value import ExpectedValue as ExpectedValue
     from inerter.methods.method import Estimate as Estimate
     from inerter.methods.method import evaluate as evaluate
     from inerter.methods.method import evaluate_many as evaluate_many

@@ -33,6 +33,8 @@ class HarmonicBalance:
     The gains at given frequencies are its components, with gradients by central differences.
     """
 
+    costly = False
+
     question: Question
     descriptor: Descriptor  # inputs: the force, a force beside each friction; outputs: displacement, velocities
     parts: Equivalent

@@ -160,6 +160,8 @@ class GaussianClosure:
     smooth but where a friction begins to slip.
     """
 
+    costly = False
+
     mechanism: Mechanism
     question: Question
     conventions: Conventions

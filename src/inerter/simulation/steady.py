@@ -102,9 +102,7 @@ def mean_squares(
     return integration.record.sums / (table.samples - 1), integration
 
 
-def _repeated(
-    integration: Integration, again: InputTable, repeats: float, most: int
-) -> tuple[Integration, Repetition]:
+def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:
     """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
     record, last = integration.record, again.time.size - 1
     integration.advance(last)

@@ -1,4 +1,4 @@
-"""The methods beside each other: where friction is small they must agree to first order, and where it is not they part."""
+"""The methods beside each other: they must agree to first order where friction is small, and part where it is not."""
 
 from __future__ import annotations
 

@@ -17,7 +17,9 @@ _OPTIMA = {
     "J3": ("S2-10N", "S2-100N", "S3-10N", "S3-100N", "S3-soft-10N"),
     "J5": ("S2-100N", "S3-100N"),
 }
-_BUDGETS: dict[str, tuple[str, str, tuple[float, float], Method]] = {  # what is asked of which layout: the element, its bounds in SI units, and how
+_BUDGETS: dict[
+    str, tuple[str, str, tuple[float, float], Method]
+] = {  # what is asked of which layout: the element, its bounds in SI units, and how
     "friction": ("-10N", "f_10", (1.0, 1e4), ExpectedValue(realisations=8, jobs=1)),
     "shaft stiffness": ("-soft", "ks", (1e4, 1e8), Norm()),
     "backlash": ("-gap", "e", (1e-6, 1e-2), ExpectedValue(realisations=8, jobs=1)),
@@ -82,4 +84,3 @@ def _printed(index: str, layout: str, kind: str) -> Vehicle:
     source = study("table1" if kind in ("", "-soft") else "friction1")
     vehicle: Vehicle = source.design(layout + kind).with_values(row.parameters)
     return vehicle
-

@@ -223,10 +223,12 @@ def _claim_5(curves: Curves) -> Claim:
             holds &= bool(excess[0] > _WORSE) if force == 20 else True
             where = f", up to k = {_kilo(found[:1])} kN/m" if excess[0] > 0.0 and found else ""
             evidence.append(
-                f"{index} of {layout} with {force} N is {abs(100.0 * excess[0]):.2f} % {_worse(excess[0])} than S1's at "
-                f"k = {_kilo([curves.k[0]], '', 0)} kN/m{where}"
+                f"{index} of {layout} with {force} N is {abs(100.0 * excess[0]):.2f} % {_worse(excess[0])} than S1's "
+                f"at k = {_kilo([curves.k[0]], '', 0)} kN/m{where}"
             )
-    first = [curves.excess(f"{layout}-10N", "S1", index)[0] for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5"))]
+    first = [
+        curves.excess(f"{layout}-10N", "S1", index)[0] for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5"))
+    ]
     return Claim(
         5,
         "Friction only, Method 1: at small k J3 of S2 and S3 is worse than S1's, and so is J5 of S2.",
@@ -247,8 +249,8 @@ def _claim_8(curves: Curves) -> Claim:
         holds &= worst.size == 0
         rest = "" if worst.size == 0 else f", but not at k = {_kilo(worst.tolist(), ', ', 0)} kN/m"
         evidence.append(
-            f"{layout}: friction alone is better than elasticity alone above k = {_kilo(found)} kN/m; both together are "
-            f"always the worst{rest}"
+            f"{layout}: friction alone is better than elasticity alone above k = {_kilo(found)} kN/m; both together "
+            f"are always the worst{rest}"
         )
     return Claim(
         8,
@@ -301,8 +303,8 @@ def _claim_10(curves: Curves) -> Claim:
     evidence.append(f"S2: friction costs more below k = {_kilo(found)} kN/m, elasticity above")
     return Claim(
         10,
-        "Both effects, Method 1, J5: both together are the worst; S3 is influenced more by elasticity than by friction, "
-        "S2 by elasticity at large k and by friction below 140 kN/m.",
+        "Both effects, Method 1, J5: both together are the worst; S3 is influenced more by elasticity than by "
+        "friction, S2 by elasticity at large k and by friction below 140 kN/m.",
         _verdict(holds, len(found) == 1 and _near(found, 140e3, 20e3)),
         "; ".join(evidence) + ".",
     )
@@ -323,9 +325,7 @@ def _improvement(evidence: Evidence, table: int, index: str, case: int, *, exact
     values = []
     for name in (f"{index} {case}", f"{index} 1"):
         row = evidence.rows.get((table, name))
-        values.append(
-            evidence.linear[table, name] if row is None else row.exact if exact else row.paper2008
-        )
+        values.append(evidence.linear[table, name] if row is None else row.exact if exact else row.paper2008)
     return 100.0 * (1.0 - values[0] / values[1])
 
 
@@ -341,8 +341,8 @@ def _claim_6(evidence: Evidence) -> Claim:
     near = abs(costs["S2", "J3"] - 1.0) <= 0.5 and abs(costs["S3", "J3"] - 2.5) <= 0.5
     return Claim(
         6,
-        "Friction only, Method 2: 10 N is negligible for J1 and J3; 100 N costs J3 about 1 % (S2) and 2.5 % (S3) of the "
-        "improvement.",
+        "Friction only, Method 2: 10 N is negligible for J1 and J3; 100 N costs J3 about 1 % (S2) and 2.5 % (S3) of "
+        "the improvement.",
         _verdict(small, near),
         "; ".join(lines) + ".",
     )
@@ -361,8 +361,8 @@ def _claim_7(evidence: Evidence) -> Claim:
             else:
                 better, at_followed = better and over_all < 0.0, at_followed and followed < 0.0
             lines.append(
-                f"{layout} with {force} N: {over_all:+.2f} % over all frequencies, {followed:+.2f} % at the peak that the "
-                f"paper followed ({row.omega:.1f} rad/s)"
+                f"{layout} with {force} N: {over_all:+.2f} % over all frequencies, {followed:+.2f} % at the peak that "
+                f"the paper followed ({row.omega:.1f} rad/s)"
             )
     verdict = HOLDS if worse and better else FAILS
     note = "The peak that the paper followed falls, the other one rises" if at_followed and not better else ""
@@ -430,9 +430,7 @@ def _claim_13(evidence: Evidence) -> Claim:
             worse = curves.k[excess > _WORSE]
             but = f", worse at k = {_kilo(worse.tolist(), ', ', 0)} kN/m" if worse.size else ""
             lines.append(f"{index} of {layout.split('-')[0]}: {-100.0 * excess[-1]:.1f} % better at 300 kN/m{but}")
-    half = [
-        _improvement(evidence, 3, index, case) for index in ("J1", "J3", "J5") for case in (7, 13)
-    ]
+    half = [_improvement(evidence, 3, index, case) for index in ("J1", "J3", "J5") for case in (7, 13)]
     holds &= min(half) > 0.0
     lines.append(f"half car, Method 2: {min(half):.1f} to {max(half):.1f} % better")
     return Claim(
@@ -461,5 +459,3 @@ def _span(values: Array) -> str:
 
 def _kilo(values: list[float], between: str = " and ", digits: int = 1) -> str:
     return between.join(f"{value / 1e3:.{digits}f}" for value in values) or "(no crossing)"
-
-

@@ -23,7 +23,7 @@ from inerter.study.workers import spread
 
 JOURNAL = "tasks.jsonl"
 PARTS = (
-    "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims", "methods", "optima", "budgets"
+    "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims", "methods", "optima", "budgets",
 )  # fmt: skip
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
 Numbers = dict[str, Any]
@@ -97,7 +97,7 @@ def reproduce(
     unknown = [part for part in only if part not in PARTS]
     if unknown:
         raise StudyError(f"There is no part named {unknown[0]!r} (there are: {', '.join(PARTS)}).")
-    wanted = {part for part in only or PARTS} | (set(_CLAIMS) if not only or "claims" in only else set())
+    wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
     with claimed(folder, own=(*linear.STUDIES, JOURNAL, FIGURES, REPORT), resume=resume, force=force):
@@ -133,7 +133,9 @@ def _put_together(
         figure11=figure11 if "linear" in parts else None,
         curves=drawn if {"figure13", "figure14"} <= set(parts) else None,
         rows=judged,
-        linear={(c.row.table, f"{c.row.index} {c.row.case}"): c.exact for c in recomputed.compared} if recomputed else {},
+        linear={(c.row.table, f"{c.row.index} {c.row.case}"): c.exact for c in recomputed.compared}
+        if recomputed
+        else {},
     )
     return Reproduction(
         parts=parts,

@@ -57,7 +57,7 @@ class Record(NamedTuple):
     slope: Array
     value_before: Array  # the same from the left
     slope_before: Array
-    special: Array  # segments of another length than the step or at whose start a road jumps, then one past the end
+    special: Array  # segments of another length than the step, then one past the end
     slot: Array  # (segments + 1,) number of the sample at each knot, or -1
     states: Array  # (samples or 0, n)
     visited: Array  # (samples or 0,) mode at each sample

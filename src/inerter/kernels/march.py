@@ -13,10 +13,10 @@ from inerter.kernels import compiled
 _FLOATS, _INTS = types.Array(types.float64, 1, "C"), types.Array(types.int64, 1, "C")
 _TABLE = types.Array(types.float64, 2, "C")
 SIGNATURE = types.int64(
-    _TABLE,  # steps of the mode, a line each column
+    _TABLE,  # steps of the mode: a line each column, then the jump of the state with each input
     _TABLE,  # limits of the guards
     _FLOATS,  # state, changed in place
-    _FLOATS,  # work space: columns and rows of steps
+    _FLOATS,  # work space: columns, rows, columns again
     _TABLE,  # values of the inputs at the knots
     _TABLE,  # slopes
     _TABLE,  # values from the left
@@ -53,26 +53,43 @@ def padded(rows: int) -> int:
     return -(-rows // 4) * 4
 
 
+def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int) -> tuple[int, int, int]:
+    """Columns of a step, and its rows: of what follows from them, and of the guards' sway."""
+    return n + inputs + 1, padded(n + 2 * elements + outputs * (2 if jumps else 1)), padded(elements)
+
+
 @cache
-def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> March:
+def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: int) -> March:
     """The march for systems of n states, these of `flow.knot_numbers`, so many nonlinear elements and squared outputs.
 
-    It goes on while no guard can be crossed within the step, and returns the first segment that needs more care.
+    It goes on while no guard can be crossed within the step, and returns the first segment that needs more care. Over
+    roads that are held, the first `jumps` inputs may jump at every knot: positions follow at once.
     """
     inputs = len(used)
-    columns, rows, sways = n + inputs + 1, padded(n + 2 * elements + outputs), padded(elements)
+    columns, rows, sways = lines_of(n, inputs, elements, outputs, jumps)
+    at_end, at_start = n + 2 * elements, n + 2 * elements + outputs  # rows of outputs
     numbers = used or (0,)  # an empty tuple cannot be compiled, even if it is never looked into
 
     def march(  # type: ignore[no-untyped-def]
         steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
         h, mode, first, stop, settled,
     ):  # fmt: skip
-        v, y = work[:columns], work[columns : columns + rows + sways]
+        v, y, before = work[:columns], work[columns : columns + rows + sways], work[columns + rows + sways :]
         for i in range(n):
             v[i] = x[i]
         v[columns - 1] = 1.0
         k = first
         while k < stop:
+            leaps = False
+            for c in range(jumps):
+                leaps = leaps or value[k, c] != value_before[k, c]
+            if leaps:
+                for i in range(n):
+                    before[i] = v[i]
+                for c in range(jumps):
+                    rise = value[k, c] - value_before[k, c]
+                    for i in range(n):
+                        v[i] += steps[columns + c, i] * rise
             for j in range(inputs):
                 c, number = numbers[j] // 4, numbers[j] % 4
                 if number == 0:
@@ -102,14 +119,35 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int) -> Marc
                 y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
             safe = True
             for e in range(elements):
-                at_end, at_start, sway = y[n + e], y[n + elements + e], y[rows + e]
-                if not (min(at_start, at_end) - sway > limits[e, 0] and max(at_start, at_end) + sway < limits[e, 1]):
+                end, start, sway = y[n + e], y[n + elements + e], y[rows + e]
+                if not (min(start, end) - sway > limits[e, 0] and max(start, end) + sway < limits[e, 1]):
                     safe = False
             if not safe:
+                if leaps:
+                    for i in range(n):
+                        v[i] = before[i]
                 break
+            if leaps and slot[k] >= 0:  # the sample and its squares are those after the jump
+                if slot[k] < states.shape[0]:
+                    for i in range(n):
+                        states[slot[k], i] = v[i]
+                if outputs > 0 and k > settled:
+                    for j in range(inputs):
+                        c, number = numbers[j] // 4, numbers[j] % 4
+                        before[n + j] = 0.0
+                        if number == 0:
+                            before[n + j] = value_before[k, c]
+                        elif number == 2:
+                            before[n + j] = h * slope_before[k, c]
+                    before[columns - 1] = 1.0
+                    for o in range(outputs):
+                        total = 0.0
+                        for j in range(columns):
+                            total += steps[j, at_start + o] * before[j]
+                        sums[o] += y[at_start + o] ** 2 - total**2
             if outputs > 0 and k >= settled and slot[k + 1] >= 0:
                 for o in range(outputs):
-                    sums[o] += y[n + 2 * elements + o] ** 2
+                    sums[o] += y[at_end + o] ** 2
             for i in range(n):
                 v[i] = y[i]
             k += 1

@@ -559,5 +559,12 @@ def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -
     into_knots(product(guards, exact), n, used, steps, n)
     into_knots(guards, n, used, steps, n + k)
     into_knots(product(outputs, exact), n, used, steps, n + 2 * k)
-    _bound_sway(guards, chain, n, used, steps, -(-(n + 2 * k + sizes[OUTPUTS]) // 4) * 4)
+    columns, rows = n + used.shape[0] + 1, n + 2 * k + sizes[OUTPUTS]
+    for c in range(columns, steps.shape[0]):  # roads that jump: positions follow, and outputs are taken after it
+        for i in range(n):
+            steps[c, i] = maps[i, n + nr + c - columns]
+    if steps.shape[0] > columns:
+        into_knots(outputs, n, used, steps, rows)
+        rows += sizes[OUTPUTS]
+    _bound_sway(guards, chain, n, used, steps, -(-rows // 4) * 4)
     return 1.0 / max(growth(maps, n), 1e-9)

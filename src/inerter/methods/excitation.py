@@ -14,7 +14,7 @@ from inerter.errors import IndicatorError
 from inerter.signals.harmonics import flat_multisine
 from inerter.signals.records import held_noise
 from inerter.signals.signal import Signal
-from inerter.simulation.inputs import InputTable, tabulate
+from inerter.simulation.inputs import InputTable, parts_of, tabulate
 from inerter.simulation.observe import sampled_input
 from inerter.simulation.steady import repeating
 
@@ -148,7 +148,9 @@ class Drive:
 def _laid_out(drive: Drive, seed: int) -> tuple[InputTable, Array]:
     signals, period = drive.signals(seed), drive.excitation.period
     delays = [delay or 0.0 for delay in drive.delays]
-    table = tabulate(signals, delays, period, period / drive.excitation.samples)
+    interval = period / drive.excitation.samples
+    parts = parts_of(interval, delays) if drive.excitation.is_held else 1
+    table = tabulate(signals, delays, period, interval / parts, every=parts)
     power = drive.power(sampled_input(table, 0, drive.first))
     return (repeating(table) if drive.excitation.is_held else table), power
 

@@ -14,7 +14,7 @@ from inerter.indices.index import Question
 from inerter.methods.linear import Conventions, corner_of
 from inerter.signals.harmonics import Harmonics, multisine
 from inerter.signals.road import Road
-from inerter.simulation.inputs import InputTable, check_holds, tabulate
+from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
 from inerter.simulation.observe import trajectory_of
 from inerter.simulation.start import initial_state
 from inerter.simulation.steady import mean_squares, settle
@@ -34,11 +34,6 @@ class Drive:
     forces: int  # external forces, which stay zero
     hold: float | None  # [s]
     corner: float | None  # of a high-pass filter on the outputs [rad/s]
-
-    @property
-    def step(self) -> float:
-        """Of the integration [s]."""
-        return STEP if self.hold is None else self.hold
 
     def signal(self, seed: int) -> Harmonics:
         """The road of one realisation, before it is held."""
@@ -60,7 +55,9 @@ def table(way: Drive, seed: int) -> InputTable:
     signal = way.signal(seed)
     moved = signal if way.hold is None else signal.held(way.hold)
     signals = [*(moved for _ in way.delays), *(None for _ in range(way.forces))]
-    return tabulate(signals, [*way.delays, *(0.0 for _ in range(way.forces))], signal.period, way.step)
+    delays = [*way.delays, *(0.0 for _ in range(way.forces))]
+    parts = 1 if way.hold is None else parts_of(way.hold, way.delays)
+    return tabulate(signals, delays, signal.period, (way.hold or STEP) / parts, every=parts)
 
 
 def check_drive(system: PiecewiseSystem, way: Drive) -> None:
@@ -83,7 +80,7 @@ def squares(system: PiecewiseSystem, way: Drive, seed: int, outputs: Sequence[st
     if not integration.status.ok:
         return np.full(len(outputs), np.nan), integration.status
     count = run.time.size - 1
-    s = 2j * np.pi * np.fft.rfftfreq(count, way.step)
+    s = 2j * np.pi * np.fft.rfftfreq(count, way.hold or STEP)
     gain = np.abs(s / (s + way.corner)) ** 2
     lines = np.array([np.abs(np.fft.rfft(run[name][:count])) ** 2 for name in outputs])
     lines[:, 1 : (count + 1) // 2] *= 2.0

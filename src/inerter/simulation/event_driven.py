@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, SimulationError, Status, StatusKind
 from inerter.kernels import events as kernel
 from inerter.kernels.arrays import ENTRY, ETA, GUARD, Mechanics, Modes
-from inerter.kernels.march import march_of, padded
+from inerter.kernels.march import lines_of, march_of
 from inerter.networks.elements import Damper
 from inerter.simulation.inputs import InputTable
 from inerter.systems.outputs import Output
@@ -173,8 +173,11 @@ def start(
     )
     branches = system.graph.branches if account else ()
     samples, channels = table.samples if keep else 0, table.value.shape[1]
-    columns, stepped = n + used.size + 1, padded(n + 2 * k + len(outputs)) + padded(k)
-    work = np.zeros((kernel.ROWS, max(64, columns + stepped, nu, 4 * channels, channels + len(branches))))
+    jumps = roads if table.jumps else 0
+    columns, followed, swaying = lines_of(n, used.size, k, len(outputs), jumps)
+    work = np.zeros(
+        (kernel.ROWS, max(64, 2 * columns + followed + swaying, nu, 4 * channels, channels + len(branches)))
+    )
     work[kernel.STATE, :n], work[kernel.SCALE, :n] = state, np.abs(state)
     record = kernel.Record(
         time=table.time,
@@ -193,7 +196,7 @@ def start(
     )
     record.states[:1] = state
     place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0], np.int64)
-    march = march_of(n, tuple(used.tolist()), k, len(outputs))
+    march = march_of(n, tuple(used.tolist()), k, len(outputs), jumps)
     capacity, width = min(3**k, 9), n + nu + 1
     modes = Modes(
         number=np.full(3**k, -1, np.int64),
@@ -201,7 +204,7 @@ def start(
         maps=np.zeros((capacity, int(starts[5]), width)),
         reaction=np.zeros((capacity, n + k, nw + k)),
         limits=np.zeros((capacity, k, 2)),
-        steps=np.zeros((capacity, columns, stepped)),
+        steps=np.zeros((capacity, columns + jumps, followed + swaying)),
         reach=np.zeros(capacity),
     )
     flags = np.zeros((4, k), np.int64)

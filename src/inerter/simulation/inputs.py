@@ -35,10 +35,11 @@ class InputTable:
     slope: Matrix
     value_before: Matrix  # from the left
     slope_before: Matrix
-    special: NDArray[np.int64]  # segments of another length, or at whose start an input jumps; then one past the end
+    special: NDArray[np.int64]  # segments of another length; then one past the end
     slot: NDArray[np.int64]  # (knots,) number of the sample, or -1
     sampled: Matrix  # times of the samples [s]
     moving: tuple[bool, ...]  # whether each input has a signal
+    jumps: bool  # whether one jumps at a knot
 
     @property
     def samples(self) -> int:
@@ -158,7 +159,6 @@ def tabulate(
             value_before[at[leaps], i] = left[leaps]
             jumped[at[leaps]] = True
     odd = np.abs(np.diff(time) - step) > _SAME * step
-    odd |= jumped[:-1]
     return InputTable(
         step=step,
         time=time,
@@ -170,7 +170,20 @@ def tabulate(
         slot=slot.astype(np.int64),
         sampled=time[slot >= 0],
         moving=tuple(signal is not None for signal in signals),
+        jumps=bool(jumped.any()),
     )
+
+
+def parts_of(interval: float, delays: Sequence[float]) -> int:
+    """Into how many steps to part an interval so that all delays are whole numbers of them; one if 20 do not do.
+
+    Signals that are held for `interval` then jump where steps join, which is much faster than between.
+    """
+    for parts in range(1, 21):
+        steps = np.asarray(delays) * parts / interval
+        if np.all(np.abs(steps - np.rint(steps)) <= _SAME * np.maximum(steps, 1.0)):
+            return parts
+    return 1
 
 
 def _breaks(signal: Signal, delay: float, first: float, last: float, step: float) -> Matrix:

@@ -51,7 +51,7 @@ def repeating(table: InputTable) -> InputTable:
     before, slope = table.value_before.copy(), table.slope_before.copy()
     before[0], slope[0] = before[-1], slope[-1]
     special = table.special
-    if not np.array_equal(before[0], table.value[0]) and special[0] != 0:
+    if not table.jumps and special[0] != 0 and not np.array_equal(before[0], table.value[0]):
         special = np.concatenate([[0], special])
     return replace(table, value_before=before, slope_before=slope, special=special)
 

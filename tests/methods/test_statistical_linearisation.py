@@ -8,6 +8,7 @@ import scipy.linalg
 import scipy.optimize
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from nodal import Nodal
 from strategies import elements, logarithmic, networks, paper_half_car, paper_quarter_car
 
 import inerter as it
@@ -182,6 +183,51 @@ def test_friction_alone_bounds_a_resonance_only_if_it_is_strong_enough():
     assert it.evaluate(weak, J5, METHOD).status.kind == "marginal"
     assert it.evaluate(strong, J5, METHOD).value < 1e-3
     assert value(weak, J1) < 20.0  # the norm of the undamped car is infinite
+
+
+def by_hand(car, omega, force, amplitude):
+    """Gain at one frequency from dynamic stiffnesses of nodes, with the damper sought by bisection."""
+
+    def at(damper):
+        strut = map_elements(car.strut, lambda e: Damper(damper, "sought") if isinstance(e, Friction) else e)
+        nodal = Nodal(paper_quarter_car(strut).mechanism(), [omega])
+        which = next(i for i, (e, _, _) in enumerate(nodal.elements) if e.name == "sought")
+        column = nodal.inputs.index("sprung_force")
+        speed = omega * abs(nodal._elongation(which, column)[0]) * amplitude
+        return float(damper * speed), float(abs(nodal.response("sprung_displacement", "sprung_force")[0]))
+
+    low, high = -6.0, 12.0
+    if at(10.0**high)[0] > 4.0 * force / math.pi:
+        low = scipy.optimize.brentq(lambda x: at(10.0**x)[0] - 4.0 * force / math.pi, low, high, xtol=1e-13)
+        high = low
+    return at(10.0**high)[1]
+
+
+@settings(max_examples=40)
+@given(networks(depth=2, most=4), elements(), logarithmic(1.0, 1e4), st.booleans())
+def test_peaks_of_random_networks_by_bisection_between_nodes(inner, other, force, series):
+    rubbing = inner - (other | Friction(force)) if series else inner | Friction(force)
+    car = paper_quarter_car(Spring(3e4) | Damper(500.0) | rubbing)
+    estimate = it.evaluate(car, J5, METHOD)
+    assert estimate.status.ok
+    for peak in estimate.peaks:
+        omega = peak.omega or 1e-4
+        assert peak.gain == pytest.approx(by_hand(car, omega, force, 1000.0), rel=1e-3 if peak.omega == 0.0 else 1e-6)
+    for omega in np.geomspace(0.1, 1e3, 12):
+        assert by_hand(car, omega, force, 1000.0) <= estimate.value * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize("index", [J1, J3, J5], ids=["J1", "J3", "J5"])
+@pytest.mark.parametrize("force", [0.1, 20.0, 200.0, 2000.0])
+def test_two_side_by_side_add_up_and_of_two_end_to_end_the_weaker_counts(index, force):
+    rest, spring = k | c - b, Spring(3e5)
+    beside = paper_quarter_car(rest | Friction(force) | Friction(0.7 * force))
+    assert value(beside, index) == pytest.approx(
+        value(paper_quarter_car(rest | Friction(1.7 * force)), index), rel=1e-8
+    )
+    behind = paper_quarter_car(rest | spring - Friction(force) - Friction(0.7 * force))
+    weaker = paper_quarter_car(rest | spring - Friction(0.7 * force))
+    assert value(behind, index) == pytest.approx(value(weaker, index), rel=1e-6)
 
 
 @settings(max_examples=60)

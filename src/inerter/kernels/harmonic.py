@@ -18,7 +18,8 @@ from inerter.kernels.linalg import factor, solve
 
 Array = Any
 _GOLDEN = 0.6180339887498949
-_SWEEPS = 1000
+_SWEEPS = 100
+_REFLECTIONS = 2000
 _SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pushes included
 _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
@@ -61,12 +62,39 @@ def slip(blocked: complex, admittance: complex, limit: float) -> Any:
 
 
 @compiled
+def reflect(Z: Array, velocity: Array, damper: Array, limit: Array, extra: Array) -> bool:
+    """Solve for `extra`, all frictions at once, by waves that go to and fro between them and the mechanism.
+
+    Averaged reflections (Douglas and Rachford) settle for any passive mechanism, if slowly.
+    """
+    count = limit.size
+    extra[:] = 0.0
+    new = np.empty(count, np.complex128)
+    for _ in range(_REFLECTIONS):
+        change, largest = 0.0, 0.0
+        for j in range(count):
+            v = velocity[j]
+            for k in range(count):
+                v -= Z[j, k] * extra[k]
+            wave = extra[j] + 2.0 * damper[j] * v
+            force = wave if abs(wave) <= limit[j] else wave * (limit[j] / abs(wave))
+            new[j] = force - 0.5 * wave + 0.5 * extra[j]
+            change = max(change, abs(new[j] - extra[j]))
+            largest = max(largest, abs(new[j]), limit[j])
+        extra[:] = new
+        if change <= _SETTLED * largest:
+            return True
+    return False
+
+
+@compiled
 def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
     """Gain of the first output with every friction slipping or sticking as it must, and whether that settled.
 
     One friction is one closed form. Several are solved one after the other until none changes. Each sees the others
     as a damper and a force: waves, which a passive mechanism does not amplify, and which are small if the damper is
-    near what its friction amounts to.
+    near what its friction amounts to. Where that does not settle, as at a resonance of two frictions that nothing else
+    damps, averaged reflections of those waves do.
     """
     count = limit.size
     Z, velocity, damper = -G[1:, 1:], G[1:, 0] * amplitude, np.full(count, reference)
@@ -104,6 +132,8 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
         if count == 1 or change <= _SETTLED * largest:
             settled = True
             break
+    if not settled:
+        settled = reflect(Z, velocity, damper, limit, extra)
     response = G[0, 0] * amplitude
     for j in range(count):
         v = velocity[j]
@@ -131,7 +161,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
     found = np.empty(0)
     floor = 0.0
     point = row.copy()
-    for exponent in (0, -4, -2, -1, 1, 2, 4):
+    for exponent in (0, -4, -1, 1, 4):
         for place in dampers:
             point[place] = reference * 10.0**exponent
         A, _, _, _, _, _, good = close(point, descriptor)
@@ -152,11 +182,11 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
                 if abs(pole) > 1e-9 * np.abs(poles).max():
                     floor = min(floor, 0.01 * abs(pole))
             continue
-        near = np.empty(9 * poles.size)
+        near = np.empty(7 * poles.size)
         count = 0
         for pole in poles:
             if pole.imag > 0.0:
-                for offset in (-4.0, -2.0, -1.0, -0.4, 0.0, 0.4, 1.0, 2.0, 4.0):
+                for offset in (-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0):
                     omega = pole.imag + offset * abs(pole.real)
                     if omega > 0.0:
                         near[count] = omega
@@ -174,7 +204,7 @@ def top(system: Array, low: float, high: float, limit: Array, amplitude: float, 
         gain_at(system, a, limit, amplitude, reference, G)[0],
         gain_at(system, b, limit, amplitude, reference, G)[0],
     )
-    while high - low > width:
+    while high - low > width and not (high - low < 1e6 * width and abs(ga - gb) < 1e-13 * ga):
         if ga > gb:
             high, b, gb = b, a, ga
             a = high - _GOLDEN * (high - low)

@@ -63,8 +63,8 @@ class Equivalent:
         idle = ", ".join(name for name in self.design if name not in seen)
         if idle:
             raise DesignError(
-                f"The free value of {idle} has no effect: its element is beside a closed gap, or in series with "
-                f"nothing that moves. Fix it, or leave the element out."
+                f"The free value of {idle} has no effect: its element cannot move beside a closed gap, or carries "
+                f"no force. Fix it, or leave the element out."
             )
 
 
@@ -85,17 +85,15 @@ def has_friction(mechanism: Mechanism) -> bool:
     return any(_acts(element) for mount in mechanism.mounts() for element in mount.network.elements())
 
 
-def equivalent(
-    mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = (), scale: float | None = None
-) -> Equivalent:
+def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = ()) -> Equivalent:
     """`mechanism` with a free damper in the place of each friction.
 
     Those in `without` are left out, those in `locked` become rigid links (both named by their damper). A friction
-    beside a rigid link cannot move and is left out too. `scale` is a damping near which the dampers are looked for.
+    beside a rigid link cannot move and is left out too.
 
     Raises `MechanismError` for what is ill-posed.
     """
-    scale = _typical_damping(mechanism) if scale is None else scale
+    scale = _typical_damping(mechanism)
     taken = {element.label for mount in mechanism.mounts() for element in mount.network.elements()}
     found: dict[str, tuple[str, Value]] = {}
 
@@ -126,7 +124,7 @@ def equivalent(
         mechanism=other,
         dampers=names,
         frictions=tuple(found[name][0] for name in names),
-        locked=tuple(found[name][0] for name in locked),
+        locked=tuple(words for name, (words, _) in found.items() if name in locked),
         forces=tuple(found[name][1] for name in names),
         design=tuple(mechanism.free_values()),
         scale=scale,

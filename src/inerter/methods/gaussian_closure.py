@@ -238,7 +238,7 @@ class GaussianClosure:
         """The index at each row of `points`; nan where it cannot be told."""
         result = np.full(points.shape[0], np.nan)
         for solved in self.solve(points):
-            good = solved.dampers.error <= 1e-6
+            good = solved.dampers.error <= _SETTLED
             rows = solved.pattern.rows(points[solved.designs[good]], solved.dampers.damping[good])
             result[solved.designs[good]] = solved.pattern.index.known(rows)
         return result

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from inerter.cli.progress import progress
+from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
-from inerter.papers import wang_su_2008
+from inerter.papers.wang_su_2008.source import KEY
 from inerter.report.findings import headlines
 from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table
@@ -62,22 +62,25 @@ def check(study: Path) -> int:
     return 0
 
 
-def reproduce(output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool) -> int:
-    """Reproduce the linear part of Wang and Su (2008); returns the exit code."""
+def reproduce(
+    only: tuple[str, ...], output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool
+) -> int:
+    """Reproduce Wang and Su (2008), or some parts of it; returns the exit code."""
+    from inerter.papers.wang_su_2008 import reproduce as paper
     from inerter.report import reproduction as pages
 
-    folder = output or Path(f"{wang_su_2008.KEY}-results")
+    folder = output or Path(f"{KEY}-results")
     processes = _processes(jobs)
     try:
-        with progress(wang_su_2008.KEY) as callback:
-            found = wang_su_2008.reproduce_linear(folder, jobs=processes, resume=resume, force=force, progress=callback)
+        with steps(KEY) as callback:
+            found = paper.reproduce(folder, only=only, jobs=processes, resume=resume, force=force, progress=callback)
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")
         return 1
     pages.write_reproduction(found, folder)
     _say(f"report: {folder / REPORT}")
-    print(json.dumps(wang_su_2008.tables(found), indent=2) if as_json else pages.reproduction_text(found))
-    return max(_judge(result) for result in found.studies.values())
+    print(json.dumps(pages.tables(found), indent=2) if as_json else pages.reproduction_text(found))
+    return max([_judge(result) for result in found.studies.values()], default=0)
 
 
 def _processes(jobs: int | None) -> int:

@@ -20,7 +20,7 @@ EXAMPLES = """Examples:
   inerter run examples/stiffness-sweep.toml -o sweep -j 2
   inerter check my-study.toml
   inerter simulate examples/stick_slip.toml
-  inerter reproduce wang-su-2008 --only linear -o paper
+  inerter reproduce wang-su-2008 -o paper
 
 Exit codes: 0 done, 1 the work failed or was interrupted, 2 the request was wrong."""
 
@@ -40,6 +40,10 @@ Resume = Annotated[
 Force = Annotated[bool, Parameter(negative="", show_default=False, help="Replace the results that the folder holds.")]
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
+]
+
+Part = Literal[
+    "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims", "methods", "optima", "budgets"
 ]
 
 
@@ -120,12 +124,19 @@ def simulate(
     return command(file, output, window, force=force, as_json=json)
 
 
-@app.command(help_epilogue="Example: inerter reproduce wang-su-2008 --only linear -o paper")
+@app.command(
+    help_epilogue="""Examples:
+  inerter reproduce wang-su-2008 -o paper
+  inerter reproduce wang-su-2008 --only linear
+  inerter reproduce wang-su-2008 --only table1 --only figure14"""
+)
 def reproduce(
     paper: Literal["wang-su-2008"],
     /,
     *,
-    only: Annotated[Literal["linear"], Parameter(help="The part to reproduce.")] = "linear",
+    only: Annotated[
+        tuple[Part, ...], Parameter(help="The parts to reproduce, each with its own --only; all if left out.")
+    ] = (),
     output: Output = None,
     jobs: Jobs = None,
     resume: Resume = False,
@@ -142,8 +153,7 @@ def reproduce(
     from inerter.cli.commands import reproduce as command
 
     assert paper == "wang-su-2008"
-    assert only == "linear"
-    return command(output, jobs, resume=resume, force=force, as_json=json)
+    return command(only, output, jobs, resume=resume, force=force, as_json=json)
 
 
 def main() -> None:

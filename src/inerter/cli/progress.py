@@ -13,6 +13,7 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    TaskID,
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
@@ -45,6 +46,40 @@ def progress(what: str) -> Iterator[Report]:
             bar.update(task, completed=done, total=total, description=name)
 
         yield show
+
+
+@contextmanager
+def steps(what: str) -> Iterator[Callable[[str, int, int], None]]:
+    """A callback that shows how far each of several pieces of work is: its name, steps done, and all steps."""
+    if not sys.stderr.isatty():
+        yield _Pieces(what)
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        tasks: dict[str, TaskID] = {}
+
+        def show(piece: str, done: int, total: int) -> None:
+            if piece not in tasks:
+                tasks[piece] = bar.add_task(f"{what}: {piece}", total=total)
+            bar.update(tasks[piece], completed=done, total=total)
+
+        yield show
+
+
+@dataclass
+class _Pieces:
+    """A line when a piece begins, and one when it ends."""
+
+    what: str
+    begun: set[str] = field(default_factory=set)
+
+    def __call__(self, piece: str, done: int, total: int) -> None:
+        if piece not in self.begun:
+            self.begun.add(piece)
+            kept = f", {done} of them done before" if done else ""
+            print(f"{self.what}: {piece}, {total} steps{kept}", file=sys.stderr, flush=True)
+        elif done == total:
+            print(f"{self.what}: {piece} done", file=sys.stderr, flush=True)
 
 
 @contextmanager

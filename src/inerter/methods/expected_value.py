@@ -13,15 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, IndicatorError, LinearSystemError, MechanismError, Status, StatusKind
+from inerter.errors import OK, IndicatorError, InerterError, LinearSystemError, MechanismError, Status, StatusKind
 from inerter.indices.index import Combination, Index, Question
 from inerter.methods.averages import mean_and_error
-from inerter.methods.forced import Forced, local_maxima
+from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Objective
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import Drive, check_drive, drive, realisation_seeds, squares, worst
 from inerter.methods.sampled import SampledObjective
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.h2 import h2
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
@@ -49,7 +50,8 @@ class ExpectedValue:
     holds them, adds nothing, and takes the tyre load of a half car over s + 2 pi rad/s.
 
     A peak gain is the largest ratio of r.m.s. displacement to r.m.s. force over all frequencies for a sine of the
-    index's `amplitude`; `peaks` holds every local maximum. It has no scatter. Under "paper2008" the value is the local
+    index's `amplitude`; `peaks` holds every local maximum, each found near where harmonic balance has one (with gaps:
+    where a grid of frequencies has one). It has no scatter. Under "paper2008" the value is the local
     maximum that the highest peak of the linear design has become, which need not be the highest.
 
     `jobs` threads share the work (all cores by default). Source: Wang and Su (2008), section 4.
@@ -128,7 +130,7 @@ class ExpectedValue:
             assert linear is not None
             return replace(linear.estimate(close(linear.descriptor, {})), standard_error=0.0)
         if question.combination is Combination.PEAK_GAIN:
-            return self._peak_gain(system, question, linear, pool)
+            return self._peak_gain(vehicle, index, system, question, linear, pool)
         way = drive(system, question, conventions)
         check_drive(system, way)
         names = tuple(output.output for output in question.outputs)
@@ -153,7 +155,13 @@ class ExpectedValue:
         return _averaged(values, question.unit, worst(statuses), self.relative_error, notes)
 
     def _peak_gain(
-        self, system: PiecewiseSystem, question: Question, linear: LinearProblem | None, pool: ThreadPoolExecutor
+        self,
+        vehicle: Vehicle,
+        index: Index,
+        system: PiecewiseSystem,
+        question: Question,
+        linear: LinearProblem | None,
+        pool: ThreadPoolExecutor,
     ) -> Estimate:
         if question.amplitude is None:
             raise IndicatorError(
@@ -167,7 +175,10 @@ class ExpectedValue:
             closed = close(linear.descriptor, {})
             poles = np.linalg.eigvals(closed.A)
             known = np.array([peak.omega for peak in linear.estimate(closed).peaks if np.isfinite(peak.omega)])
-        peaks, statuses = local_maxima(forced, poles, known, pool)
+        expected = _expected_peaks(vehicle, index)
+        if expected is None:
+            expected = np.concatenate([coarse_maxima(forced, poles, pool), known])
+        peaks, statuses = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool)
         weighted = tuple(replace(peak, gain=abs(output.weight) * peak.gain) for peak in peaks)
         value = weighted[0].gain if weighted else np.nan
         if self.conventions == "paper2008" and weighted and known.size and known[0] > 0.0:
@@ -178,6 +189,16 @@ class ExpectedValue:
 
 
 _NO_LINEAR = "friction or a gap alone holds a part: nothing is added for the road outside 0.1 to 1000 Hz"
+
+
+def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
+    """Where harmonic balance has local maxima [rad/s]; None where it does not serve."""
+    try:
+        peaks = StatisticalLinearisation().estimate(vehicle, index).peaks
+    except InerterError:
+        return None
+    omegas = np.array([peak.omega for peak in peaks])
+    return omegas if omegas.size and np.all(np.isfinite(omegas)) else None
 
 
 def is_nonlinear(system: PiecewiseSystem) -> bool:

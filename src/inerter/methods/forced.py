@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from math import pi, sqrt
@@ -11,7 +10,7 @@ import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
 
-from inerter.errors import Status
+from inerter.errors import OK, Status
 from inerter.norms.hinf import Peak
 from inerter.signals.harmonics import sine
 from inerter.simulation.inputs import tabulate
@@ -20,11 +19,12 @@ from inerter.simulation.steady import mean_squares
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
-_POINTS = 128  # a period at least: the error of its cubics is 1e-8
+_POINTS = 64  # a period at least: the error of its cubics is 2e-7
 _LONGEST = 1e-3  # [s] of a step
-_MOST_PERIODS = 300  # until a motion must repeat
-_GRID = 48  # frequencies between which peaks are looked for
-_NEAR = 1e-4  # relative distance up to which a peak's frequency is found: its height is then right to 1e-8
+_MOST_PERIODS, _REPEATS = 300, 1e-5  # until a motion must repeat, and how well
+_GRID = 32  # frequencies between which peaks are looked for where nothing is known of them
+_WITHIN = 1.25  # ratio to a frequency near which a peak is expected
+_NEAR = 1e-3  # relative distance up to which a peak's frequency is found: its height is then right to 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,39 +45,51 @@ class Forced:
         signals = [None] * len(mechanism.roads) + [signal if f.name == self.force else None for f in mechanism.forces]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, np.zeros(len(signals)), "rest")
-        found, integration = mean_squares(self.system, table, [self.output], state, _MOST_PERIODS)
+        found, integration = mean_squares(self.system, table, [self.output], state, _MOST_PERIODS, _REPEATS)
         status = integration.status if not integration.status.ok else integration.warning
         return sqrt(2.0 * float(found[0])) / self.amplitude, status
 
 
-def local_maxima(forced: Forced, poles: Array, start: Array, pool: Executor) -> tuple[list[Peak], list[Status]]:
-    """Every local maximum of the ratio over all frequencies, the highest first; one at omega = 0 is the static ratio.
+def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> tuple[list[Peak], list[Status]]:
+    """The local maxima of the ratio near the frequencies [rad/s] at which they are expected, the highest first.
 
-    Looked for on a grid around the `poles` [rad/s] of the linear motion that holds the frequencies `start` too, and
-    refined. What lies beyond the grid falls off with the mass, or is static.
+    One that is expected at zero is the ratio at `lowest`.
     """
-    grid = np.unique(np.concatenate([frequency_grid(poles), start[start > 0.0]]))
-    found = list(pool.map(forced, grid.tolist()))
-    ratios, status = np.array([ratio for ratio, _ in found]), [status for _, status in found]
-    inner = [i for i in range(1, grid.size - 1) if ratios[i] >= ratios[i - 1] and ratios[i] > ratios[i + 1]]
-
-    def refine(i: int) -> Peak:
-        def depth(logarithm: float) -> float:
-            return -forced(float(np.exp(logarithm)))[0]
-
-        best = _least(depth, np.log(grid[i - 1 : i + 2]), -ratios[i])
-        return Peak(float(np.exp(best[0])), -best[1])
-
-    peaks = list(pool.map(refine, inner))
-    if grid.size and (not grid.size > 1 or ratios[0] > ratios[1]):
-        peaks.append(Peak(0.0, float(ratios[0])))
-    return sorted(peaks, key=lambda peak: -peak.gain), status
+    near = np.unique(expected[expected > 0.0])
+    middles = np.sqrt(near[1:] * near[:-1])
+    lower = np.maximum(near / _WITHIN, np.concatenate([[0.0], middles]))
+    upper = np.minimum(near * _WITHIN, np.concatenate([middles, [np.inf]]))
+    found = list(pool.map(lambda ends: _summit(forced, *ends), zip(lower.tolist(), upper.tolist(), strict=True)))
+    peaks = [summit for summit in found if summit is not None]
+    if near.size < expected.size or not peaks:
+        ratio, status = forced(lowest)
+        peaks.append((Peak(0.0, ratio), status))
+    peaks.sort(key=lambda peak: -peak[0].gain)
+    return [peak for peak, _ in peaks], [status for _, status in peaks]
 
 
-def _least(depth: Callable[[float], float], bracket: Array, middle: float) -> tuple[float, float]:
-    low, at, high = bracket
-    found = scipy.optimize.minimize_scalar(depth, bounds=(low, high), method="bounded", options={"xatol": _NEAR})
-    return (float(found.x), float(found.fun)) if found.fun < middle else (float(at), float(middle))
+def _summit(forced: Forced, lower: float, upper: float) -> tuple[Peak, Status] | None:
+    """The largest ratio between two frequencies, if it is not at one of them."""
+    statuses: dict[float, Status] = {}
+
+    def depth(logarithm: float) -> float:
+        ratio, statuses[logarithm] = forced(float(np.exp(logarithm)))
+        return -ratio
+
+    ends = np.log(lower), np.log(upper)
+    found = scipy.optimize.minimize_scalar(depth, bounds=ends, method="bounded", options={"xatol": _NEAR})
+    at = float(found.x)
+    if min(at - ends[0], ends[1] - at) < 3.0 * _NEAR:
+        return None
+    return Peak(float(np.exp(at)), -float(found.fun)), statuses.get(at, OK)
+
+
+def coarse_maxima(forced: Forced, poles: Array, pool: Executor) -> Array:
+    """About where the local maxima are [rad/s], from a grid around the poles of the linear motion; zero: below it."""
+    grid = frequency_grid(poles)
+    ratios = np.array([ratio for ratio, _ in pool.map(forced, grid.tolist())])
+    inner = 1 + np.flatnonzero((ratios[1:-1] >= ratios[:-2]) & (ratios[1:-1] > ratios[2:]))
+    return np.concatenate([grid[inner], np.zeros(1 if ratios[0] > ratios[1] else 0)])
 
 
 def frequency_grid(poles: Array) -> Array:

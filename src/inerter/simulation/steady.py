@@ -20,6 +20,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
 _PERIODS, _RECORDED, _FEW_PERIODS = 300, 12, 30
+_SETTLING = 20.0  # [s]
 _REPEATS, _ENOUGH = 1e-10, 1e-6  # changes of the state over a period, relative to its size
 
 
@@ -57,14 +58,18 @@ def repeating(table: InputTable) -> InputTable:
 
 
 def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integration, float]:
-    """From rest, one period to settle and then the next, again until the state repeats; the last one, recorded.
+    """From rest, one period (or the end of a long one) to settle and then the next, again until the state repeats.
+
+    The last one is recorded.
 
     Also how well it repeats: the change of the state over that period, relative to its size. `table` is one period
     that is repeated.
     """
     last = table.time.size - 1
-    state = initial_state(system, table.value_before[0], "rest")
+    first = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
+    state = initial_state(system, table.value_before[first], "rest")
     run = event_driven.start(system, table, state, keep=False)
+    run.place[SEGMENT] = first
     run.advance(last)
     mismatch = np.inf
     for _ in range(_RECORDED):
@@ -89,15 +94,21 @@ def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bo
 
 
 def mean_squares(
-    system: PiecewiseSystem, table: InputTable, outputs: Sequence[str], state: Matrix, most: int = _FEW_PERIODS
+    system: PiecewiseSystem,
+    table: InputTable,
+    outputs: Sequence[str],
+    state: Matrix,
+    most: int = _FEW_PERIODS,
+    repeats: float = _ENOUGH,
 ) -> tuple[Matrix, Integration]:
-    """Mean squares of outputs over one period, once the state repeats to a millionth, and the integration.
+    """Mean squares of outputs over one period, once the state repeats, and the integration.
 
-    Goes through `most` periods at most. What the integration's `status` or `warning` say holds for the squares.
+    It repeats if it changes by less than `repeats` of its size. Goes through `most` periods at most. What the
+    integration's `status` or `warning` say holds for the squares.
     """
     begun = event_driven.start(system, table, state, outputs, keep=False)
-    integration, settled = _repeated(begun, repeating(table), _ENOUGH, most)
-    if integration.status.ok and settled.mismatch > _ENOUGH:
+    integration, settled = _repeated(begun, repeating(table), repeats, most)
+    if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _unsettled(settled)
     return integration.record.sums / (table.samples - 1), integration
 

@@ -10,10 +10,11 @@ from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.optimisation.budget import with_element
 from inerter.papers.wang_su_2008.source import index_of, linear_rows, study
 
-FORCES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # of friction [N]
+FORCES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # of friction [N]
+_MOST_NOISE = 100.0  # [N] beyond, friction sticks for so long that a motion on noise does not repeat
 METHODS: dict[str, Method] = {
     "statistical-linearisation": StatisticalLinearisation(),
-    "expected-value": ExpectedValue(relative_error=5e-4, jobs=1),
+    "expected-value": ExpectedValue(relative_error=2e-3, jobs=1),
     "approximate-linear": ApproximateLinear(),
 }
 
@@ -31,7 +32,8 @@ def compute(name: str) -> dict[str, object]:
     design = source.design(f"{layout}-10N").with_values(row.parameters)
     car, asked = with_element(design, "f_10", float(force)), index_of(index, source)
     linear = evaluate(car, asked, Norm()).value
-    found = {method: evaluate(car, asked, value) for method, value in METHODS.items()}
+    methods = {k: m for k, m in METHODS.items() if k != "approximate-linear" or float(force) <= _MOST_NOISE}
+    found = {method: evaluate(car, asked, value) for method, value in methods.items()}
     return {
         "linear": linear,
         **{method: estimate.value for method, estimate in found.items()},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,10 +23,12 @@ from inerter.study.run import FIGURES, REPORT, StudyResult, claimed, run_study, 
 from inerter.study.workers import spread
 
 JOURNAL = "tasks.jsonl"
-PARTS = (
-    "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims", "methods", "optima", "budgets",
-)  # fmt: skip
+_PAPER = ("linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")
+PARTS = (*_PAPER, "methods", "optima", "budgets")  # the last ones are not in the paper
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
+_PAPER_ORDER = ("table1", "table2", "table3", "curves", "methods", "optima", "budgets")  # of tasks in results
+TABLES = ("linear-rows", "designs", "simulated-rows", "curves", "claims", "methods", "optima", "budgets", "origins")
+_OWN = (*linear.STUDIES, JOURNAL, FIGURES, REPORT, *(f"{name}.csv" for name in TABLES))
 Numbers = dict[str, Any]
 Progress = Callable[[str, int, int], None]
 
@@ -45,19 +48,25 @@ class Task:
 
 
 def work(task: Task) -> tuple[tuple[str, str], Numbers]:
-    """The numbers of one task."""
+    """The numbers of one task, and how many `seconds` they took."""
+    begin = time.perf_counter()
     with one_blas_thread():
-        match task.part:
-            case "table1" | "table2" | "table3":
-                return task.key, rows.compute(int(task.part[-1]), task.name)
-            case "curves":
-                return task.key, curves.compute(task.name, dict(task.given))
-            case "methods":
-                return task.key, agreement.compute(task.name)
-            case "optima":
-                return task.key, beyond.compute_optimum(task.name)
-            case "budgets":
-                return task.key, beyond.compute_budget(task.name)
+        numbers = _numbers(task)
+    return task.key, {**numbers, "seconds": round(time.perf_counter() - begin, 3)}
+
+
+def _numbers(task: Task) -> Numbers:
+    match task.part:
+        case "table1" | "table2" | "table3":
+            return rows.compute(int(task.part[-1]), task.name)
+        case "curves":
+            return curves.compute(task.name, dict(task.given))
+        case "methods":
+            return agreement.compute(task.name)
+        case "optima":
+            return beyond.compute_optimum(task.name)
+        case "budgets":
+            return beyond.compute_budget(task.name)
     raise ValueError(task.part)
 
 
@@ -100,15 +109,15 @@ def reproduce(
     wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
-    with claimed(folder, own=(*linear.STUDIES, JOURNAL, FIGURES, REPORT), resume=resume, force=force):
+    with claimed(folder, own=_OWN, resume=resume, force=force):
         studies = {
             name: run_study(study(name), folder / name, jobs=jobs, resume=resume, progress=_named(progress, name))
             for name in needed
         }
-        tasks = [Task(part, name) for part in ("table1", "table2", "table3") if part in wanted for name in _rows(part)]
+        listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
+        tasks = [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
+        tasks += [Task(part, name) for part in ("table2", "table3", "table1") if part in wanted for name in _rows(part)]
         tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
-        listed = {"methods": agreement.names, "optima": beyond.optimum_names, "budgets": beyond.budget_names}
-        tasks += [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
         found = _run(tasks, folder / JOURNAL, jobs, resume, progress)
     return _put_together(tuple(part for part in PARTS if part in wanted), studies, found)
 
@@ -173,13 +182,12 @@ def _run(
     if tasks:
         progress("simulations", len(tasks) - len(pending), len(tasks))
     with journal.open("a", encoding="utf-8") as stream:
-        for i, (key, numbers) in enumerate(spread(work, pending, jobs, lambda task: task.part), 1):
+        for i, (key, numbers) in enumerate(spread(work, pending, jobs, lambda task: 0), 1):
             found[key] = numbers
             stream.write(json.dumps([*key, numbers]) + "\n")
             stream.flush()
             progress("simulations", len(tasks) - len(pending) + i, len(tasks))
-    asked = {task.key for task in tasks}
-    return {task.key: found[task.key] for task in tasks if task.key in asked}
+    return {task.key: found[task.key] for task in sorted(tasks, key=lambda task: _PAPER_ORDER.index(task.part))}
 
 
 def _read(journal: Path) -> dict[tuple[str, str], Numbers]:

@@ -91,7 +91,7 @@ def compute(table: int, name: str) -> dict[str, object]:
 
 def judged(table: int, name: str, found: dict[str, object]) -> SimulatedRow:
     """A row from its numbers."""
-    numbers = {key: value for key, value in found.items() if key not in ("peaks", "status")}
+    numbers = {key: value for key, value in found.items() if key not in ("peaks", "status", "seconds")}
     peaks = tuple(Peak(*pair) for pair in found["peaks"])  # type: ignore[attr-defined]
     return SimulatedRow(_row(table, name), peaks=peaks, **numbers)  # type: ignore[arg-type]
 

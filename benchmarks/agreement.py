@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 
 import inerter as it
-from inerter.papers.wang_su_2008 import printed_rows, study
+from inerter.papers.wang_su_2008.source import linear_rows, study
 from inerter.study.registry import INDEX
 
 CLAIM = {"J1": 1e-6, "J3": 1e-6, "J5": 1e-4}
@@ -18,7 +18,7 @@ CLAIM = {"J1": 1e-6, "J3": 1e-6, "J5": 1e-4}
 
 def main(seeds: int) -> None:
     worst = dict.fromkeys(CLAIM, 0.0)
-    for row in printed_rows():
+    for row in linear_rows():
         if row.table == 3:
             continue
         source = study("table1" if row.table == 1 else "table2")

@@ -19,7 +19,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import inerter as it
-from inerter.papers.wang_su_2008 import study
+from inerter.papers.wang_su_2008.source import study
 from inerter.study.run import run_study
 
 ROAD = it.Road(roughness=5e-7, speed=25)

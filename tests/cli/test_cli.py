@@ -40,7 +40,7 @@ def fails(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
         (["run", str(EXAMPLES / "quarter-car.toml"), "-j", "0"], "--jobs"),
         (["run", str(EXAMPLES / "quarter-car.toml"), "-j", "many"], "many"),
         (["reproduce", "some-paper"], "wang-su-2008"),
-        (["reproduce", "wang-su-2008", "--only", "all"], "linear"),
+        (["reproduce", "wang-su-2008", "--only", "all"], "table1"),
         (["run", str(EXAMPLES / "quarter-car.toml"), "-o", __file__], "is a file"),
     ],
 )

@@ -125,7 +125,7 @@ def add_legend(figure: Figure, axes: Iterable[Axes]) -> Legend:
         legend = figure.legend(
             list(entries.values()), list(entries), loc="outside lower center", ncols=columns, columnspacing=1.5
         )
-        if columns == 1 or legend.get_window_extent().width <= 0.98 * available:
+        if columns == 1 or legend.get_window_extent().width <= 0.95 * available:
             break
         legend.remove()
     return legend
@@ -159,6 +159,8 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False) -> list[
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / f"{name}.{kind}" for kind in ("svg", "pdf", "png") if pdf or kind != "pdf"]
     with styled():
+        figure.draw_without_rendering()  # the layout is found once for all files
+        figure.set_layout_engine("none")
         for file in files:
             figure.savefig(file, dpi=_DPI, metadata=_UNDATED[file.suffix])
     return files

@@ -235,8 +235,8 @@ def reason(r: SimulatedRow) -> str:
         return ""
     if r.row.index == "J5" and r.row.table == 2:
         return (
-            "a maximum of raw gains has no expectation where friction adds output of its own; how the paper averaged it "
-            "is not printed. Here: smoothed over 0.2 Hz to both sides"
+            "a maximum of raw gains has no expectation where friction adds output of its own; how it was averaged "
+            "there is not printed. Here: smoothed over 0.2 Hz to both sides"
         )
     if not r.row.has_friction:
         return "the printed value differs from the linear norm beside it, which a linear design cannot do"

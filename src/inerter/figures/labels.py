@@ -106,7 +106,7 @@ def typeset(text: str) -> str:
     text = _EXPONENT.sub(
         lambda exponent: f" × 10{(exponent[1].strip('+') + exponent[2]).translate(_SUPERSCRIPT)}", text
     )
-    text = re.sub(r"^1 × (?=10)", "", text)
+    text = re.sub(r"^1 × (?=10)", "", text).replace(") 1 × 10", ") × 10")
     return re.sub(r"\bum\b", "µm", re.sub(r"^-(?=[\d.i])", "−", text))
 
 

@@ -321,7 +321,7 @@ def _with_error(value: float, error: float, digits: int = 6) -> str:
         power += 1
     if abs(value) < 1e-3:
         exponent = int(f"{value:e}".partition("e")[2])
-        return f"({_with_error(value * 10.0**-exponent, error * 10.0**-exponent)})e{exponent}"
+        return f"({_with_error(value * 10.0**-exponent, error * 10.0**-exponent)}) 1e{exponent}"
     return f"{value:.{power}f} ± {error:.{power}f}"
 
 
@@ -457,7 +457,7 @@ def _simulated_table(found: Reproduction, number: int) -> Table | None:
                 Cell(typeset(_with_error(r.paper2008, r.paper2008_error))),
                 Cell(typeset(f"{_signed(100.0 * r.difference)} %")),
                 Cell(typeset(_with_error(r.exact, r.exact_error))),
-                Cell(r.verdict, strong=r.verdict == "differs"),
+                Cell(_printed_verdict(r), strong=r.verdict == "differs"),
             ],
             status=reason(r),
         )
@@ -467,6 +467,10 @@ def _simulated_table(found: Reproduction, number: int) -> Table | None:
     header = ["Design", "Printed", "paper2008", "Difference", "Exact", "Verdict"]
     method = "approximated linear model (Method 1)" if number == 2 else "expected value (Method 2)"
     return Table(f"Table {number} anew, {method}: J1 in m/s², J3 in N, J5 in m/N", header, rows) if rows else None
+
+
+def _printed_verdict(r: SimulatedRow) -> str:
+    return f"within {100.0 * r.tolerance:g} %" if r.verdict == "within the tolerance" else r.verdict
 
 
 def _designs_table(found: list[FoundDesign], number: int) -> Table:

@@ -31,11 +31,11 @@ def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcom
     """
     firsts = list({case.index: case for case in reversed(pending)}.values())
     for case in firsts:
-        yield run_case(study, case)
+        yield run_case(study, case, jobs)
     rest = [case for case in pending if case not in firsts]
     start = time.monotonic()
     while rest and (jobs == 1 or time.monotonic() - start < _SHORT):
-        yield run_case(study, rest.pop(0))
+        yield run_case(study, rest.pop(0), jobs)
     if not rest:
         return
     context = multiprocessing.get_context("spawn")

@@ -12,17 +12,19 @@ from numpy.typing import NDArray
 
 from inerter.figures.labels import (
     axis_label,
+    by_method,
     capital,
     compared,
     index_title,
     indices,
     layouts,
+    methods,
     one_method,
     percent,
     scale,
     typeset,
 )
-from inerter.figures.style import LayoutStyle, layout_styles, log_axis
+from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
 
 Array = NDArray[np.float64]
 
@@ -54,6 +56,30 @@ def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
     return ax
 
 
+def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence[Axes]:
+    """The improvement of every layout over the baseline by every method, one of `axes` for each index."""
+    names = compared(results)
+    places, width = np.arange(len(names), dtype=float), 0.7 / len(methods(results))
+    for ax, index in zip(axes, indices(results), strict=True):
+        for number, method in enumerate(methods(results)):
+            row = by_method(results, method).sel(index=index, layout=names)
+            values = np.where(np.isfinite(row["improvement"].values), row["improvement"].values, np.nan)
+            errors = np.nan_to_num(row["improvement_error"].values) if "improvement_error" in row else None
+            ax.errorbar(
+                places + (number - (len(methods(results)) - 1) / 2) * width, np.maximum(values, WORST), errors,
+                linestyle="", marker=marker(number), color=colour(number), markersize=4.5, capsize=2.5,
+                elinewidth=0.9, label=method,
+            )  # fmt: skip
+        ax.axhline(0.0, color="black", linestyle="--", linewidth=0.8)
+        ax.set_xlim(-0.5, len(names) - 0.5)
+        ax.set_xticks(places, names, rotation=30 if max(map(len, names)) * len(names) > 24 else 0)
+        ax.tick_params(axis="x", length=0)
+        ax.grid(visible=False, axis="x")
+        ax.set_title(f"{index}: {index_title(results, index)}")
+    axes[0].set_ylabel(IMPROVEMENT)
+    return axes
+
+
 def frequency_responses(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
     """The gain over frequency of each layout's best design for `index`, one of `axes` for each output."""
     dimension, styles = f"output_{index}", layout_styles(layouts(results), results.attrs["baseline"])
@@ -78,7 +104,13 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
     heights = np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), WORST, None)
     look: dict[str, Any] = {"color": style.colour, "hatch": style.hatch, "edgecolor": "white", "linewidth": 0.4}
     ax.bar(places, heights, 0.92 * width, label=style.label, **look)
-    for place, height, text in zip(places, heights, _numbers(values, row["value"].values), strict=True):
+    errors = np.nan_to_num(row["improvement_error"].values) if "improvement_error" in row else np.zeros(places.size)
+    seen = errors > 0.0
+    if seen.any():
+        bars: dict[str, Any] = {"linestyle": "", "color": "black", "capsize": 2.5, "elinewidth": 0.9}
+        ax.errorbar(places[seen], heights[seen], errors[seen], **bars)
+    ends = heights + np.where(heights >= 0.0, errors, -errors)
+    for place, height, text in zip(places, ends, _numbers(values, row["value"].values), strict=True):
         ax.annotate(
             text,
             (place, height),

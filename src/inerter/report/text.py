@@ -11,17 +11,20 @@ import xarray as xr
 
 from inerter.figures.labels import (
     compared,
+    error_of,
     flat_range,
     index_title,
     index_unit,
     indices,
     layouts,
+    methods,
     one_method,
     percent,
     quantity,
     swept_element,
 )
-from inerter.report.findings import extremes
+from inerter.report.by_method import method_lines
+from inerter.report.findings import crossing_sentences, extremes
 
 WIDTH = 80
 _LONGEST_NAME = 20  # a longer name of a layout has a line of its own
@@ -40,11 +43,17 @@ class _Row:
 def summary_table(results: xr.Dataset) -> str:
     """The best designs, a block for each index: ASCII, at most 80 columns.
 
-    With a sweep, where each layout improves most and least on the baseline.
+    With a sweep, where each layout improves most and least on the baseline, and where it is equally good. With several
+    methods, the first of them, and then all side by side.
     """
-    results = one_method(results)
+    every, results = results, one_method(results)
     block = _designs if swept_element(results) is None else _extremes
-    text = "\n\n".join("\n".join(block(results, index)) for index in indices(results))
+    several = len(methods(every)) > 1
+    blocks = [
+        [*block(results, index), *(["", *method_lines(every, index, WIDTH)] if several else [])]
+        for index in indices(results)
+    ]
+    text = "\n\n".join("\n".join(lines) for lines in blocks)
     return text.encode("ascii", "replace").decode()
 
 
@@ -54,10 +63,15 @@ def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
     table = []
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
-        improvement = "baseline" if name == results.attrs["baseline"] else percent(float(design["improvement"]))
-        cells = [quantity(float(design["value"]), unit), *([improvement] if versus else [])]
+        cells = [quantity(float(design["value"]), unit, error_of(design)), *([_improvement(design)] if versus else [])]
         table.append(_Row(name, cells, _parameters(design), str(design["status"].item())))
     yield from _lines(["layout", "value", *(["improvement"] if versus else [])], "parameters", table)
+
+
+def _improvement(design: xr.Dataset) -> str:
+    if design["layout"].item() == design.attrs["baseline"]:
+        return "baseline"
+    return percent(float(design["improvement"]), error_of(design, "improvement"))
 
 
 def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
@@ -75,6 +89,8 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
         texts = texts[::-1] if versus else texts
         table.append(_Row(name, texts[:1], texts[1:], _first_failure(results, name, index)))
     yield from _lines(["layout", "best"], "worst", table)
+    for sentence in crossing_sentences(results.sel(index=[index])) if versus else ():
+        yield from wrap(sentence.removeprefix(f"{index}: "), WIDTH, initial_indent="  ", subsequent_indent="    ")
 
 
 def _heading(results: xr.Dataset, index: str) -> str:

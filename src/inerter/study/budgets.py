@@ -11,13 +11,15 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.networks.elements import Friction, Gap
+from inerter.networks.elements import Free, Friction, Gap
 from inerter.optimisation.budget import Budget, budget
 from inerter.optimisation.threads import one_blas_thread
 from inerter.study.cases import FAILURES, Case, Outcome
 from inerter.study.method_problems import budget_method
 from inerter.study.registry import INDEX, method_of
 from inerter.study.values import Study, elements_used
+
+_DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 
 
 @dataclass(frozen=True)
@@ -92,10 +94,18 @@ def run_budget(study: Study, case: BudgetCase, outcomes: Mapping[Case, Outcome],
                 for layout in (case.layout, str(study.baseline))
             )
             index, how = INDEX[case.index](study), method_of(study, method, threads)
-            found = budget(design, baseline, index, parameter=case.parameter, method=how)
+            present = design_value(study, outcomes[Case(case.layout, case.index)], case.parameter)
+            bounds = None if at_most else (present / _DOWN, present * _UP)
+            found = budget(design, baseline, index, parameter=case.parameter, method=how, bounds=bounds)
     except FAILURES as error:
         return told(None, StatusKind.FAILED.value, str(error))
     return told(found, found.status.kind.value, found.status.message)
+
+
+def design_value(study: Study, outcome: Outcome, element: str) -> float:
+    """The value of an element in the design that was found."""
+    value = study.elements[element].value
+    return outcome.parameters[element] if isinstance(value, Free) else value
 
 
 def budgets_csv(outcomes: Sequence[BudgetOutcome]) -> str:

@@ -86,10 +86,16 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
 def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
     """What linear analysis leaves out of a design if the study makes use of it, and whether springs carry it."""
     measures = mechanism.measures
-    notes = list(linear_graph(mechanism).notes) if _LINEAR in study.methods else []
+    left_out = linear_graph(mechanism).notes if _LINEAR in study.methods else ()
+    notes = [f"{_prefix(study, _LINEAR)}{note}" for note in left_out]
     if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
         notes.append("no spring carries the body, which would sink under its own weight")
     return notes
+
+
+def _prefix(study: Study, method: str) -> str:
+    """The name of the method before its note, where there are several."""
+    return f"{method}: " if len(study.methods) > 1 else ""
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
@@ -125,7 +131,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
     bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
-    notes = [*(note for e in own.values() for note in e.notes), *design_notes(study, vehicle.mechanism())]
+    notes = [f"{_prefix(study, m)}{note}" for m, e in own.items() for note in e.notes]
     return Outcome(
         case.layout,
         case.index,
@@ -135,7 +141,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
         status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
         message=f"{bad}{worst.message}" if worst.message else "",
-        notes=list(dict.fromkeys(notes)),
+        notes=list(dict.fromkeys([*notes, *design_notes(study, vehicle.mechanism())])),
         realisations={m: e.realisations for m, e in own.items() if e.realisations},
         samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
         over_linear=None if over is None else (-over.percent, over.percent_error),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import sys
 from pathlib import Path
 from textwrap import wrap
@@ -19,7 +18,7 @@ from inerter.papers import wang_su_2008
 from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
 from inerter.report.page import write_report
-from inerter.report.text import WIDTH, summary_table
+from inerter.report.text import WIDTH, summary_table, wrapped
 from inerter.study.budgets import budget_cases
 from inerter.study.file import load_study
 from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study, study_notes
@@ -44,7 +43,7 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
     if as_json:
         print(_as_json(result))
     else:
-        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in _wrapped(text)))
+        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrapped(text)))
         print(f"\n{summary_table(result.data)}")
         print("".join(f"{line}\n" for line in budget_lines(result.budgets, loaded, WIDTH)), end="")
         for note in result.data.attrs["notes"].splitlines():
@@ -123,12 +122,6 @@ def _as_json(result: StudyResult) -> str:
         )
     budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
     return json.dumps({**data.attrs, "designs": rows, **budgets}, indent=2)
-
-
-def _wrapped(text: str) -> list[str]:
-    """The lines of a text; a number, its standard error and per cent stay on one."""
-    joined = re.sub(r" \+- (\S+)( %)?", lambda found: found[0].replace(" ", "\N{NO-BREAK SPACE}"), text)
-    return [line.replace("\N{NO-BREAK SPACE}", " ") for line in wrap(joined, WIDTH)]
 
 
 def _finite(value: float) -> float | str | None:

@@ -64,17 +64,16 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
         for number, method in enumerate(methods(results)):
             row = by_method(results, method).sel(index=index, layout=names)
             values = np.where(np.isfinite(row["improvement"].values), row["improvement"].values, np.nan)
-            errors = np.nan_to_num(row["improvement_error"].values) if "improvement_error" in row else None
-            ax.errorbar(
-                places + (number - (len(methods(results)) - 1) / 2) * width, np.maximum(values, WORST), errors,
-                linestyle="", marker=marker(number), color=colour(number), markersize=4.5, capsize=2.5,
-                elinewidth=0.9, label=method,
-            )  # fmt: skip
+            at, heights = places + (number - (len(methods(results)) - 1) / 2) * width, np.maximum(values, WORST)
+            look: dict[str, Any] = {"linestyle": "", "color": colour(number)}
+            ax.plot(at, heights, marker=marker(number), markersize=4.5, label=method, **look)
+            _error_bars(ax, row, at, heights, **look)
         ax.axhline(0.0, color="black", linestyle="--", linewidth=0.8)
         ax.set_xlim(-0.5, len(names) - 0.5)
         ax.set_xticks(places, names, rotation=30 if max(map(len, names)) * len(names) > 24 else 0)
         ax.tick_params(axis="x", length=0)
         ax.grid(visible=False, axis="x")
+        ax.margins(y=0.12)
         ax.set_title(f"{index}: {index_title(results, index)}")
     axes[0].set_ylabel(IMPROVEMENT)
     return axes
@@ -104,11 +103,7 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
     heights = np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), WORST, None)
     look: dict[str, Any] = {"color": style.colour, "hatch": style.hatch, "edgecolor": "white", "linewidth": 0.4}
     ax.bar(places, heights, 0.92 * width, label=style.label, **look)
-    errors = np.nan_to_num(row["improvement_error"].values) if "improvement_error" in row else np.zeros(places.size)
-    seen = errors > 0.0
-    if seen.any():
-        bars: dict[str, Any] = {"linestyle": "", "color": "black", "capsize": 2.5, "elinewidth": 0.9}
-        ax.errorbar(places[seen], heights[seen], errors[seen], **bars)
+    errors = _error_bars(ax, row, places, heights, linestyle="", color="black")
     ends = heights + np.where(heights >= 0.0, errors, -errors)
     for place, height, text in zip(places, ends, _numbers(values, row["value"].values), strict=True):
         ax.annotate(
@@ -123,6 +118,15 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
         )
     cut = values < WORST
     ax.plot(places[cut], heights[cut] * 0.95, linestyle="", marker="v", color="white", markersize=4.0)
+
+
+def _error_bars(ax: Axes, row: xr.Dataset, places: Array, heights: Array, **look: Any) -> Array:
+    """Caps one standard error above and below improvements that have one; returns the errors, zero where none is."""
+    errors = np.nan_to_num(row["improvement_error"].values) if "improvement_error" in row else np.zeros(places.size)
+    seen = errors > 0.0
+    if seen.any():
+        ax.errorbar(places[seen], heights[seen], errors[seen], capsize=2.5, elinewidth=0.9, zorder=4.0, **look)
+    return errors
 
 
 def _leave_room(ax: Axes, share: float) -> None:

@@ -32,7 +32,15 @@ class Scale:
 
 def one_method(results: xr.Dataset) -> xr.Dataset:
     """The results by the first of the methods, which is the one that figures and tables are about."""
-    return results.isel(method=0, drop=True) if "method" in results.dims else results
+    if "method" not in results.dims:
+        return results
+    first = results.isel(method=0, drop=True)
+    return first if results.sizes["method"] == 1 else first.assign_attrs(method=methods(results)[0])
+
+
+def by_which(results: xr.Dataset) -> str:
+    """Words for titles: by which of several methods the results are; empty if there is but one."""
+    return f", by {results.attrs['method']}" if "method" in results.attrs else ""
 
 
 def methods(results: xr.Dataset) -> list[str]:

@@ -27,9 +27,13 @@ def budget_tables(budgets: Sequence[BudgetOutcome], study: Study) -> list[Table]
     """The budgets for a page: a table for each element, layouts in rows and indices in columns."""
     tables = []
     for name, found in _by_element(budgets).items():
-        cells = {(outcome.layout, outcome.index): Cell(_answer(outcome, printed)) for outcome in found}
-        names = dict.fromkeys(outcome.layout for outcome in found)
-        rows = [Row(layout, [cells[layout, index] for index in study.indices]) for layout in names]
+        rows = []
+        for layout in dict.fromkeys(outcome.layout for outcome in found):
+            own = [outcome for outcome in found if outcome.layout == layout]
+            remarks = [f"{outcome.index}: {text}" for outcome in own if (text := _remark(outcome, printed))]
+            rows.append(
+                Row(layout, [Cell(_end(outcome, printed) or "–") for outcome in own], status="; ".join(remarks))
+            )
         tables.append(Table(_caption(name, found[0], study), ["Layout", *study.indices], rows))
     return tables
 
@@ -44,13 +48,26 @@ def _caption(name: str, found: BudgetOutcome, study: Study) -> str:
 
 
 def _answer(found: BudgetOutcome, write: Writer) -> str:
-    """The end of the range, or the sentence that says why there is none."""
+    end, remark = _end(found, write), _remark(found, write)
+    return f"{end} ({remark})" if end and remark else end or remark
+
+
+def _end(found: BudgetOutcome, write: Writer) -> str:
+    """The end of the range; empty if there is none."""
     if found.value is None:
-        return found.message if found.status == "unbounded" else f"{found.status}: {found.message}"
-    remarks = [] if found.status == "ok" else [f"{found.status}: {found.message}"]
+        return ""
+    end = write(found.value, found.unit, found.standard_error or 0.0)
+    return f"up to {end}" if found.at_most else f"from {end} on"
+
+
+def _remark(found: BudgetOutcome, write: Writer) -> str:
+    """Why there is no end, what is wrong with it, and whether there are further crossings."""
+    remarks = []
     if len(found.crossings) > 1:
-        places = " and ".join(write(value, found.unit, float("nan")) for value in found.crossings)
-        remarks.insert(0, f"equally good at {places}")
-    text = ("up to " if found.at_most else "from ") + write(found.value, found.unit, found.standard_error or 0.0)
-    text = text if found.at_most else f"{text} on"
-    return f"{text} ({'; '.join(remarks)})" if remarks else text
+        places = [write(value, found.unit, float("nan")) for value in found.crossings]
+        remarks.append(f"equally good at {', '.join(places[:-1])} and {places[-1]}")
+    if found.status == "unbounded":
+        remarks.append(found.message)
+    elif found.status != "ok":
+        remarks.append(f"{found.status}: {found.message}")
+    return "; ".join(remarks)

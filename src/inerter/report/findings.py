@@ -7,9 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 from inerter.figures.labels import (
     by_method,
+    by_which,
     compared,
     error_of,
     index_title,
@@ -55,36 +58,42 @@ def extremes(row: xr.DataArray, element: str) -> tuple[tuple[float, float], tupl
 
 
 def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float, float]]:
-    """Swept values at which a layout is as good as the baseline, with their standard errors; between two values by a
-    straight line. Where both are alike over more than one value, there is no crossing.
+    """Swept values at which a layout is as good as the baseline, each with its standard error.
+
+    Between swept values the improvement follows a monotone cubic; how far a straight line would put the crossing from
+    there is added to the error. Where both are alike over more than one value, there is no crossing.
     """
     element = str(swept_element(results))
     row = results.sel(layout=layout, index=index).sortby(element)
     swept, better = row[element].values, row["improvement"].values
     errors = row["improvement_error"].values if "improvement_error" in row else np.zeros(better.size)
     told = np.flatnonzero(np.isfinite(better) & (np.abs(better) >= _NOTICEABLE))
-    found = []
+    if told.size < 2:
+        return []
+    curve, found = PchipInterpolator(swept[told], better[told]), []
     for i, j in pairwise(told.tolist()):
         if j - i <= 2 and better[i] * better[j] < 0.0:
-            part = better[i] / (better[i] - better[j])
-            slope = (better[j] - better[i]) / (swept[j] - swept[i])
-            error = np.nan_to_num((1.0 - part) * errors[i] + part * errors[j]) / abs(slope)
-            found.append((float(swept[i] + part * (swept[j] - swept[i])), float(error)))
+            at = float(brentq(lambda place: float(curve(place)), swept[i], swept[j]))
+            part = (at - swept[i]) / (swept[j] - swept[i])
+            error = np.nan_to_num((1.0 - part) * errors[i] + part * errors[j]) / abs(float(curve(at, 1)))
+            straight = swept[i] + better[i] / (better[i] - better[j]) * (swept[j] - swept[i])
+            found.append((at, float(np.hypot(error, at - straight))))
     return found
 
 
 def crossing_sentences(results: xr.Dataset, write: Writer = quantity) -> list[str]:
     """For each index and layout that crosses the baseline over a sweep, where it does. For a study with a sweep."""
-    results, element = one_method(results), str(swept_element(results))
+    element, baseline = str(swept_element(results)), results.attrs["baseline"]
+    several = len(methods(results)) > 1
+    ways = {f" by {m}": by_method(results, m) for m in methods(results)} if several else {"": one_method(results)}
     sentences = []
     for index in indices(results):
         for name in compared(results):
-            places = [
-                write(at, results[element].attrs["units"], error) for at, error in crossings(results, index, name)
-            ]
-            if places:
-                baseline = results.attrs["baseline"]
-                sentences.append(f"{index}: {name} and {baseline} are equally good at {element} = {_listed(places)}")
+            found = {by: crossings(one, index, name) for by, one in ways.items()}
+            unit = results[element].attrs["units"]
+            texts = [_listed([write(at, unit, e) for at, e in places]) + by for by, places in found.items() if places]
+            if texts:
+                sentences.append(f"{index}: {name} and {baseline} are equally good at {element} = {', '.join(texts)}")
     return sentences
 
 
@@ -137,8 +146,8 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
     if largest < _NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {element}."
     return (
-        f"Best {title} compared with {baseline} of the same {element}: {name}, {largest:.1f} % better at "
-        f"{element} = {write(at, unit, np.nan)}; its improvement over the sweep lies {_range(least, largest)}."
+        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {name}, {largest:.1f} % better "
+        f"at {element} = {write(at, unit, np.nan)}; its improvement over the sweep lies {_range(least, largest)}."
     )
 
 

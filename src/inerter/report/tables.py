@@ -10,6 +10,7 @@ import xarray as xr
 
 from inerter.figures.labels import (
     by_method,
+    by_which,
     compared,
     error_of,
     flat_range,
@@ -114,7 +115,9 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
         cells += [Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []
         rows.append(Row(name, cells, name == best, _problem(design)))
     header = ["Layout", index, *(["Improvement"] if compared(results) else []), *parameters]
-    return Table(f"Best for {_title(results, index)}", header + (["Agreement"] if searched else []), rows)
+    return Table(
+        f"Best for {_title(results, index)}{by_which(results)}", header + (["Agreement"] if searched else []), rows
+    )
 
 
 def _parameter(entry: xr.Dataset) -> Cell:
@@ -140,7 +143,7 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
         units = [index_unit(results, other) for other in others]
         texts = [printed(value, unit) for value, unit in zip(values, units, strict=True)]
         rows.append(Row(name, [Cell(t, strong=other == index) for t, other in zip(texts, others, strict=True)]))
-    return Table(f"Designs that are best for {_title(results, index)}", ["Layout", *others], rows)
+    return Table(f"Designs that are best for {_title(results, index)}{by_which(results)}", ["Layout", *others], rows)
 
 
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:

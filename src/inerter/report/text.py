@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
@@ -10,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import (
+    by_which,
     compared,
     error_of,
     flat_range,
@@ -27,6 +29,8 @@ from inerter.report.by_method import method_lines
 from inerter.report.findings import crossing_sentences, extremes
 
 WIDTH = 80
+_NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+_MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?")
 _LONGEST_NAME = 20  # a longer name of a layout has a line of its own
 
 
@@ -40,6 +44,12 @@ class _Row:
     status: str
 
 
+def wrapped(text: str, **indents: str) -> list[str]:
+    """The lines of a text for a terminal; a number, its standard error and its unit stay on one."""
+    joined = _MEASURED.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
+    return [line.replace(_NO_BREAK_SPACE, " ") for line in wrap(joined, WIDTH, **indents)]  # type: ignore[arg-type]
+
+
 def summary_table(results: xr.Dataset) -> str:
     """The best designs, a block for each index: ASCII, at most 80 columns.
 
@@ -50,7 +60,11 @@ def summary_table(results: xr.Dataset) -> str:
     block = _designs if swept_element(results) is None else _extremes
     several = len(methods(every)) > 1
     blocks = [
-        [*block(results, index), *(["", *method_lines(every, index, WIDTH)] if several else [])]
+        [
+            *block(results, index),
+            *_crossings(every, index),
+            *(["", *method_lines(every, index, WIDTH)] if several else []),
+        ]
         for index in indices(results)
     ]
     text = "\n\n".join("\n".join(lines) for lines in blocks)
@@ -89,13 +103,18 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
         texts = texts[::-1] if versus else texts
         table.append(_Row(name, texts[:1], texts[1:], _first_failure(results, name, index)))
     yield from _lines(["layout", "best"], "worst", table)
-    for sentence in crossing_sentences(results.sel(index=[index])) if versus else ():
-        yield from wrap(sentence.removeprefix(f"{index}: "), WIDTH, initial_indent="  ", subsequent_indent="    ")
+
+
+def _crossings(results: xr.Dataset, index: str) -> Iterator[str]:
+    """Where layouts cross the baseline over a sweep."""
+    if swept_element(results) is not None and compared(results):
+        for sentence in crossing_sentences(results.sel(index=[index])):
+            yield from wrapped(sentence.removeprefix(f"{index}: "), initial_indent="  ", subsequent_indent="    ")
 
 
 def _heading(results: xr.Dataset, index: str) -> str:
     baseline = f", compared with {results.attrs['baseline']}" if compared(results) else ""
-    return f"{index}: {index_title(results, index)}{baseline}"
+    return f"{index}: {index_title(results, index)}{by_which(results)}{baseline}"
 
 
 def _parameters(design: xr.Dataset) -> list[str]:

@@ -103,7 +103,7 @@ def test_json_is_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert designs["S2"]["status"].startswith("marginal")
 
 
-@pytest.mark.parametrize("name", ["quarter-car", "half-car", "stiffness-sweep"])
+@pytest.mark.parametrize("name", ["quarter-car", "half-car", "stiffness-sweep", "ball_screw"])
 def test_examples_are_sound(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["check", str(EXAMPLES / f"{name}.toml")]) == 0
     assert "ok" in capsys.readouterr().out

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from textwrap import fill
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from inerter.figures.labels import (
@@ -32,6 +34,7 @@ IMPROVEMENT = "Improvement over baseline [%]"
 WORST = -100.0  # per cent; what is worse still is cut here, so that the others can be read
 _WINDOW = 20.0  # how far below the least of the highest gains a frequency response is shown
 _MOST_LEVEL_NUMBERS = 15  # above more bars than these the numbers stand upright
+_WIDEST_TITLE, _MOST_CHARACTERS = 22, 20  # in one of three panels
 _WIDEST_BAR = 0.28  # of the distance between two groups
 
 
@@ -70,13 +73,19 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
             _error_bars(ax, row, at, heights, **look)
         ax.axhline(0.0, color="black", linestyle="--", linewidth=0.8)
         ax.set_xlim(-0.5, len(names) - 0.5)
-        ax.set_xticks(places, names, rotation=30 if max(map(len, names)) * len(names) > 24 else 0)
+        ax.set_xticks(places, names, rotation=90 if upright_names(names) else 0)
         ax.tick_params(axis="x", length=0)
         ax.grid(visible=False, axis="x")
         ax.margins(y=0.12)
-        ax.set_title(f"{index}: {index_title(results, index)}")
+        ax.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+        ax.set_title(fill(f"{index}: {index_title(results, index)}", _WIDEST_TITLE))
     axes[0].set_ylabel(IMPROVEMENT)
     return axes
+
+
+def upright_names(names: Sequence[str]) -> bool:
+    """Whether the names of layouts have no room side by side below one of a few panels."""
+    return sum(map(len, names)) > _MOST_CHARACTERS
 
 
 def frequency_responses(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:

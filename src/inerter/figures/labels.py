@@ -18,6 +18,7 @@ _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
+_SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -129,6 +130,8 @@ def is_told(value: float, error: float) -> bool:
 
 def measured(value: float, error: float, sign: str = "") -> str:
     """A number and its standard error, to two digits of the error; `sign` is "+" to show it always."""
+    if not _SMALLEST < error < _LARGEST:
+        return f"{value:{sign}.4g} +- {error:.2g}"
     decimals = 1 - floor(log10(float(f"{error:.1e}")))
     shown = max(decimals, 0)
     return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
@@ -143,7 +146,7 @@ def percent(value: float, error: float = np.nan) -> str:
     """An improvement with its sign, and its standard error if there is one; "-inf %", or "n/a" where there is none."""
     if np.isnan(value):
         return "n/a"
-    if error >= _LEAST_PERCENT and np.isfinite(value + error):
+    if error >= _LEAST_PERCENT and np.isfinite(error) and abs(value) < _LARGEST:
         return f"{measured(value, error, '+')} %"
     text = f"{value:+.1f} %"
     return "0.0 %" if text in ("+0.0 %", "-0.0 %") else text

@@ -10,10 +10,12 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 
-from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method
-from inerter.figures.labels import compared, index_title, indices, methods, one_method, swept_element
+from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
+from inerter.figures.labels import compared, index_title, indices, layouts, methods, one_method, swept_element
 from inerter.figures.style import add_legend, new_figure, save, styled
 from inerter.figures.sweeps import parameter_curves, sweep_curves
+
+_MOST_ENTRIES = 9  # of a legend below a figure of the usual height
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,10 @@ def _uncertain(results: xr.Dataset, sentence: str) -> str:
 
 def _methods(results: xr.Dataset) -> Figure:
     panels = results.sizes["index"]
-    figure, axes = new_figure(panels, panels, height=2.7)
+    upright = upright_names(compared(results))
+    figure, axes = new_figure(
+        panels, panels, height=2.9 + (0.06 * max(map(len, compared(results))) if upright else 0.0)
+    )
     improvement_by_method(results, axes)
     add_legend(figure, axes)
     return figure
@@ -115,7 +120,8 @@ def _response(results: xr.Dataset, index: str) -> Figure:
 
 def _sweep(results: xr.Dataset, index: str) -> Figure:
     panels = 2 if compared(results) else 1
-    figure, axes = new_figure(panels, panels, height=2.9)
+    crowded = len(methods(results)) > 1 and len(methods(results)) + len(layouts(results)) > _MOST_ENTRIES
+    figure, axes = new_figure(panels, panels, height=3.4 if crowded else 2.9)
     sweep_curves(results, index, axes)
     add_legend(figure, axes)
     return figure

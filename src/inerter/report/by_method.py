@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from textwrap import wrap
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,7 @@ class _Entry(NamedTuple):
 def method_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
     """A table for a terminal: layouts in rows, methods in columns, in several parts if they need more than `width`."""
     names, unit = _names(results), _unit(results, index)
-    yield f"  {_what(results, unit)}"
+    yield from wrap(_what(results, unit), width, initial_indent="  ", subsequent_indent="    ")
     labels = [_Entry("layout"), *(_Entry(name[:_LONGEST_NAME]) for name in names)]
     columns = [
         [_Entry(*_two_lines(method)), *(_entry(by_method(results, method), index, name, unit) for name in names)]

@@ -146,8 +146,9 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
     if largest < _NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {element}."
     return (
-        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {name}, {largest:.1f} % better "
-        f"at {element} = {write(at, unit, np.nan)}; its improvement over the sweep lies {_range(least, largest)}."
+        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {name}, {largest:.1f} % "
+        f"better at {element} = {write(at, unit, np.nan)}; its improvement over the sweep lies "
+        f"{_range(least, largest)}."
     )
 
 

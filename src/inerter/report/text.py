@@ -73,7 +73,7 @@ def summary_table(results: xr.Dataset) -> str:
 
 def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
     unit, versus = index_unit(results, index), bool(compared(results))
-    yield _heading(results, index)
+    yield from wrap(_heading(results, index), WIDTH, subsequent_indent="    ")
     table = []
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
@@ -92,7 +92,7 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     element, versus = str(swept_element(results)), bool(compared(results))
     unit = results[element].attrs["units"]
     rows = results["improvement" if versus else "value"].sel(index=index)
-    yield f"{_heading(results, index)}, over {element}"
+    yield from wrap(f"{_heading(results, index)}, over {element}", WIDTH, subsequent_indent="    ")
     table = []
     for name in compared(results) or layouts(results):
         ends = extremes(rows.sel(layout=name), element) or ((np.nan, np.nan),) * 2

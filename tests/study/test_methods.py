@@ -1,11 +1,10 @@
-"""Studies by methods that see friction: errors of differences, budgets, and what a failing method leaves of the rest."""
+"""Studies by methods that see friction: errors of differences, budgets, and what a failing method leaves behind."""
 
 from __future__ import annotations
 
 import csv
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -37,18 +36,19 @@ roughness = "2e-6 m^3/cycle"
 [elements]
 k = "30 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
-b = "60 kg"
-f = "80 N"
+b = "400 kg"
+f = "20 N"
+h = "20 N"
 [layouts]
 usual = "k | c | f"
-serial = "k | c - b | f"
+serial = "k | c - (b | h)"
 ideal = "k | c - b"
 [study]
 indices = ["J1"]
 optimise = "norm"
-evaluate = ["norm", "statistical-linearisation", "expected-value"]
+evaluate = ["norm", "expected-value", "statistical-linearisation"]
 realisations = 4
-budgets = ["f"]
+budgets = ["h"]
 """
 ROADS = ExpectedValue(realisations=4, jobs=1)
 
@@ -93,7 +93,7 @@ def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(resu
     found = data.improvement_error.sel(layout="serial").item()
     assert found == pytest.approx(expected, rel=0.02)
     independent = 100.0 * np.hypot(*(data.standard_error.sel(layout=n).item() for n in ("serial", "usual")))
-    assert found < 0.8 * independent / data.value.sel(layout="usual").item()
+    assert found < independent / data.value.sel(layout="usual").item()
 
 
 def test_budgets_are_those_of_the_library_with_the_best_designs(result: StudyResult) -> None:
@@ -102,14 +102,10 @@ def test_budgets_are_those_of_the_library_with_the_best_designs(result: StudyRes
     assert (found.layout, found.index, found.method, found.at_most) == ("serial", "J1", "expected-value", True)
     c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(result)}
     designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "usual")]
-    expected = budget(*designs, INDEX["J1"](study), parameter="f", method=ROADS)
-    assert (found.value, found.status) in (
-        (expected.value, expected.status.kind.value),
-        (None, expected.status.kind.value),
-    )
+    expected = budget(*designs, INDEX["J1"](study), parameter="h", method=ROADS)
+    assert (found.value, found.standard_error, found.status) == (expected.value, expected.standard_error, "ok")
     (row,) = rows(result, "budgets.csv")
-    assert row["value"] == ("" if found.value is None else repr(found.value))
-    assert row["status"].startswith(found.status)
+    assert (row["value"], row["better"], row["status"]) == (repr(expected.value), "below", "ok")
 
 
 def test_budgets_and_outcomes_survive_the_journal_and_are_not_computed_again(result: StudyResult) -> None:

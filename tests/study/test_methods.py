@@ -21,7 +21,7 @@ from inerter.study.cases import Case, Outcome, run_case
 from inerter.study.file import load_study
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.run import StudyResult, check_study, run_study
-from inerter.study.values import Study
+from inerter.study.values import StrutLayout, Study
 
 TEXT = """
 title = "Friction on both sides"
@@ -34,9 +34,9 @@ tyre_stiffness = "190 kN/m"
 speed = "80 km/h"
 roughness = "2e-6 m^3/cycle"
 [elements]
-k = "30 kN/m"
+k = "90 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
-b = "400 kg"
+b = "300 kg"
 f = "20 N"
 h = "20 N"
 [layouts]
@@ -48,7 +48,6 @@ indices = ["J1"]
 optimise = "norm"
 evaluate = ["norm", "expected-value", "statistical-linearisation"]
 realisations = 4
-budgets = ["h"]
 """
 ROADS = ExpectedValue(realisations=4, jobs=1)
 
@@ -63,6 +62,13 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
 @pytest.fixture(scope="module")
 def result(study: Study, tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
     return run_study(study, tmp_path_factory.mktemp("run") / "out")
+
+
+@pytest.fixture(scope="module")
+def budgeted(study: Study, tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
+    layouts = {"plain": StrutLayout({"strut": "k | c"}), "serial": study.layouts["serial"]}
+    asked = replace(study, layouts=layouts, baseline="plain", evaluate=("norm", "expected-value"), budgets=("h",))
+    return run_study(asked, tmp_path_factory.mktemp("run") / "out")
 
 
 def rows(result: StudyResult, name: str = "summary.csv") -> list[dict[str, str]]:
@@ -92,36 +98,34 @@ def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(resu
     expected = 100.0 * np.sqrt((one.size - 1) * np.var(without))
     found = data.improvement_error.sel(layout="serial").item()
     assert found == pytest.approx(expected, rel=0.02)
-    independent = 100.0 * np.hypot(*(data.standard_error.sel(layout=n).item() for n in ("serial", "usual")))
-    assert found < independent / data.value.sel(layout="usual").item()
 
 
-def test_budgets_are_those_of_the_library_with_the_best_designs(result: StudyResult) -> None:
-    study = result.study
-    (found,) = result.budgets
+def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyResult) -> None:
+    study = budgeted.study
+    (found,) = budgeted.budgets
     assert (found.layout, found.index, found.method, found.at_most) == ("serial", "J1", "expected-value", True)
-    c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(result)}
-    designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "usual")]
+    c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(budgeted)}
+    designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "plain")]
     expected = budget(*designs, INDEX["J1"](study), parameter="h", method=ROADS)
     assert (found.value, found.standard_error, found.status) == (expected.value, expected.standard_error, "ok")
-    (row,) = rows(result, "budgets.csv")
+    (row,) = rows(budgeted, "budgets.csv")
     assert (row["value"], row["better"], row["status"]) == (repr(expected.value), "below", "ok")
 
 
-def test_budgets_and_outcomes_survive_the_journal_and_are_not_computed_again(result: StudyResult) -> None:
-    for found in result.budgets:
+def test_budgets_and_outcomes_survive_the_journal_and_are_not_computed_again(budgeted: StudyResult) -> None:
+    for found in budgeted.budgets:
         again = BudgetOutcome(**json.loads(json.dumps(found.to_json())))
         assert again.case == found.case
         assert again.value == found.value
-    journal, before = result.folder / "journal.jsonl", (result.folder / "budgets.csv").read_bytes()
+    journal, before = budgeted.folder / "journal.jsonl", (budgeted.folder / "budgets.csv").read_bytes()
     lines = journal.read_text().splitlines(keepends=True)
-    assert len(lines) == 1 + 3 + len(budget_cases(result.study))
-    again = run_study(result.study, result.folder, resume=True)
-    assert (again.computed, again.budgets[0].value) == (0, result.budgets[0].value)
+    assert len(lines) == 1 + 2 + len(budget_cases(budgeted.study))
+    again = run_study(budgeted.study, budgeted.folder, resume=True)
+    assert (again.computed, again.budgets[0].value) == (0, budgeted.budgets[0].value)
     assert journal.read_text().splitlines(keepends=True) == lines
     journal.write_text("".join(lines[:-1]) + lines[-1][:40])  # ended while the budget was written down
-    assert run_study(result.study, result.folder, resume=True).computed == 0
-    assert (result.folder / "budgets.csv").read_bytes() == before
+    assert run_study(budgeted.study, budgeted.folder, resume=True).computed == 0
+    assert (budgeted.folder / "budgets.csv").read_bytes() == before
 
 
 def test_threads_change_no_digit(study: Study) -> None:
@@ -132,7 +136,7 @@ def test_threads_change_no_digit(study: Study) -> None:
 
 
 def test_a_search_by_simulation_says_what_it_gains_over_the_best_linear_design(study: Study) -> None:
-    simulated = replace(study, optimise="expected-value", evaluate=("expected-value",), realisations=2, budgets=())
+    simulated = replace(study, optimise="expected-value", evaluate=("expected-value",), realisations=2)
     outcome = run_case(simulated, Case("serial", "J1"))
     expected = optimise(study.design("serial"), INDEX["J1"](study), ExpectedValue(realisations=2, jobs=1)).over_linear
     assert expected is not None
@@ -162,4 +166,4 @@ def test_a_layout_that_friction_alone_holds_is_no_question_for_the_norm(study: S
     with pytest.raises(StudyError, match=r"layouts\.held.*held by nothing"):
         check_study(held)
     fixed = {name: e.with_value(2e3) if isinstance(e.value, Free) else e for name, e in study.elements.items()}
-    check_study(replace(held, elements=fixed, optimise=None, evaluate=("expected-value",), budgets=()))
+    check_study(replace(held, elements=fixed, optimise=None, evaluate=("expected-value",)))

@@ -44,6 +44,23 @@ def sweep(
     return _results(layouts, baseline, np.asarray(stiffness, dtype=float))
 
 
+def judged(data: xr.Dataset, methods: Sequence[str] = ("norm", "expected-value"), roads: int = 8) -> xr.Dataset:
+    """The same results by several methods: the first is exact, each further one a little worse, with errors."""
+    factors = xr.DataArray(1.0 + 0.01 * np.arange(len(methods)), coords={"method": list(methods)}, dims="method")
+    dims = (*data["value"].dims, "method")
+    data = data.assign(value=(data["value"] * factors).transpose(*dims))
+    exact = (
+        xr.DataArray([0.0 if i else np.nan for i in range(len(methods))], dims="method") if len(methods) > 1 else 0.0
+    )
+    error = (0.004 * data["value"] + exact).transpose(*dims)
+    data = data.assign(
+        standard_error=error.where(data["layout"] != data.attrs["baseline"]),
+        realisations=(dims, np.full(error.shape, roads)),
+    )
+    data = improved(data) if data.attrs["baseline"] else data.assign(improvement=data["value"] * np.nan)
+    return data.assign(improvement_error=data["standard_error"] * 0.0 + 0.31)
+
+
 def improved(data: xr.Dataset) -> xr.Dataset:
     """The same results with improvements that belong to their values."""
     base = data["value"].sel(layout=data.attrs["baseline"], drop=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import time
@@ -103,7 +104,35 @@ def test_json_is_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert designs["S2"]["status"].startswith("marginal")
 
 
-@pytest.mark.parametrize("name", ["quarter-car", "half-car", "stiffness-sweep"])
+def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (EXAMPLES / "ball_screw.toml").read_text(encoding="utf-8")
+    study, folder = tmp_path / "screw.toml", tmp_path / "out"
+    study.write_text(text.replace('["J1", "J3", "J5"]', '["J1"]').replace('force = "1 kN"', ""), encoding="utf-8")
+    assert call(["check", str(study)]) == 0
+    assert "3 designs to find, and 2 budgets." in capsys.readouterr().out
+    assert call(["run", str(study), "-o", str(folder), "-j", "1"]) == 0
+    out, err = capsys.readouterr()
+    assert "5 designs and budgets" in err
+    assert out.isascii()
+    assert max(map(len, out.splitlines())) <= 80
+    (friction,) = re.findall(r"S3 .*up to (\d+) \+- (\d+) N$", out, re.MULTILINE)
+    assert 300 < int(friction[0]) < 600
+    words = " ".join(out.split())
+    assert re.search(r"16\.2 % better than S1 by norm, 16\.0\d+ \+- 0\.0\d+ % by expected-value\.", words)
+    assert {path.name for path in folder.iterdir()} >= {"budgets.csv", "summary.csv", "report.html"}
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "Budget of f: for which f each layout is better than S1, by expected-value" in page
+    assert "The methods side by side" in page
+    assert "Each mean is over 8 random inputs, which seed 0 decides" in page
+    assert (folder / "figures" / "methods.svg").exists()
+    assert call(["run", str(study), "-o", str(folder), "-j", "1", "--resume", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [found["layout"] for found in data["budgets"]] == ["S2", "S3"]
+    assert data["designs"][-1]["realisations"] == 8
+    assert data["designs"][-1]["standard_error"] > 0.0
+
+
+@pytest.mark.parametrize("name", ["quarter-car", "half-car", "stiffness-sweep", "ball_screw"])
 def test_examples_are_sound(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["check", str(EXAMPLES / f"{name}.toml")]) == 0
     assert "ok" in capsys.readouterr().out

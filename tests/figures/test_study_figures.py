@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from synthetic import LONG, designs, improved, sweep, with_value
+from synthetic import LONG, designs, improved, judged, sweep, with_value
 
 from inerter.errors import StudyError
 from inerter.figures.designs import frequency_responses, improvement_bars
@@ -16,6 +16,7 @@ from inerter.figures.study import draw_study, study_figures
 from inerter.figures.style import new_figure, styled
 from inerter.figures.sweeps import parameter_curves, sweep_curves
 
+METHODS = ["norm", "statistical-linearisation", "expected-value", "approximate-linear"]
 UNSTABLE = "unstable: the design has no finite norm"
 CASES = {
     "designs": designs(),
@@ -27,6 +28,11 @@ CASES = {
     "many swept": sweep(LONG),
     "one swept": sweep(["S1"], baseline=""),
     "two values over decades": sweep(stiffness=[1e3, 1e6]),
+    "two methods": judged(designs()),
+    "four methods": judged(designs(LONG), METHODS),
+    "one method with errors": judged(designs(), ["expected-value"]),
+    "two methods over a sweep": judged(sweep()),
+    "four methods over a sweep": judged(sweep(LONG), METHODS),
     "nothing finite": improved(sweep().assign(value=sweep()["value"] * np.nan)),
 }
 
@@ -53,6 +59,29 @@ def test_names_of_figures():
     assert [figure.name for figure in study_figures(sweep())] == [
         f"{kind}-{index}" for index in ("J1", "J3", "J5") for kind in ("sweep", "parameters")
     ]
+
+
+def test_methods_differ_by_line_and_layouts_by_colour():
+    with styled():
+        (figure,) = [f for f in study_figures(judged(sweep(), METHODS)) if f.name == "sweep-J1"]
+        drawn = figure.draw()
+        assert figure.caption.endswith("Bands: one standard error to both sides.")
+    left, right = drawn.axes
+    assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2", "S3", *METHODS]
+    curves = [line for line in left.lines if len(line.get_xdata())]
+    assert len(curves) == 3 * len(METHODS)
+    assert {line.get_linestyle() for line in curves} == {"-", "--", "-."}  # of dotted lines matplotlib says "--" too
+    assert len({to_hex(line.get_color()) for line in curves}) == 3
+    assert len(right.collections) == 2 * 3  # a band for every layout and every method that scatters
+
+
+def test_error_bars_stand_where_there_is_an_error():
+    with styled():
+        bars = improvement_bars(judged(designs(), ["expected-value"]), new_figure(height=3.0)[1][0])
+        plain = improvement_bars(designs(), new_figure(height=3.0)[1][0])
+    assert (len(bars.collections), len(plain.collections)) == (2, 0)
+    names = [figure.name for figure in study_figures(judged(designs()))]
+    assert names[:2] == ["improvement", "methods"]
 
 
 @pytest.mark.parametrize("results", [designs(), sweep()], ids=["designs", "sweep"])

@@ -3,15 +3,17 @@
 import math
 import re
 from collections import Counter
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic import LONG, designs, sweep, with_value
+from synthetic import LONG, designs, judged, sweep, with_value
 
 from inerter.figures.study import draw_study
 from inerter.report.page import report, write_report
+from inerter.study.budgets import BudgetOutcome
 from inerter.study.file import load_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -65,6 +67,34 @@ def test_the_answer_is_on_the_page(study, tmp_path):
     assert "14 of 16" in page.text
     assert "at its upper bound" in page.text
     assert page.text.count("at its upper bound") == 1
+
+
+def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
+    found = BudgetOutcome(
+        *("S2", "J1", "f", "N", "expected-value", True),
+        value=280.5,
+        standard_error=6.6,
+        interval=(265.3, 296.7),
+        crossings=[280.5, 900.0],
+        status="ok",
+        message="",
+    )
+    endless = replace(found, layout="S3", value=None, crossings=[], status="unbounded", message="better for every f")
+    results = judged(designs())
+    asked = replace(study, evaluate=("norm", "expected-value"), indices=("J1",), force=1e3)
+    text = Page(report(results, asked, tmp_path, [found, endless])).text.replace(SPACE, " ")
+    assert "2.4447 ± 0.0098+6.00 ± 0.31 %" in text
+    assert "up to 280.5 ± 6.6 N" in text
+    assert "J1: equally good at 280.5 N and 900 N" in text
+    assert "S3 – J1: better for every f" in text
+    assert "Values by expected-value are means over simulations" in text
+    assert "Each mean is over 8 random inputs, which seed 0 decides" in text
+    assert "The sinusoidal force of J5 has an amplitude of 1 kN." in text
+    swept = judged(sweep())
+    swept["improvement"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = [-4.0, -1.0, 1.0, 3.0, 6.0]
+    text = Page(report(swept, sweep_study, tmp_path)).text.replace(SPACE, " ")
+    assert re.search(r"J1: S2 and S1 are equally good at k = \d+ ± \d+ kN/m by expected-value\.", text)
+    assert "over k in kN/m, by expected-value" in text
 
 
 def test_the_question_is_on_the_page_in_the_digits_of_the_study_file(study, tmp_path):

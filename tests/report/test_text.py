@@ -3,14 +3,16 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
-from synthetic import LONG, designs, improved, sweep, with_value
+from synthetic import LONG, designs, improved, judged, sweep, with_value
 
-from inerter.report.findings import best_layout, headlines
+from inerter.figures.labels import quantity
+from inerter.report.findings import best_layout, crossings, headlines
 from inerter.report.text import WIDTH, summary_table
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)
+METHODS = ["norm", "statistical-linearisation", "expected-value", "approximate-linear"]
 ANY_VALUE = st.one_of(st.floats(1e-12, 1e12), st.sampled_from([math.inf, math.nan]))
 
 
@@ -41,6 +43,76 @@ def test_a_sweep_by_its_best_and_its_worst():
     results = improved(sweep(stiffness=[10e3, 100e3, 300e3]))
     results["improvement"].loc[{"layout": "S2", "index": "J5"}] = [3.0, -2.0, 7.0]
     assert "  S2      +7.0 % at 300 kN/m  -2.0 % at 100 kN/m" in summary_table(results).split("\n")
+
+
+@settings(max_examples=10, phases=[Phase.explicit, Phase.generate])
+@given(st.lists(NAMES, min_size=2, max_size=6, unique=True), ANY_VALUE, st.booleans(), st.integers(1, 4))
+def test_tables_by_method_fit_a_terminal(names, value, swept, count):
+    results = (sweep if swept else designs)(names, baseline=names[0])
+    results = judged(with_value(results, value, layout=names[-1], index="J3"), METHODS[-count:])
+    text = summary_table(results)
+    assert text.isascii()
+    assert all(len(line) <= WIDTH and line == line.rstrip() for line in text.split("\n"))
+    assert all(method.split("-")[-1] in text for method in METHODS[-count:] if count > 1)
+
+
+def test_methods_side_by_side_with_their_errors():
+    lines = summary_table(judged(designs())).split("\n")
+    assert lines[0] == "J1: ride comfort, by norm, compared with S1"
+    assert lines[6:13] == [
+        "  by each method, in m/s^2",
+        "  layout  norm     expected-value",
+        "  S1      2.575    2.601",
+        "  S2      2.42     2.4447 +- 0.0098",
+        "          +6.0 %   +6.00 +- 0.31 %",
+        "  S3      2.266    2.2887 +- 0.0092",
+        "          +12.0 %  +12.00 +- 0.31 %",
+    ]
+
+
+def test_one_method_with_errors_is_the_table_as_it_was_with_errors_in_it():
+    lines = summary_table(judged(designs(), ["expected-value"])).split("\n")
+    assert lines[0] == "J1: ride comfort, compared with S1"
+    assert lines[3] == "  S2      2.4205 +- 0.0097 m/s^2  +6.00 +- 0.31 %   c = 3.873 kN s/m, b = 250 kg"
+    assert "by each method" not in "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "unit", "text"),
+    [
+        (2.64912, 0.000584, "m/s^2", "2.64912 +- 0.00058 m/s^2"),
+        (503.3436, 0.0865, "N", "503.344 +- 0.086 N"),
+        (413.7, 99.6, "N", "410 +- 100 N"),
+        (75947.0, 127.8, "N/m", "75.95 +- 0.13 kN/m"),
+        (12.0, 345.0, "N", "10 +- 340 N"),
+        (2.5, 0.0, "N", "2.5 N"),
+        (2.5, math.nan, "N", "2.5 N"),
+        (math.inf, 1.0, "N", "inf"),
+    ],
+)
+def test_a_value_has_the_decimals_of_its_error(value, error, unit, text):
+    assert quantity(value, unit, error) == text
+
+
+def test_a_crossing_of_a_sweep_with_its_error():
+    """Improvements on the parabola 6 - (k/50e3 - 3)^2 per cent, which are zero at 3 +- sqrt(6) times 50 kN/m."""
+    stiffness = [50e3 * place for place in range(7)]
+    results = sweep(["S1", "S2"], stiffness=[max(k, 1.0) for k in stiffness])
+    results["improvement"].loc[{"layout": "S2", "index": "J1"}] = [6.0 - (k / 50e3 - 3.0) ** 2 for k in stiffness]
+    for (at, error), side in zip(crossings(results, "J1", "S2"), (-1.0, 1.0), strict=True):
+        assert at == pytest.approx(50e3 * (3.0 + side * math.sqrt(6.0)), abs=2.0 * error)
+        assert error < 3e3
+    scattered = results.assign(improvement_error=results["improvement"] * 0.0 + 0.5)
+    for (_, exact), (_, wide) in zip(crossings(results, "J1", "S2"), crossings(scattered, "J1", "S2"), strict=True):
+        assert wide > exact
+    assert "S2 and S1 are equally good at k = " in summary_table(results)
+
+
+def test_curves_that_lie_on_each_other_do_not_cross():
+    results = sweep(["S1", "S2"], stiffness=[10e3, 20e3, 30e3, 40e3, 50e3])
+    for improvement in ([1e-9, -1e-9, 1e-9, 0.0, 1e-9], [5.0, 0.0, 0.0, 0.0, -5.0], [math.nan] * 5):
+        results["improvement"].loc[{"layout": "S2", "index": "J1"}] = improvement
+        assert crossings(results, "J1", "S2") == []
 
 
 def test_a_status_that_is_not_ok_is_told():

@@ -237,6 +237,18 @@ def test_a_study_is_the_same_study_in_other_units_and_another_place(load, tmp_pa
     assert load_study(other).resolved() == load(GOOD).resolved()
 
 
+@pytest.mark.parametrize("roads", ["realisations = 12", "relative_error = 0.003"])
+def test_settings_of_methods_arrive_and_survive_being_written(load, tmp_path, roads):
+    study = load(
+        GOOD,
+        *FRICTION,
+        asked(f'{roads}\nforce = "1.5 kN"\nbudgets = ["f", "b"]\nbaseline = "S1"', "J5"),
+    )
+    assert (study.realisations, study.relative_error) in ((12, None), (None, 0.003))
+    assert (study.force, study.budgets, study.methods) == (1500.0, ("f", "b"), ("norm", "expected-value"))
+    assert_survives(study, tmp_path)
+
+
 @given(st.lists(st.floats(1e-300, 1e300), min_size=7, max_size=7), st.integers(0, 2**63 - 1))
 def test_any_values_survive_to_the_last_bit(tmp_path_factory, numbers, seed):
     mass, wheel, tyre, speed, k, low, omega = numbers
@@ -261,6 +273,15 @@ def test_any_values_survive_to_the_last_bit(tmp_path_factory, numbers, seed):
 
 C = 'c = { from = "100 N s/m", to = "100 kN s/m" }'
 INDICES = 'indices = ["J3", "J1"]'
+
+
+FRICTION = (('"k | c | b"', '"k | c | b | f"'), ('b = "300 kg"', 'b = "300 kg"\nf = "10 N"'))
+
+
+def asked(settings, index="J1", how="expected"):
+    """The settings of a study that simulates, or linearises statistically, and more of them."""
+    method = {"expected": "expected-value", "statistical": "statistical-linearisation"}[how]
+    return INDICES, f'indices = ["{index}"]\nevaluate = ["{method}"]\n{settings}'
 
 
 def sweep(text):
@@ -338,9 +359,59 @@ BAD = {
     "indices missing": ([(INDICES, "")], "study.indices", ["missing", '["J1", "J3", "J5"]']),
     "optimise": ([('optimise = "norm"', 'optimise = "nrom"')], "study.optimise", ['"nrom"', 'Did you mean "norm"?']),
     "evaluate": (
-        [(INDICES, INDICES + '\nevaluate = ["norm", "expected-value"]')],
+        [(INDICES, INDICES + '\nevaluate = ["norm", "expected-values"]')],
         "study.evaluate",
-        ['"expected-value"', "available in this version", '"norm"'],
+        ['"expected-values"', "available in this version", '"norm"', 'Did you mean "expected-value"?'],
+    ),
+    # roads, forces, gaps and budgets
+    "one road": ([asked("realisations = 1")], "study.realisations", ["got 1", "from 2 to"]),
+    "half a road": ([asked("realisations = 2.5")], "study.realisations", ["got 2.5", "whole number"]),
+    "error unit": ([asked('relative_error = "1 %"')], "study.relative_error", ['"1 %"', "without quotes", "0.01"]),
+    "error of one": ([asked("relative_error = 1")], "study.relative_error", ["got 1", "between 0 and 1"]),
+    "roads and error": (
+        [asked("realisations = 4\nrelative_error = 0.01")],
+        "study.relative_error",
+        ["got 0.01", "realisations = 4", "one of the two"],
+    ),
+    "idle roads": (
+        [(INDICES, INDICES + "\nrealisations = 4")],
+        "study.realisations",
+        ["no method averages", '"expected-value"', '"approximate-linear"'],
+    ),
+    "no force": ([*FRICTION, asked("", "J5")], "study.force", ["missing", "expected-value", "S2", 'force = "1 kN"']),
+    "force unit": ([asked('force = "1 kN/m"', "J5")], "study.force", ["another kind", '"1 kN"']),
+    "idle force": ([asked('force = "1 kN"')], "study.force", ["J5", "in indices", "no force"]),
+    "gap": (
+        [
+            ('"k | c | b"', '"k | c | (b - g)"'),
+            ('b = "300 kg"', 'b = "300 kg"\ng = "1 mm"'),
+            asked("", how="statistical"),
+        ],
+        "study.evaluate",
+        ["no answer for gaps", "S2 has one", '"expected-value"'],
+    ),
+    "budget unknown": (
+        [asked('budgets = ["bb"]')],
+        "study.budgets",
+        ['"bb"', "not in [elements]", 'Did you mean "b"?'],
+    ),
+    "budget twice": ([asked('budgets = ["b", "b"]')], "study.budgets", ['"b"', "more than once"]),
+    "budget word": ([asked('budgets = "b"')], "study.budgets", ['"b"', "expected a list"]),
+    "budget of the baseline": (
+        [asked('budgets = ["b"]\nbaseline = "S2"')],
+        "study.budgets",
+        ["no layout but the baseline has b"],
+    ),
+    "budget alone": ([('S1 = "k | c"', ""), asked('budgets = ["b"]')], "study.budgets", ["but one layout"]),
+    "budget and sweep": (
+        [asked('budgets = ["b"]\nbaseline = "S1"\nsweep = { k = ["1 N/m", "2 N/m"] }')],
+        "study.budgets",
+        ["beside a sweep"],
+    ),
+    "budget that norm cannot see": (
+        [*FRICTION, (INDICES, INDICES + '\nbaseline = "S1"\nbudgets = ["f"]')],
+        "study.budgets",
+        ["f is a friction", '"expected-value"'],
     ),
     "conventions": ([(INDICES, INDICES + '\nconventions = "paper"')], "study.conventions", ['"paper2008"']),
     "seed": ([(INDICES, INDICES + "\nseed = -1")], "study.seed", ["got -1", "whole number"]),

@@ -12,14 +12,18 @@ from typing import Any
 import numpy as np
 
 from inerter.cli.progress import progress, steps
-from inerter.errors import StudyError
+from inerter.errors import StatusKind, StudyError
 from inerter.figures.study import draw_study
 from inerter.papers.wang_su_2008.source import KEY
+from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
 from inerter.report.page import write_report
-from inerter.report.text import WIDTH, summary_table
+from inerter.report.text import WIDTH, summary_table, wrapped
+from inerter.study.budgets import budget_cases
 from inerter.study.file import load_study
 from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study, study_notes
+
+_JSON = {"improvement_error": "improvement_error_percent"}
 
 
 def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool) -> int:
@@ -28,19 +32,20 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
     folder = output or Path(f"{study.stem}-results")
     processes = _processes(jobs)
     try:
-        with progress(study.stem) as callback:
+        with progress(study.stem, "designs and budgets" if loaded.budgets else "designs") as callback:
             result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback)
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with: inerter run {study} -o {folder} --resume")
         return 1
     draw_study(result.data, folder / FIGURES)
-    write_report(result.data, loaded, folder / FIGURES, folder / REPORT)
+    write_report(result.data, loaded, folder / FIGURES, folder / REPORT, result.budgets)
     _say(f"report: {folder / REPORT}")
     if as_json:
         print(_as_json(result))
     else:
-        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrap(text, WIDTH)))
+        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrapped(text)))
         print(f"\n{summary_table(result.data)}")
+        print("".join(f"{line}\n" for line in budget_lines(result.budgets, loaded, WIDTH)), end="")
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
     return _judge(result)
@@ -52,10 +57,11 @@ def check(study: Path) -> int:
     check_study(loaded)
     points = len(loaded.sweep.values) if loaded.sweep else 1
     count = len(loaded.layouts) * len(loaded.indices) * points
+    budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
     swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
     print(
         f"{study}: ok. {loaded.model}; layouts {', '.join(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
-        f": {count} designs to {'find' if loaded.optimise else 'judge'}."
+        f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
     )
     for note in study_notes(loaded):
         print(f"Note: {note}.")
@@ -93,13 +99,15 @@ def _judge(result: StudyResult) -> int:
     """Say what is not an ordinary number; the work has failed if a case has no number at all."""
     for line in result.failures:
         _say(line)
-    return 1 if bool(result.data.status.str.startswith("failed").any()) else 0
+    failed = bool(result.data.status.str.startswith("failed").any())
+    return 1 if failed or any(found.status == StatusKind.FAILED for found in result.budgets) else 0
 
 
 def _as_json(result: StudyResult) -> str:
     data = result.data
     rows: list[dict[str, Any]] = []
-    stacked = data[["value", "improvement", "status"]].stack(case=list(data.value.dims))
+    told = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
+    stacked = data[["value", "improvement", "status", *told]].stack(case=list(data.value.dims))
     for i, place in enumerate(stacked.case.values.tolist()):
         labels = dict(zip(data.value.dims, place, strict=True))
         design = data.sel({name: labels[name] for name in labels if name != "method"})
@@ -110,15 +118,19 @@ def _as_json(result: StudyResult) -> str:
                 "value": _finite(stacked.value.values[i]),
                 "unit": str(design.index_unit.item()),
                 "improvement_percent": _finite(stacked.improvement.values[i]),
+                **{_JSON.get(name, name): _finite(stacked[name].values[i].item()) for name in told},
                 "status": str(stacked.status.values[i]),
                 "parameters": {name: value for name, value in values if np.isfinite(value)},
             }
         )
-    return json.dumps({**data.attrs, "designs": rows}, indent=2)
+    budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
+    return json.dumps({**data.attrs, "designs": rows, **budgets}, indent=2)
 
 
 def _finite(value: float) -> float | str | None:
     """JSON has no infinity: it is the text "inf" or "-inf"; what there is not is null."""
+    if isinstance(value, int):
+        return value
     return None if np.isnan(value) else float(value) if np.isfinite(value) else str(float(value))
 
 

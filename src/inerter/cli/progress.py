@@ -20,15 +20,16 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from inerter.study.budgets import BudgetOutcome
 from inerter.study.cases import Outcome
 from inerter.study.run import Progress as Report
 
 
 @contextmanager
-def progress(what: str) -> Iterator[Report]:
-    """A callback that shows how many cases are done, and which one was last."""
+def progress(what: str, items: str = "designs") -> Iterator[Report]:
+    """A callback that shows how many cases are done, and which one was last; `items` says what there is to find."""
     if not sys.stderr.isatty():
-        yield lambda done, total, outcome: _line(what, done, total, outcome)
+        yield lambda done, total, outcome: _line(what, items, done, total, outcome)
         return
     columns = (
         TextColumn("{task.description}"),
@@ -41,7 +42,7 @@ def progress(what: str) -> Iterator[Report]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=None)
 
-        def show(done: int, total: int, outcome: Outcome | None) -> None:
+        def show(done: int, total: int, outcome: Outcome | BudgetOutcome | None) -> None:
             name = f"{what}: {outcome.layout} {outcome.index}" if outcome else what
             bar.update(task, completed=done, total=total, description=name)
 
@@ -107,9 +108,9 @@ class _Every:
             print(f"{self.what}: {100 * done:.0f} % done", file=sys.stderr, flush=True)
 
 
-def _line(what: str, done: int, total: int, outcome: Outcome | None) -> None:
+def _line(what: str, items: str, done: int, total: int, outcome: Outcome | BudgetOutcome | None) -> None:
     if outcome is None and done < total:
         kept = f", {done} of them done before" if done else ""
-        print(f"{what}: {total} designs to find{kept}", file=sys.stderr, flush=True)
+        print(f"{what}: {total} {items} to find{kept}", file=sys.stderr, flush=True)
     elif outcome is not None and done == total:
-        print(f"{what}: all {total} designs found", file=sys.stderr, flush=True)
+        print(f"{what}: all {total} {items} found", file=sys.stderr, flush=True)

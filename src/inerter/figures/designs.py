@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from textwrap import fill
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from inerter.figures.labels import (
     axis_label,
+    by_method,
     capital,
     compared,
     index_title,
     indices,
     layouts,
+    methods,
     one_method,
     percent,
     scale,
     typeset,
 )
-from inerter.figures.style import LayoutStyle, layout_styles, log_axis
+from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
 
 Array = NDArray[np.float64]
 
@@ -30,6 +34,7 @@ IMPROVEMENT = "Improvement over baseline [%]"
 WORST = -100.0  # per cent; what is worse still is cut here, so that the others can be read
 _WINDOW = 20.0  # how far below the least of the highest gains a frequency response is shown
 _MOST_LEVEL_NUMBERS = 15  # above more bars than these the numbers stand upright
+_WIDEST_TITLE, _MOST_CHARACTERS = 22, 20  # in one of three panels
 _WIDEST_BAR = 0.28  # of the distance between two groups
 
 
@@ -52,6 +57,35 @@ def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
     ax.grid(visible=False, axis="x")
     ax.set_ylabel(IMPROVEMENT)
     return ax
+
+
+def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence[Axes]:
+    """The improvement of every layout over the baseline by every method, one of `axes` for each index."""
+    names = compared(results)
+    places, width = np.arange(len(names), dtype=float), 0.7 / len(methods(results))
+    for ax, index in zip(axes, indices(results), strict=True):
+        for number, method in enumerate(methods(results)):
+            row = by_method(results, method).sel(index=index, layout=names)
+            values = np.where(np.isfinite(row["improvement"].values), row["improvement"].values, np.nan)
+            at, heights = places + (number - (len(methods(results)) - 1) / 2) * width, np.maximum(values, WORST)
+            look: dict[str, Any] = {"linestyle": "", "color": colour(number)}
+            ax.plot(at, heights, marker=marker(number), markersize=4.5, label=method, **look)
+            _error_bars(ax, row, at, heights, **look)
+        ax.axhline(0.0, color="black", linestyle="--", linewidth=0.8)
+        ax.set_xlim(-0.5, len(names) - 0.5)
+        ax.set_xticks(places, names, rotation=90 if upright_names(names) else 0)
+        ax.tick_params(axis="x", length=0)
+        ax.grid(visible=False, axis="x")
+        ax.margins(y=0.12)
+        ax.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+        ax.set_title(fill(f"{index}: {index_title(results, index)}", _WIDEST_TITLE))
+    axes[0].set_ylabel(IMPROVEMENT)
+    return axes
+
+
+def upright_names(names: Sequence[str]) -> bool:
+    """Whether the names of layouts have no room side by side below one of a few panels."""
+    return sum(map(len, names)) > _MOST_CHARACTERS
 
 
 def frequency_responses(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
@@ -78,7 +112,9 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
     heights = np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), WORST, None)
     look: dict[str, Any] = {"color": style.colour, "hatch": style.hatch, "edgecolor": "white", "linewidth": 0.4}
     ax.bar(places, heights, 0.92 * width, label=style.label, **look)
-    for place, height, text in zip(places, heights, _numbers(values, row["value"].values), strict=True):
+    errors = _error_bars(ax, row, places, heights, linestyle="", color="black")
+    ends = heights + np.where(heights >= 0.0, errors, -errors)
+    for place, height, text in zip(places, ends, _numbers(values, row["value"].values), strict=True):
         ax.annotate(
             text,
             (place, height),
@@ -91,6 +127,15 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
         )
     cut = values < WORST
     ax.plot(places[cut], heights[cut] * 0.95, linestyle="", marker="v", color="white", markersize=4.0)
+
+
+def _error_bars(ax: Axes, row: xr.Dataset, places: Array, heights: Array, **look: Any) -> Array:
+    """Caps one standard error above and below improvements that have one; returns the errors, zero where none is."""
+    errors = np.nan_to_num(row["improvement_error"].values) if "improvement_error" in row else np.zeros(places.size)
+    seen = errors > 0.0
+    if seen.any():
+        ax.errorbar(places[seen], heights[seen], errors[seen], capsize=2.5, elinewidth=0.9, zorder=4.0, **look)
+    return errors
 
 
 def _leave_room(ax: Axes, share: float) -> None:

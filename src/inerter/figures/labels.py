@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from math import floor, log10
 from textwrap import fill
 
 import numpy as np
@@ -15,6 +16,9 @@ from inerter.units import format_quantity, parse_quantity
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
+_LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
+_LEAST_PERCENT = 1e-4
+_SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -29,7 +33,32 @@ class Scale:
 
 def one_method(results: xr.Dataset) -> xr.Dataset:
     """The results by the first of the methods, which is the one that figures and tables are about."""
-    return results.isel(method=0, drop=True) if "method" in results.dims else results
+    if "method" not in results.dims:
+        return results
+    first = results.isel(method=0, drop=True)
+    return first if results.sizes["method"] == 1 else first.assign_attrs(method=methods(results)[0])
+
+
+def by_which(results: xr.Dataset) -> str:
+    """Words for titles: by which of several methods the results are; empty if there is but one."""
+    return f", by {results.attrs['method']}" if "method" in results.attrs else ""
+
+
+def methods(results: xr.Dataset) -> list[str]:
+    """Names of the methods, in the order of the study; none where they have been chosen from."""
+    names: list[str] = results["method"].values.tolist() if "method" in results.dims else []
+    return names
+
+
+def by_method(results: xr.Dataset, method: str) -> xr.Dataset:
+    """The results by one of the methods."""
+    return results.sel({"method": method}, drop=True)  # as a keyword, `method` means another thing to xarray
+
+
+def error_of(design: xr.Dataset, of: str = "value") -> float:
+    """The standard error of the value, or the improvement, of one design; nan where there is none."""
+    name = {"value": "standard_error", "improvement": "improvement_error"}[of]
+    return float(design[name]) if name in design else np.nan
 
 
 def swept_element(results: xr.Dataset) -> str | None:
@@ -76,22 +105,49 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def quantity(value: float, unit: str) -> str:
-    """A value for people: four digits and a prefix, "inf", or "n/a" where there is none."""
+def quantity(value: float, unit: str, error: float = np.nan) -> str:
+    """A value for people: four digits and a prefix, "inf", or "n/a" where there is none.
+
+    With a standard error, which then has two digits, the value has as many decimals.
+
+    >>> quantity(7544.2, "N s/m"), quantity(7544.2, "N s/m", 23.0)
+    ('7.544 kN s/m', '7.544 +- 0.023 kN s/m')
+    """
     if np.isnan(value):
         return "n/a"
-    return "inf" if np.isinf(value) else format_quantity(value, unit)
+    if np.isinf(value):
+        return "inf"
+    if not is_told(value, error):
+        return format_quantity(value, unit)
+    own = scale([value], unit)
+    return f"{measured(value * own.factor, error * own.factor)} {own.unit}"
 
 
-def printed(value: float, unit: str) -> str:
+def is_told(value: float, error: float) -> bool:
+    """Whether a standard error is there and large enough to be told."""
+    return bool(np.isfinite(value) and np.isfinite(error) and error > _LEAST_ERROR * abs(value))
+
+
+def measured(value: float, error: float, sign: str = "") -> str:
+    """A number and its standard error, to two digits of the error; `sign` is "+" to show it always."""
+    if not _SMALLEST < error < _LARGEST:
+        return f"{value:{sign}.4g} +- {error:.2g}"
+    decimals = 1 - floor(log10(float(f"{error:.1e}")))
+    shown = max(decimals, 0)
+    return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
+
+
+def printed(value: float, unit: str, error: float = np.nan) -> str:
     """A value as it is printed, on one line with its unit."""
-    return typeset(quantity(value, unit)).replace(" ", _NO_BREAK_SPACE)
+    return typeset(quantity(value, unit, error)).replace(" ", _NO_BREAK_SPACE)
 
 
-def percent(value: float) -> str:
-    """An improvement with its sign, "-inf %", or "n/a" where there is none."""
+def percent(value: float, error: float = np.nan) -> str:
+    """An improvement with its sign, and its standard error if there is one; "-inf %", or "n/a" where there is none."""
     if np.isnan(value):
         return "n/a"
+    if error >= _LEAST_PERCENT and np.isfinite(error) and abs(value) < _LARGEST:
+        return f"{measured(value, error, '+')} %"
     text = f"{value:+.1f} %"
     return "0.0 %" if text in ("+0.0 %", "-0.0 %") else text
 
@@ -102,6 +158,7 @@ def typeset(text: str) -> str:
     >>> typeset("5e-07 m^3/cycle")
     '5 × 10⁻⁷ m³/cycle'
     """
+    text = text.replace(" +- ", " ± ")
     text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
     text = _EXPONENT.sub(
         lambda exponent: f" × 10{(exponent[1].strip('+') + exponent[2]).translate(_SUPERSCRIPT)}", text

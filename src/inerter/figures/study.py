@@ -10,10 +10,12 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 
-from inerter.figures.designs import WORST, frequency_responses, improvement_bars
-from inerter.figures.labels import compared, index_title, indices, one_method, swept_element
+from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
+from inerter.figures.labels import compared, index_title, indices, layouts, methods, one_method, swept_element
 from inerter.figures.style import add_legend, new_figure, save, styled
 from inerter.figures.sweeps import parameter_curves, sweep_curves
+
+_MOST_ENTRIES = 9  # of a legend below a figure of the usual height
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,6 @@ class StudyFigure:
 
 def study_figures(results: xr.Dataset) -> list[StudyFigure]:
     """All figures of a study, in the order of a report. Nothing is drawn yet."""
-    results = one_method(results)
     return list(_of_designs(results) if swept_element(results) is None else _of_sweep(results))
 
 
@@ -38,19 +39,29 @@ def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:
 
 
 def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
-    baseline = results.attrs["baseline"]
+    baseline, every, results = results.attrs["baseline"], results, one_method(results)
+    several = len(methods(every)) > 1
     if compared(results):
         yield StudyFigure(
             "improvement",
-            f"Improvement over {baseline}, each layout with its own best design for each index."
+            f"Improvement over {baseline}, each layout with its own best design for each index"
+            + (f", by {methods(every)[0]}." if several else ".")
+            + _uncertain(results, " Bars with caps: one standard error.")
             + (" Bars with a triangle are cut." if bool((results["improvement"] < WORST).any()) else ""),
             partial(_improvement, results),
         )
+    if compared(results) and several:
+        yield StudyFigure(
+            "methods",
+            f"Improvement over {baseline} by each method." + _uncertain(every, " Bars with caps: one standard error."),
+            partial(_methods, every),
+        )
+    linear = "Linear frequency response" if "realisations" in results else "Frequency response"
     for index in indices(results):
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
-                f"Frequency response of the designs that are best for {index_title(results, index)} ({index}).",
+                f"{linear} of the designs that are best for {index_title(results, index)} ({index}).",
                 partial(_response, results, index),
             )
 
@@ -63,6 +74,7 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
         yield StudyFigure(
             f"sweep-{index}",
             f"Best {title} for each value of {element}{versus}."
+            + _uncertain(results, " Bands: one standard error to both sides.")
             + (f" Below {WORST:g} % the curves are cut." if bool((results["improvement"] < WORST).any()) else ""),
             partial(_sweep, results, index),
         )
@@ -73,6 +85,22 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
                 "Bands: equally good designs.",
                 partial(_parameters, results, index),
             )
+
+
+def _uncertain(results: xr.Dataset, sentence: str) -> str:
+    """The sentence if there is a standard error that can be seen."""
+    return sentence if "improvement_error" in results and bool((results["improvement_error"] > 0.0).any()) else ""
+
+
+def _methods(results: xr.Dataset) -> Figure:
+    panels = results.sizes["index"]
+    upright = upright_names(compared(results))
+    figure, axes = new_figure(
+        panels, panels, height=2.9 + (0.06 * max(map(len, compared(results))) if upright else 0.0)
+    )
+    improvement_by_method(results, axes)
+    add_legend(figure, axes)
+    return figure
 
 
 def _improvement(results: xr.Dataset) -> Figure:
@@ -92,7 +120,8 @@ def _response(results: xr.Dataset, index: str) -> Figure:
 
 def _sweep(results: xr.Dataset, index: str) -> Figure:
     panels = 2 if compared(results) else 1
-    figure, axes = new_figure(panels, panels, height=2.9)
+    crowded = len(methods(results)) > 1 and len(methods(results)) + len(layouts(results)) > _MOST_ENTRIES
+    figure, axes = new_figure(panels, panels, height=3.4 if crowded else 2.9)
     sweep_curves(results, index, axes)
     add_legend(figure, axes)
     return figure

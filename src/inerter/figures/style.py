@@ -26,6 +26,7 @@ _LABELLED_RATIO = 300.0  # up to which ratio a log axis labels 2 and 5 too
 # Okabe and Ito (2008), distinct for all kinds of colour vision; without yellow, which is faint on white.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _LINES: tuple[Any, ...] = ("-", "-.", (0, (1, 1.2)), (0, (7, 1.5, 1, 1.5, 1, 1.5)), (0, (10, 2)))
+_METHOD_LINES: tuple[Any, ...] = ("-", "--", (0, (1, 1.2)), "-.")
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 _HATCHES = ("", "/////", ".....", "xxxxx")
 
@@ -89,6 +90,16 @@ def layout_styles(names: Iterable[str], baseline: str) -> dict[str, LayoutStyle]
             label=name,
         )
     return styles
+
+
+def method_line(number: int) -> Any:
+    """The line of a method by its place among several, where colours and markers tell layouts."""
+    return _METHOD_LINES[number % len(_METHOD_LINES)]
+
+
+def marker(number: int) -> str:
+    """The marker of a method by its place among several."""
+    return _MARKERS[number % len(_MARKERS)]
 
 
 def colour(number: int) -> str:

@@ -15,16 +15,18 @@ from inerter.errors import StudyError
 from inerter.figures.designs import IMPROVEMENT, WORST
 from inerter.figures.labels import (
     axis_label,
+    by_method,
     capital,
     compared,
     index_title,
     index_unit,
     layouts,
+    methods,
     one_method,
     scale,
     swept_element,
 )
-from inerter.figures.style import LayoutStyle, layout_styles, log_axis
+from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line
 
 Array = NDArray[np.float64]
 
@@ -41,12 +43,19 @@ class _Sweep:
     label: str
     styles: dict[str, LayoutStyle]
 
-    def draw(self, ax: Axes, layout: str, numbers: Array, open_where: NDArray[np.bool_] | None = None) -> None:
-        """The curve of one layout, broken where a number is not finite."""
+    def draw(
+        self,
+        ax: Axes,
+        layout: str,
+        numbers: Array,
+        open_where: NDArray[np.bool_] | None = None,
+        line: dict[str, Any] | None = None,
+    ) -> None:
+        """The curve of one layout, broken where a number is not finite; `line` replaces some of its keywords."""
         style, few = self.styles[layout], self.values.size <= _MOST_MARKERS
         marker: dict[str, Any] = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
         finite = np.where(np.isfinite(numbers), numbers, np.nan)
-        ax.plot(self.values, finite, **style.curve(), **marker)
+        ax.plot(self.values, finite, **style.curve() | (line or {}), **marker)
         if open_where is not None:
             look: dict[str, Any] = {
                 "color": style.colour,
@@ -55,6 +64,12 @@ class _Sweep:
                 "zorder": style.zorder + 0.1,
             }
             ax.plot(self.values[open_where], finite[open_where], **marker, **look)
+
+    def band(self, ax: Axes, layout: str, numbers: Array, errors: Array) -> None:
+        """One standard error to both sides of a curve."""
+        if np.any(errors > 0.0):
+            colour = self.styles[layout].colour
+            ax.fill_between(self.values, numbers - errors, numbers + errors, color=colour, alpha=0.2, linewidth=0.0)
 
     def finish(self, axes: Sequence[Axes]) -> None:
         """The axes of the swept values: logarithmic if that spreads them more evenly."""
@@ -71,21 +86,40 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
 
     Raises `StudyError` if nothing is swept.
     """
-    sweep = _sweep(results, index)
+    names = methods(results)
+    sweeps = [_sweep(by_method(results, name), index) for name in names] or [_sweep(results, index)]
+    lines = [_method_line(number) for number in range(len(names))] if len(names) > 1 else [{}]
+    sweep, (left, *right) = sweeps[0], axes
     unit = scale(sweep.data["value"].values, index_unit(results, index))
-    left, *right = axes
-    for name in layouts(results):
-        sweep.draw(left, name, sweep.data["value"].sel(layout=name).values * unit.factor)
+    for one, line in zip(sweeps, lines, strict=True):
+        for name in layouts(results):
+            _curve(one, left, name, "value", unit.factor, line)
     left.set_ylabel(axis_label(f"{capital(index_title(results, index))} {index}", unit.unit))
     for ax in right:
-        for name in compared(results):
-            sweep.draw(ax, name, sweep.data["improvement"].sel(layout=name).values)
+        for one, line in zip(sweeps, lines, strict=True):
+            for name in compared(results):
+                _curve(one, ax, name, "improvement", 1.0, line)
         if results.attrs["baseline"]:
-            ax.axhline(0.0, **sweep.styles[results.attrs["baseline"]].curve())
+            ax.axhline(0.0, **sweep.styles[results.attrs["baseline"]].curve() | lines[0])
         ax.set_ylim(bottom=max(ax.get_ylim()[0], WORST))
         ax.set_ylabel(IMPROVEMENT)
+    for name, line in zip(names, lines, strict=True) if len(names) > 1 else ():
+        left.plot([], [], color="0.4", **line | {"label": name})
     sweep.finish(axes)
     return axes
+
+
+def _method_line(number: int) -> dict[str, Any]:
+    """How curves of a method differ: in their line; only those of the first name their layout in the legend."""
+    return {"linestyle": method_line(number), **({} if number == 0 else {"label": "_"})}
+
+
+def _curve(sweep: _Sweep, ax: Axes, layout: str, what: str, factor: float, line: dict[str, Any]) -> None:
+    row = sweep.data.sel(layout=layout)
+    numbers, error = row[what].values * factor, {"value": "standard_error", "improvement": "improvement_error"}[what]
+    if error in row:
+        sweep.band(ax, layout, numbers, row[error].values * factor)
+    sweep.draw(ax, layout, numbers, line=line)
 
 
 def parameter_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 from inerter.figures.labels import (
+    by_method,
+    by_which,
     compared,
+    error_of,
     index_title,
     index_unit,
     indices,
+    methods,
     one_method,
     percent,
     quantity,
     swept_element,
 )
 
-Writer = Callable[[float, str], str]
+Writer = Callable[[float, str, float], str]
 
 _NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 
@@ -28,9 +35,9 @@ def headlines(results: xr.Dataset, write: Writer = quantity) -> list[str]:
 
     `write` turns a number and its unit into text.
     """
-    results = one_method(results)
-    sentence = _of_designs if swept_element(results) is None else _of_sweep
-    return [sentence(results, index, write) for index in indices(results)]
+    if swept_element(results) is None:
+        return [_of_designs(results, index, write) for index in indices(results)]
+    return [_of_sweep(one_method(results), index, write) for index in indices(results)]
 
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
@@ -50,13 +57,58 @@ def extremes(row: xr.DataArray, element: str) -> tuple[tuple[float, float], tupl
     return (float(numbers[least]), float(swept[least])), (float(numbers[largest]), float(swept[largest]))
 
 
+def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float, float]]:
+    """Swept values at which a layout is as good as the baseline, each with its standard error.
+
+    Between swept values the improvement follows a monotone cubic; how far a straight line would put the crossing from
+    there is added to the error. Where both are alike over more than one value, there is no crossing.
+    """
+    element = str(swept_element(results))
+    row = results.sel(layout=layout, index=index).sortby(element)
+    swept, better = row[element].values, row["improvement"].values
+    errors = row["improvement_error"].values if "improvement_error" in row else np.zeros(better.size)
+    told = np.flatnonzero(np.isfinite(better) & (np.abs(better) >= _NOTICEABLE))
+    if told.size < 2:
+        return []
+    curve, found = PchipInterpolator(swept[told], better[told]), []
+    for i, j in pairwise(told.tolist()):
+        if j - i <= 2 and better[i] * better[j] < 0.0:
+            at = float(brentq(lambda place: float(curve(place)), swept[i], swept[j]))
+            part = (at - swept[i]) / (swept[j] - swept[i])
+            error = np.nan_to_num((1.0 - part) * errors[i] + part * errors[j]) / abs(float(curve(at, 1)))
+            straight = swept[i] + better[i] / (better[i] - better[j]) * (swept[j] - swept[i])
+            found.append((at, float(np.hypot(error, at - straight))))
+    return found
+
+
+def crossing_sentences(results: xr.Dataset, write: Writer = quantity) -> list[str]:
+    """For each index and layout that crosses the baseline over a sweep, where it does. For a study with a sweep."""
+    element, baseline = str(swept_element(results)), results.attrs["baseline"]
+    several = len(methods(results)) > 1
+    ways = {f" by {m}": by_method(results, m) for m in methods(results)} if several else {"": one_method(results)}
+    sentences = []
+    for index in indices(results):
+        for name in compared(results):
+            found = {by: crossings(one, index, name) for by, one in ways.items()}
+            unit = results[element].attrs["units"]
+            texts = [_listed([write(at, unit, e) for at, e in places]) + by for by, places in found.items() if places]
+            if texts:
+                sentences.append(f"{index}: {name} and {baseline} are equally good at {element} = {', '.join(texts)}")
+    return sentences
+
+
+def _listed(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
 def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
+    every, results = results, one_method(results)
     title, baseline = index_title(results, index), results.attrs["baseline"]
     best = best_layout(results, index)
     if best is None:
         return f"Best {title}: no layout has a finite value."
     design = results.sel(layout=best, index=index)
-    answer = f"Best {title}: {best}, {write(float(design['value']), index_unit(results, index))}"
+    answer = f"Best {title}: {best}, {write(float(design['value']), index_unit(results, index), error_of(design))}"
     if best == baseline:
         return f"{answer}; no other layout is better than this baseline."
     improvement = float(design["improvement"])
@@ -64,7 +116,16 @@ def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
         return f"{answer}; {baseline} has no finite value." if baseline else f"{answer}."
     if improvement < _NOTICEABLE:
         return f"{answer}, no better than {baseline}."
-    return f"{answer}, {improvement:.1f} % better than {baseline}."
+    better = percent(improvement, error_of(design, "improvement")).removeprefix("+")
+    if len(methods(every)) < 2:
+        return f"{answer}, {better} better than {baseline}."
+    first, *others = methods(every)
+    further = []
+    for method in others:
+        by = by_method(every, method).sel(layout=best, index=index)
+        text = percent(float(by["improvement"]), error_of(by, "improvement")).removeprefix("+")
+        further.append(f"{text} by {method}")
+    return f"{answer}, {better} better than {baseline} by {first}, {_listed(further)}."
 
 
 def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
@@ -78,14 +139,16 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
     if not compared(results):
         name = min(found, key=lambda name: found[name][0][0])
         value, at = found[name][0]
-        return f"Best {title}: {name}, {write(value, index_unit(results, index))} at {element} = {write(at, unit)}."
+        text = write(value, index_unit(results, index), np.nan)
+        return f"Best {title}: {name}, {text} at {element} = {write(at, unit, np.nan)}."
     name = max(found, key=lambda name: found[name][1][0])
     (least, _), (largest, at) = found[name]
     if largest < _NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {element}."
     return (
-        f"Best {title} compared with {baseline} of the same {element}: {name}, {largest:.1f} % better at "
-        f"{element} = {write(at, unit)}; its improvement over the sweep lies {_range(least, largest)}."
+        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {name}, {largest:.1f} % "
+        f"better at {element} = {write(at, unit, np.nan)}; its improvement over the sweep lies "
+        f"{_range(least, largest)}."
     )
 
 

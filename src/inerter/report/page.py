@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,9 +13,12 @@ from markupsafe import Markup, escape
 
 from inerter.figures.labels import printed, swept_element, typeset
 from inerter.figures.study import study_figures
-from inerter.report.findings import headlines
+from inerter.report.budgets import budget_tables
+from inerter.report.by_method import method_tables
+from inerter.report.findings import crossing_sentences, headlines
 from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
+from inerter.study.budgets import BudgetOutcome
 from inerter.study.values import Study, write_resolved
 
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
@@ -31,13 +34,15 @@ class PageFigure:
     caption: str
 
 
-def write_report(results: xr.Dataset, study: Study, figures: Path, path: Path) -> Path:
+def write_report(
+    results: xr.Dataset, study: Study, figures: Path, path: Path, budgets: Sequence[BudgetOutcome] = ()
+) -> Path:
     """Write the report of `study` to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
-    path.write_text(report(results, study, figures), encoding="utf-8", newline="\n")
+    path.write_text(report(results, study, figures, budgets), encoding="utf-8", newline="\n")
     return path
 
 
-def report(results: xr.Dataset, study: Study, figures: Path) -> str:
+def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[BudgetOutcome] = ()) -> str:
     """The page as text."""
     swept = swept_element(results)
     return (
@@ -53,6 +58,12 @@ def report(results: xr.Dataset, study: Study, figures: Path) -> str:
             layouts=layout_rows(study),
             indices=index_rows(results),
             tables=design_tables(results) if swept is None else sweep_tables(results),
+            by_method=method_tables(results),
+            crossings=[
+                _printed_sentence(f"{sentence}.")
+                for sentence in (crossing_sentences(results, printed) if swept and results.attrs["baseline"] else [])
+            ],
+            budgets=budget_tables(budgets, study),
             trade_offs=trade_off_tables(results) if swept is None else [],
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),
@@ -77,7 +88,7 @@ def environment() -> Environment:
 
 def _printed_sentence(sentence: str) -> str:
     """A sentence with a minus where there is one, and per cent on the line of their number."""
-    return sentence.replace(" -", " −").replace(" %", "\N{NO-BREAK SPACE}%")
+    return sentence.replace(" +- ", " ± ").replace(" -", " −").replace(" %", "\N{NO-BREAK SPACE}%")
 
 
 def _drawings(results: xr.Dataset, folder: Path) -> Iterator[PageFigure]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi
 
+import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import capital, index_title, indices
@@ -15,7 +16,18 @@ from inerter.study.values import Study
 from inerter.units import ELEMENT_UNITS, format_quantity
 
 _METHODS = {
-    "norm": "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
+    "norm": "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain",
+    "statistical-linearisation": (
+        "norms of a linear model in which each friction is the damper that it resembles most under the motion that "
+        "results; for a peak gain at each frequency under a sinusoidal force"
+    ),
+    "expected-value": (
+        "means over simulations of the design as it is, with friction, gaps and elasticity, on random roads; for a "
+        "peak gain the largest response to a sinusoidal force"
+    ),
+    "approximate-linear": (
+        "norms of gains that the design as it is shows on random inputs, output over input, frequency by frequency"
+    ),
 }
 _CONVENTIONS = {
     "exact": "The delay from one axle to the next is exact, and no filter is added to what the indices define.",
@@ -70,8 +82,10 @@ def index_rows(results: xr.Dataset) -> list[tuple[str, str]]:
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
     """How the numbers were computed, in sentences."""
-    methods = " and ".join(_METHODS.get(name, name) for name in study.evaluate)
-    yield f"Values are {methods}."
+    several = len(study.evaluate) > 1
+    for name in study.evaluate:
+        yield f"Values{f' by {name}' if several else ''} are {_METHODS.get(name, name)}."
+    yield from _of_roads(study, results)
     if study.optimise is None:
         yield "Every layout was evaluated as it is given; nothing was optimised."
     else:
@@ -81,8 +95,24 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"local searches from many starting points of a sample with seed {study.seed}. Agreement is the number of "
             "searches that ended at the best value found."
         )
+        if study.optimise != "norm":
+            yield f"What was made smallest is the value by {study.optimise}: {_METHODS[study.optimise]}."
     yield _CONVENTIONS.get(study.conventions, f"Conventions: {study.conventions}.")
     yield f"Computed by inerter {results.attrs['inerter_version']}."
+
+
+def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
+    """How many random roads there were, what ± means, and how large the force of J5 was."""
+    counts = results["realisations"].values if "realisations" in results else np.zeros(0)
+    if counts.any():
+        least, most = int(counts[counts > 0].min()), int(counts.max())
+        number = f"{most}" if least == most else f"{least} to {most}"
+        yield (
+            f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
+            "one standard error, for an improvement that of the difference on the same inputs where they are kept."
+        )
+    if study.force is not None:
+        yield f"The sinusoidal force of J5 has an amplitude of {_given(study.force, 'N')}."
 
 
 def _value(study: Study, name: str, element: Element) -> str:

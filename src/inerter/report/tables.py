@@ -9,12 +9,18 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import (
+    by_method,
+    by_which,
     compared,
+    error_of,
     flat_range,
     index_title,
     index_unit,
     indices,
+    is_told,
     layouts,
+    measured,
+    methods,
     one_method,
     percent,
     printed,
@@ -73,8 +79,13 @@ def trade_off_tables(results: xr.Dataset) -> list[Table]:
 
 def sweep_tables(results: xr.Dataset) -> list[Table]:
     """For each index, value and improvement of every layout at some of the swept values."""
-    results = one_method(results)
-    return [_sweep_table(results, index) for index in indices(results)]
+    if len(methods(results)) < 2:
+        return [_sweep_table(one_method(results), index) for index in indices(results)]
+    return [
+        _sweep_table(by_method(results, method), index, f", by {method}")
+        for index in indices(results)
+        for method in methods(results)
+    ]
 
 
 def _title(results: xr.Dataset, index: str) -> str:
@@ -82,7 +93,12 @@ def _title(results: xr.Dataset, index: str) -> str:
 
 
 def _improvement(design: xr.Dataset, baseline: str) -> str:
-    return "baseline" if design["layout"].item() == baseline else typeset(percent(float(design["improvement"])))
+    return "baseline" if design["layout"].item() == baseline else _percent(design)
+
+
+def _percent(design: xr.Dataset) -> str:
+    text = percent(float(design["improvement"]), error_of(design, "improvement"))
+    return typeset(text) if " +- " not in text else typeset(text).replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def _design_table(results: xr.Dataset, index: str) -> Table:
@@ -93,13 +109,15 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
     rows = []
     for name in layouts(results):
         design = at_index.sel(layout=name)
-        cells = [Cell(printed(float(design["value"]), index_unit(results, index)))]
+        cells = [Cell(printed(float(design["value"]), index_unit(results, index), error_of(design)))]
         cells += [Cell(_improvement(design, baseline))] if compared(results) else []
         cells += [_parameter(design.sel(parameter=parameter)) for parameter in parameters]
         cells += [Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []
         rows.append(Row(name, cells, name == best, _problem(design)))
     header = ["Layout", index, *(["Improvement"] if compared(results) else []), *parameters]
-    return Table(f"Best for {_title(results, index)}", header + (["Agreement"] if searched else []), rows)
+    return Table(
+        f"Best for {_title(results, index)}{by_which(results)}", header + (["Agreement"] if searched else []), rows
+    )
 
 
 def _parameter(entry: xr.Dataset) -> Cell:
@@ -125,10 +143,10 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
         units = [index_unit(results, other) for other in others]
         texts = [printed(value, unit) for value, unit in zip(values, units, strict=True)]
         rows.append(Row(name, [Cell(t, strong=other == index) for t, other in zip(texts, others, strict=True)]))
-    return Table(f"Designs that are best for {_title(results, index)}", ["Layout", *others], rows)
+    return Table(f"Designs that are best for {_title(results, index)}{by_which(results)}", ["Layout", *others], rows)
 
 
-def _sweep_table(results: xr.Dataset, index: str) -> Table:
+def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     element = str(swept_element(results))
     data, unit = results.sel(index=index).sortby(element), results[element].attrs["units"]
     swept, values = scale(data[element].values, unit), scale(data["value"].values, index_unit(results, index))
@@ -140,11 +158,14 @@ def _sweep_table(results: xr.Dataset, index: str) -> Table:
         for name in layouts(results):
             design = here.sel(layout=name)
             improvement = _improvement(design, results.attrs["baseline"]) if name in compared(results) else ""
-            cells.append(Cell(_number(float(design["value"]) * values.factor), improvement))
+            value, error = float(design["value"]) * values.factor, error_of(design) * values.factor
+            cells.append(Cell(_number(value, error), improvement))
         rows.append(Row(typeset(f"{float(here[element]) * swept.factor:.4g}"), cells))
     names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
-    caption = f"Best {_title(results, index)} in {typeset(values.unit)}, over {element} in {typeset(swept.unit)}{some}"
+    caption = (
+        f"Best {_title(results, index)} in {typeset(values.unit)}, over {element} in {typeset(swept.unit)}{by}{some}"
+    )
     return Table(caption, [element, *names], rows, True, tuple(_failures(data, element, unit)))
 
 
@@ -154,7 +175,9 @@ def _some(size: int) -> list[int]:
     return sorted({*range(0, size, step), size - 1})
 
 
-def _number(value: float) -> str:
+def _number(value: float, error: float) -> str:
+    if is_told(value, error):
+        return typeset(measured(value, error))
     if not np.isfinite(value):
         return quantity(value, "").strip()
     return typeset(re.sub(r"\.(?=e|$)", "", f"{value:#.4g}"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
@@ -10,20 +11,26 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import (
+    by_which,
     compared,
+    error_of,
     flat_range,
     index_title,
     index_unit,
     indices,
     layouts,
+    methods,
     one_method,
     percent,
     quantity,
     swept_element,
 )
-from inerter.report.findings import extremes
+from inerter.report.by_method import method_lines
+from inerter.report.findings import crossing_sentences, extremes
 
 WIDTH = 80
+_NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+_MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?")
 _LONGEST_NAME = 20  # a longer name of a layout has a line of its own
 
 
@@ -37,34 +44,55 @@ class _Row:
     status: str
 
 
+def wrapped(text: str, **indents: str) -> list[str]:
+    """The lines of a text for a terminal; a number, its standard error and its unit stay on one."""
+    joined = _MEASURED.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
+    return [line.replace(_NO_BREAK_SPACE, " ") for line in wrap(joined, WIDTH, **indents)]  # type: ignore[arg-type]
+
+
 def summary_table(results: xr.Dataset) -> str:
     """The best designs, a block for each index: ASCII, at most 80 columns.
 
-    With a sweep, where each layout improves most and least on the baseline.
+    With a sweep, where each layout improves most and least on the baseline, and where it is equally good. With several
+    methods, the first of them, and then all side by side.
     """
-    results = one_method(results)
+    every, results = results, one_method(results)
     block = _designs if swept_element(results) is None else _extremes
-    text = "\n\n".join("\n".join(block(results, index)) for index in indices(results))
+    several = len(methods(every)) > 1
+    blocks = [
+        [
+            *block(results, index),
+            *_crossings(every, index),
+            *(["", *method_lines(every, index, WIDTH)] if several else []),
+        ]
+        for index in indices(results)
+    ]
+    text = "\n\n".join("\n".join(lines) for lines in blocks)
     return text.encode("ascii", "replace").decode()
 
 
 def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
     unit, versus = index_unit(results, index), bool(compared(results))
-    yield _heading(results, index)
+    yield from wrap(_heading(results, index), WIDTH, subsequent_indent="    ")
     table = []
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
-        improvement = "baseline" if name == results.attrs["baseline"] else percent(float(design["improvement"]))
-        cells = [quantity(float(design["value"]), unit), *([improvement] if versus else [])]
+        cells = [quantity(float(design["value"]), unit, error_of(design)), *([_improvement(design)] if versus else [])]
         table.append(_Row(name, cells, _parameters(design), str(design["status"].item())))
     yield from _lines(["layout", "value", *(["improvement"] if versus else [])], "parameters", table)
+
+
+def _improvement(design: xr.Dataset) -> str:
+    if design["layout"].item() == design.attrs["baseline"]:
+        return "baseline"
+    return percent(float(design["improvement"]), error_of(design, "improvement"))
 
 
 def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     element, versus = str(swept_element(results)), bool(compared(results))
     unit = results[element].attrs["units"]
     rows = results["improvement" if versus else "value"].sel(index=index)
-    yield f"{_heading(results, index)}, over {element}"
+    yield from wrap(f"{_heading(results, index)}, over {element}", WIDTH, subsequent_indent="    ")
     table = []
     for name in compared(results) or layouts(results):
         ends = extremes(rows.sel(layout=name), element) or ((np.nan, np.nan),) * 2
@@ -77,9 +105,16 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     yield from _lines(["layout", "best"], "worst", table)
 
 
+def _crossings(results: xr.Dataset, index: str) -> Iterator[str]:
+    """Where layouts cross the baseline over a sweep."""
+    if swept_element(results) is not None and compared(results):
+        for sentence in crossing_sentences(results.sel(index=[index])):
+            yield from wrapped(sentence.removeprefix(f"{index}: "), initial_indent="  ", subsequent_indent="    ")
+
+
 def _heading(results: xr.Dataset, index: str) -> str:
     baseline = f", compared with {results.attrs['baseline']}" if compared(results) else ""
-    return f"{index}: {index_title(results, index)}{baseline}"
+    return f"{index}: {index_title(results, index)}{by_which(results)}{baseline}"
 
 
 def _parameters(design: xr.Dataset) -> list[str]:

@@ -7,15 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from inerter.errors import OK, InerterError, StatusKind
+from inerter.errors import OK, InerterError, Status, StatusKind
 from inerter.methods.method import Estimate, evaluate
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
-from inerter.study.registry import INDEX, METHOD
+from inerter.study.registry import INDEX, method_of
 from inerter.study.values import Study
 from inerter.systems.descriptor import is_held_by_springs
 from inerter.systems.graph import linear_graph
 from inerter.vehicle.mechanism import Mechanism
+
+FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
+_MOST_SAMPLES = 64  # that are kept, for differences on the same roads
+_LINEAR = "norm"
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,9 @@ class Outcome:
     status: dict[str, str]  # method -> kind of status of the case's own index
     message: str = ""
     notes: list[str] = field(default_factory=list)
+    realisations: dict[str, int] = field(default_factory=dict)  # method -> roads of the case's own index
+    samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
+    over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
 
     @property
     def case(self) -> Case:
@@ -62,29 +69,36 @@ def cases(study: Study) -> list[Case]:
     return [Case(layout, index, point) for layout in study.layouts for index in study.indices for point in points]
 
 
-def run_case(study: Study, case: Case) -> Outcome:
+def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
     """Find the best design of a case and judge it by every method and index of the study.
 
-    A failure is an outcome with a status and a sentence, so that one case never ends a study.
+    Methods that simulate use `threads`. A failure is an outcome with a status and a sentence, so that one case never
+    ends a study.
     """
     try:
         with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            return _run(study, case)
-    except (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError) as error:  # scipy refuses inf and nan so
+            return _run(study, case, threads)
+    except FAILURES as error:
         failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
         return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, str(error))
 
 
-def design_notes(mechanism: Mechanism) -> list[str]:
-    """What linear analysis leaves out of a design, and whether springs carry it."""
+def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
+    """What linear analysis leaves out of a design if the study makes use of it, and whether springs carry it."""
     measures = mechanism.measures
-    notes = list(linear_graph(mechanism).notes)
+    left_out = linear_graph(mechanism).notes if _LINEAR in study.methods else ()
+    notes = [f"{_prefix(study, _LINEAR)}{note}" for note in left_out]
     if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
         notes.append("no spring carries the body, which would sink under its own weight")
     return notes
 
 
-def _run(study: Study, case: Case) -> Outcome:
+def _prefix(study: Study, method: str) -> str:
+    """The name of the method before its note, where there are several."""
+    return f"{method}: " if len(study.methods) > 1 else ""
+
+
+def _run(study: Study, case: Case, threads: int) -> Outcome:
     swept = study.sweep.values[case.point] if study.sweep else None
     vehicle = study.design(case.layout, swept)
     fields: dict[str, Any] = {
@@ -97,20 +111,27 @@ def _run(study: Study, case: Case) -> Outcome:
     }
     found: Optimum | None = None
     if study.optimise is not None and vehicle.free_values():
-        found = optimise(vehicle, INDEX[case.index](study), METHOD[study.optimise](study), seed=study.seed)
+        method = method_of(study, study.optimise, threads)
+        found = optimise(vehicle, INDEX[case.index](study), method, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
         fields = {name: getattr(found, name) for name in fields}
 
     def estimate(method: str, index: str) -> Estimate:
         if found is not None and (method, index) == (study.optimise, case.index):
             return found.estimate
-        return evaluate(vehicle, INDEX[index](study), METHOD[method](study))
+        try:
+            return evaluate(vehicle, INDEX[index](study), method_of(study, method, threads))
+        except FAILURES as error:
+            if len(study.evaluate) == 1:
+                raise
+            return Estimate(np.nan, "", Status(StatusKind.FAILED, str(error)))
 
+    over = found.over_linear if found else None
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
-    mechanism = vehicle.mechanism()
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
-    statuses = [*(e.status for e in own.values()), *([found.status] if found else [])]
-    worst = next((status for status in statuses if not status.ok), OK)
+    worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
+    bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
+    notes = [f"{_prefix(study, m)}{note}" for m, e in own.items() for note in e.notes]
     return Outcome(
         case.layout,
         case.index,
@@ -119,6 +140,9 @@ def _run(study: Study, case: Case) -> Outcome:
         values={m: {i: e.value for i, e in by_index.items()} for m, by_index in estimates.items()},
         standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
         status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
-        message=worst.message,
-        notes=list(dict.fromkeys([*(note for e in own.values() for note in e.notes), *design_notes(mechanism)])),
+        message=f"{bad}{worst.message}" if worst.message else "",
+        notes=list(dict.fromkeys([*notes, *design_notes(study, vehicle.mechanism())])),
+        realisations={m: e.realisations for m, e in own.items() if e.realisations},
+        samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
+        over_linear=None if over is None else (-over.percent, over.percent_error),
     )

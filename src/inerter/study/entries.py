@@ -93,12 +93,19 @@ def one_of(what: str, known: tuple[str, ...]) -> Callable[[Any], str]:
 
 def some_of(what: str, known: tuple[str, ...]) -> PlainValidator:
     """A list of at least one of `known`, none of them twice."""
-    one = one_of(what, known)
+    return _list_of(one_of(what, known), known[0])
 
+
+def some_names(example: str) -> PlainValidator:
+    """A list of at least one name, none of them twice; whether they are known is seen later."""
+    return _list_of(text, example)
+
+
+def _list_of(one: Callable[[Any], str], example: str) -> PlainValidator:
     def check(values: Any) -> tuple[str, ...]:
         if not isinstance(values, list) or not values:
             got = "an empty list" if values == [] else shown(values)
-            raise ValueError(f"Got {got}; expected a list of one or more, such as [{shown(known[0])}].")
+            raise ValueError(f"Got {got}; expected a list of one or more, such as [{shown(example)}].")
         checked = tuple(one(value) for value in values)
         twice = next((value for value in checked if checked.count(value) > 1), None)
         if twice is not None:
@@ -119,6 +126,13 @@ def whole(lower: int, upper: int) -> PlainValidator:
     return PlainValidator(check)
 
 
+def share(value: Any) -> float:
+    """A number between zero and one, without a unit."""
+    if not isinstance(value, float) or not 0.0 < value < 1.0:
+        raise ValueError(f"Got {shown(value)}; expected a number between 0 and 1 without quotes, such as 0.01.")
+    return value
+
+
 def expression(value: Any) -> str:
     """The text of a network; whether it can be parsed is seen when all elements are known."""
     if not isinstance(value, str):
@@ -134,7 +148,8 @@ def expression(value: Any) -> str:
 _TAKEN = frozenset(
     (
         "layout index method other parameter point omega value standard_error improvement other_value parameter_value "
-        "parameter_low parameter_high at_bound status starts agreed evaluations parameter_unit index_unit index_title"
+        "parameter_low parameter_high at_bound status starts agreed evaluations parameter_unit index_unit index_title "
+        "improvement_error realisations over_linear over_linear_error"
     ).split()
 )
 

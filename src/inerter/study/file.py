@@ -16,10 +16,11 @@ from inerter.networks.elements import ELEMENT_TYPES, Element, Free, Value
 from inerter.networks.parser import names, network
 from inerter.signals.road import Road
 from inerter.study.entries import Amount
+from inerter.study.method_problems import method_problems
 from inerter.study.problems import at, explain, refusal
 from inerter.study.schema import Axles, Range, StudyFile, SweepRange
 from inerter.study.suggest import nearest
-from inerter.study.values import MOUNTS, StrutLayout, Study, Sweep, write_resolved
+from inerter.study.values import MOUNTS, StrutLayout, Study, Sweep, elements_used, write_resolved
 from inerter.units import shown
 
 __all__ = ["StrutLayout", "Study", "Sweep", "load_study", "write_resolved"]
@@ -45,6 +46,7 @@ def load_study(path: str | Path) -> Study:
         *layout_problems(study.model, study.elements, study.layouts),
         *_sweep_problems(study),
         *_setting_problems(study),
+        *method_problems(study),
     ]
     if not problems:
         problems = list(_free_value_problems(study))
@@ -116,6 +118,10 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         sweep=None if settings.sweep is None else _sweep(*next(iter(settings.sweep.items()))),
         seed=settings.seed,
         high_pass=settings.high_pass,
+        realisations=settings.realisations,
+        relative_error=settings.relative_error,
+        force=settings.force,
+        budgets=settings.budgets,
     )
 
 
@@ -170,22 +176,6 @@ def _network_problems(expression: str, elements: Mapping[str, Element]) -> Itera
         yield str(error)
 
 
-def _used(study: Study) -> dict[str, list[str]]:
-    """The elements in layouts, each with the layouts that it is in."""
-    used: dict[str, list[str]] = {}
-    for layout, struts in study.layouts.items():
-        for element in dict.fromkeys(name for text in struts.struts.values() for name in _names(text)):
-            used.setdefault(element, []).append(layout)
-    return used
-
-
-def _names(expression: str) -> tuple[str, ...]:
-    try:
-        return names(expression)
-    except NetworkError:  # reported with its layout
-        return ()
-
-
 def _sweep_problems(study: Study) -> Iterator[str]:
     sweep = study.sweep
     if sweep is None:
@@ -200,7 +190,7 @@ def _sweep_problems(study: Study) -> Iterator[str]:
         yield at(place, f"{name} is free; expected an element with a fixed value. Fix it, or leave the sweep out.")
     if element.unit != sweep.unit:
         yield at(place, f"got values in {sweep.unit}, but {name} is in {element.unit}; expected the unit of {name}.")
-    if name not in _used(study):
+    if name not in elements_used(study):
         yield at(place, f"{name} is in no layout, so a sweep changes nothing; expected an element that a layout uses.")
 
 
@@ -216,7 +206,7 @@ def _setting_problems(study: Study) -> Iterator[str]:
 
 
 def _free_value_problems(study: Study) -> Iterator[str]:
-    used = [name for name in _used(study) if isinstance(study.elements[name].value, Free)]
+    used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
     if used and study.optimise is None:
         yield at(
             ("study", "optimise"),

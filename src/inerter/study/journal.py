@@ -13,6 +13,7 @@ from typing import Any
 
 import inerter
 from inerter.errors import StudyError
+from inerter.study.budgets import BudgetCase, BudgetOutcome
 from inerter.study.cases import Case, Outcome
 from inerter.study.values import Study
 
@@ -33,18 +34,26 @@ class Journal:
     def read(self) -> dict[Case, Outcome]:
         """The finished cases; none if there is no journal yet. A last line that a kill cut short is dropped.
 
+        Raises what `read_all` raises.
+        """
+        return self.read_all()[0]
+
+    def read_all(self) -> tuple[dict[Case, Outcome], dict[BudgetCase, BudgetOutcome]]:
+        """The finished cases and budgets.
+
         Raises `StudyError` if the journal belongs to another study or to another version of this software.
         """
         raw = self.path.read_bytes() if self.path.exists() else b""
         whole = raw[: raw.rfind(b"\n") + 1]
         if not whole:
-            return {}
+            return {}, {}
         if len(whole) < len(raw):
             with self.path.open("r+b") as stream:
                 stream.truncate(len(whole))
         try:
             header, *lines = [json.loads(line) for line in whole.decode("utf-8").splitlines()]
-            outcomes = [Outcome(**line) for line in lines]
+            outcomes = [Outcome(**line) for line in lines if "parameter" not in line]
+            budgets = [BudgetOutcome(**line) for line in lines if "parameter" in line]
         except (ValueError, TypeError):
             raise StudyError(
                 f"{self.path}: not a journal of a study, or damaged. Start anew with --force, or in another folder."
@@ -54,7 +63,7 @@ class Journal:
                 f"{self.path.parent}: holds the results of another study or version "
                 f"({_differences(header, self._header())}). Start anew with --force, or choose another folder with -o."
             )
-        return {outcome.case: outcome for outcome in outcomes}
+        return {outcome.case: outcome for outcome in outcomes}, {budget.case: budget for budget in budgets}
 
     @contextmanager
     def appending(self) -> Iterator[Appender]:
@@ -78,7 +87,7 @@ class Appender:
 
     stream: Any
 
-    def write(self, outcome: Outcome) -> None:
+    def write(self, outcome: Outcome | BudgetOutcome) -> None:
         """Append one line and wait until it is on disk."""
         self.stream.write(json.dumps(outcome.to_json()) + "\n")
         self.stream.flush()

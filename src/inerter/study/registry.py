@@ -2,19 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
 
 from inerter.indices.index import Index, LoadCarrying, RideComfort, TyreLoad
+from inerter.methods.approximate_linear import ApproximateLinear
+from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method
 from inerter.methods.norm import Norm
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.study.values import Study
 
 INDEX: dict[str, Callable[[Study], Index]] = {
     "J1": lambda study: RideComfort(study.road),
     "J3": lambda study: TyreLoad(study.road, high_pass=study.high_pass),
-    "J5": lambda study: LoadCarrying(),
+    "J5": lambda study: LoadCarrying(amplitude=study.force),
 }
 
 METHOD: dict[str, Callable[[Study], Method]] = {
     "norm": lambda study: Norm(conventions=study.conventions),
+    "statistical-linearisation": lambda study: StatisticalLinearisation(conventions=study.conventions),
+    "expected-value": lambda study: ExpectedValue(**_roads(study), jobs=1),
+    "approximate-linear": lambda study: ApproximateLinear(**_roads(study)),
 }
+
+
+def method_of(study: Study, name: str, threads: int = 1) -> Method:
+    """The method of that name; one that simulates shares its roads over `threads`, which changes no digit."""
+    method = METHOD[name](study)
+    return replace(method, jobs=threads) if isinstance(method, ExpectedValue) else method
+
+
+def _roads(study: Study) -> Mapping[str, Any]:
+    """How many random roads, from which seed; what the study leaves open is the method's own choice."""
+    given = {"realisations": study.realisations, "relative_error": study.relative_error}
+    known = {name: value for name, value in given.items() if value is not None}
+    return {**known, "seed": study.seed, "conventions": study.conventions}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import inerter
+from inerter.errors import LinearSystemError, MechanismError
+from inerter.methods.compare import difference_of
 from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.methods.method import Estimate
 from inerter.networks.elements import Free
 from inerter.norms.response import frequency_response
 from inerter.study.cases import Case, Outcome, cases
@@ -26,7 +31,8 @@ Array = NDArray[np.float64]
 def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
     """All outcomes, labelled: dimensions layout, index, method, the swept element if there is one, parameter.
 
-    Improvements are per cent below the baseline's own optimum of the same index, method and swept value.
+    Improvements are per cent below the baseline's own optimum of the same index, method and swept value. Where a method
+    other than the norm is used, there are standard errors and numbers of realisations too.
     """
     parameters = _parameters(study)
     data = _labelled(study, parameters).assign_attrs(
@@ -47,6 +53,8 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
         base = data["value"].sel(layout=study.baseline, drop=True)
         base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
         data["improvement"][:] = (100.0 * (1.0 - data["value"] / base)).transpose(*data["value"].dims).values
+        if is_uncertain(study):
+            _enter_errors(data, study, outcomes)
     return data if study.sweep else data.isel(point=0).merge(_responses(study, outcomes))
 
 
@@ -64,7 +72,7 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "parameter": len(parameters),
     }
     variables = {}
-    for name, (more, empty, long_name) in _VARIABLES.items():
+    for name, (more, empty, long_name) in {**_VARIABLES, **(_UNCERTAIN if is_uncertain(study) else {})}.items():
         dims = (*design, *more)
         array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
         variables[name] = (dims, array, {"long_name": long_name})
@@ -82,8 +90,14 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         attributes = {"units": sweep.unit, "long_name": sweep.element}
         coords[sweep.element] = (sweep.element, list(sweep.values), attributes)
     data = xr.Dataset(variables, coords)
-    data["improvement"].attrs["units"] = "percent"
+    for name in _PERCENT & set(variables):
+        data[name].attrs["units"] = "percent"
     return data
+
+
+def is_uncertain(study: Study) -> bool:
+    """Whether some method is not the norm."""
+    return set(study.methods) != {"norm"}
 
 
 _VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
@@ -102,9 +116,55 @@ _VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
 }
 
 
+_UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+    "improvement_error": (("method",), np.nan, "standard error of the improvement"),
+    "realisations": (("method",), 0, "random roads that were averaged"),
+    "over_linear": ((), np.nan, "improvement over the best linear design by the method of the search"),
+    "over_linear_error": ((), np.nan, "standard error of that improvement"),
+}
+_PERCENT = {"improvement", "improvement_error", "over_linear", "over_linear_error"}
+
+
+def _place(study: Study, case: Case) -> tuple[int, int, int]:
+    return list(study.layouts).index(case.layout), study.indices.index(case.index), case.point
+
+
+def _enter_errors(data: xr.Dataset, study: Study, outcomes: Mapping[Case, Outcome]) -> None:
+    """Standard errors of improvements: those of the differences on the same roads."""
+    for case, outcome in outcomes.items():
+        base = outcomes.get(replace(case, layout=str(study.baseline)))
+        for m, method in enumerate(study.evaluate) if base and case.layout != study.baseline else ():
+            one, other = (_estimate(o, method) for o in (outcome, base))
+            if one is not None and other is not None:
+                data["improvement_error"].values[(*_place(study, case), m)] = _ratio_error(one, other)
+
+
+def _estimate(outcome: Outcome | None, method: str) -> Estimate | None:
+    """What is kept of the estimate of the case's own index; None if it has no value or no scatter."""
+    if outcome is None or not np.isfinite(outcome.values.get(method, {}).get(outcome.index, np.nan)):
+        return None
+    error = outcome.standard_errors[method][outcome.index]
+    samples = tuple(outcome.samples.get(method, ()))
+    value = outcome.values[method][outcome.index]
+    return None if error is None else Estimate(value, "", standard_error=error, samples=samples)
+
+
+def _ratio_error(one: Estimate, other: Estimate) -> float:
+    """Standard error of the ratio of two values [%], to first order: that of the first less ratio times the second."""
+    ratio, count = one.value / other.value, min(len(one.samples), len(other.samples))
+    first = replace(one, samples=one.samples[:count])
+    second = replace(
+        other,
+        value=ratio * other.value,
+        standard_error=ratio * (other.standard_error or 0.0),
+        samples=tuple(ratio * sample for sample in other.samples[:count]),
+    )
+    return 100.0 * difference_of(first, second).standard_error / abs(other.value)
+
+
 def _enter(data: xr.Dataset, study: Study, outcome: Outcome) -> None:
     """Put one outcome in its place."""
-    at = (list(study.layouts).index(outcome.layout), study.indices.index(outcome.index), outcome.point)
+    at = _place(study, outcome.case)
     for m, method in enumerate(study.evaluate):
         values = outcome.values.get(method, {})
         data["value"].values[(*at, m)] = values.get(outcome.index, np.nan)
@@ -119,18 +179,37 @@ def _enter(data: xr.Dataset, study: Study, outcome: Outcome) -> None:
         data["parameter_value"].values[place] = number
         data["parameter_low"].values[place], data["parameter_high"].values[place] = low, high
         data["at_bound"].values[place] = outcome.active_bounds.get(name, "")
+    if is_uncertain(study):
+        data["realisations"].values[at] = [outcome.realisations.get(method, 0) for method in study.evaluate]
+        over = outcome.over_linear or (np.nan, np.nan)
+        data["over_linear"].values[at], data["over_linear_error"].values[at] = over
     data["status"].values[at] = _status(outcome)
     for name in ("starts", "agreed", "evaluations"):
         data[name].values[at] = getattr(outcome, name)
 
 
 def _notes(study: Study, outcomes: Mapping[Case, Outcome]) -> list[str]:
-    """What methods left out, each with the layouts that it concerns."""
-    found: dict[str, dict[str, None]] = {}
+    """What methods left out, each with the layouts that it concerns; notes that differ in numbers alone are one."""
+    found: dict[str, dict[str, dict[str, None]]] = {}
     for case in cases(study):
         for note in outcomes[case].notes if case in outcomes else ():
-            found.setdefault(note, {})[case.layout] = None
-    return [f"{', '.join(layouts)}: {note}" for note, layouts in found.items()]
+            found.setdefault(_NUMBER.sub("{}", note), {}).setdefault(note, {})[case.layout] = None
+    lines = []
+    for alike in found.values():
+        layouts = dict.fromkeys(layout for layouts in alike.values() for layout in layouts)
+        lines.append(f"{', '.join(name for name in study.layouts if name in layouts)}: {_ranged(list(alike))}")
+    return lines
+
+
+_NUMBER = re.compile(r"(?<![\w'])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w'])")
+
+
+def _ranged(notes: list[str]) -> str:
+    """One note for several that differ in their numbers."""
+    columns = zip(*(_NUMBER.findall(note) for note in notes), strict=True)
+    ends = [(min(column, key=float), max(column, key=float)) for column in columns]
+    texts = iter(low if low == high else f"{low} to {high}" for low, high in ends)
+    return _NUMBER.sub(lambda _: next(texts), notes[0])
 
 
 def summary_csv(study: Study, data: xr.Dataset) -> str:
@@ -141,6 +220,8 @@ def summary_csv(study: Study, data: xr.Dataset) -> str:
     header = ["layout", "index", "method"]
     header += [f"{sweep.element} [{sweep.unit}]"] if sweep else []
     header += ["value", "unit", "improvement_percent", "standard_error", "status"]
+    more = list(_UNCERTAIN) if is_uncertain(study) else []
+    header += [f"{name}_percent" if name in _PERCENT else name for name in more]
     header += [f"{name} [{unit}]" for name, unit in parameters] + ["at_bound", "starts", "agreed"]
     header += [f"{name} of this design [{unit}]" for name, unit in units.items()]
     text = io.StringIO()
@@ -162,6 +243,7 @@ def summary_csv(study: Study, data: xr.Dataset) -> str:
                     *([_number(sweep.values[case.point])] if sweep else []),
                     *(_number(row.value), units[case.index], _number(row.improvement), _number(row.standard_error)),
                     str(row.status.item()),
+                    *(_number(row[name]) if name in _PERCENT else int(row[name]) for name in more),
                     *(_number(value) for value in row.parameter_value.values),
                     *(at_bound, int(row.starts), int(row.agreed)),
                     *(_number(value) for value in row.other_value.values),
@@ -198,8 +280,12 @@ def _responses(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
     systems: dict[tuple[str, str], Any] = {}
     for (layout, index), vehicle in designs.items():
         mechanism = vehicle.mechanism()
-        problem = linear_problem(mechanism, INDEX[index](study).question(mechanism), conventions)
-        systems[layout, index] = problem, problem.system(close(problem.descriptor, {}))
+        try:
+            problem = linear_problem(mechanism, INDEX[index](study).question(mechanism), conventions)
+            systems[layout, index] = problem, problem.system(close(problem.descriptor, {}))
+        except (MechanismError, LinearSystemError):  # friction or a gap alone holds a part
+            if not is_uncertain(study):
+                raise
     omega = _frequencies([system.A for _, system in systems.values()])
     data = xr.Dataset(coords={"omega": ("omega", omega, {"units": "rad/s", "long_name": "angular frequency"})})
     for index in study.indices:

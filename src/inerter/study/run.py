@@ -7,7 +7,7 @@ import platform
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -15,24 +15,28 @@ import xarray as xr
 from filelock import FileLock, Timeout
 
 import inerter
-from inerter.errors import InerterError, StudyError
+from inerter.errors import InerterError, StatusKind, StudyError
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.networks.parser import names
 from inerter.optimisation.optimise import check_variables
 from inerter.study import journal as journals
+from inerter.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
 from inerter.study.cases import Outcome, cases, design_notes
 from inerter.study.journal import Journal
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.results import dataset, summary_csv
 from inerter.study.values import Study, write_resolved
 from inerter.study.workers import run_all
+from inerter.systems.piecewise import piecewise
 from inerter.vehicle.cars import Vehicle
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
+BUDGETS = "budgets.csv"
 FIGURES, REPORT = "figures", "report.html"
-OWN = (journals.NAME, RESOLVED, SUMMARY, DATASET, VERSIONS, FIGURES, REPORT)
+OWN = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, VERSIONS, FIGURES, REPORT)
 _LOCK = ".lock"
-Progress = Callable[[int, int, Outcome | None], None]
+_ANSWERS = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)  # better at every value is an answer too
+Progress = Callable[[int, int, Outcome | BudgetOutcome | None], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +47,7 @@ class StudyResult:
     study: Study
     data: xr.Dataset
     computed: int  # cases that this run computed; the others were there already
+    budgets: tuple[BudgetOutcome, ...] = ()
 
     @property
     def failures(self) -> list[str]:
@@ -52,6 +57,11 @@ class StudyResult:
         for item in stacked:
             if item.item() != "ok":
                 lines.append(f"{' '.join(str(part) for part in item.case.item())}: {item.item()}")
+        lines += [
+            f"budget of {found.parameter}, {found.layout} {found.index}: {found.status}: {found.message}"
+            for found in self.budgets
+            if found.status not in _ANSWERS
+        ]
         return lines
 
 
@@ -74,19 +84,25 @@ def check_study(study: Study) -> None:
 
 def _check_design(study: Study, vehicle: Vehicle) -> None:
     mechanism = vehicle.mechanism()
-    for name in study.indices:
-        linear_problem(mechanism, INDEX[name](study).question(mechanism), CONVENTIONS[study.conventions])
+    questions = [INDEX[name](study).question(mechanism) for name in study.indices]
+    if "norm" in study.methods:
+        for question in questions:
+            linear_problem(mechanism, question, CONVENTIONS[study.conventions])
+    else:
+        free = vehicle.free_values().items()
+        piecewise(vehicle.with_values({name: (value.lower * value.upper) ** 0.5 for name, value in free}))
     if study.optimise is not None and vehicle.free_values():
         check_variables(vehicle)
+        method = METHOD[study.optimise](replace(study, relative_error=None))  # which would take simulations
         for name in study.indices:
-            METHOD[study.optimise](study).objective(vehicle, INDEX[name](study))
+            method.objective(vehicle, INDEX[name](study))
 
 
 def study_notes(study: Study) -> list[str]:
     """What a person should know before the work: elements that nothing uses, and what linear analysis leaves out."""
     notes: dict[str, list[str]] = {}
     for layout in study.layouts:
-        for note in design_notes(study.design(layout).mechanism()):
+        for note in design_notes(study, study.design(layout).mechanism()):
             notes.setdefault(note, []).append(layout)
     used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
     unused = [name for name in study.elements if name not in used]
@@ -120,23 +136,32 @@ def run_study(
         journal = Journal(folder / journals.NAME, study)
         write_text(folder / RESOLVED, write_resolved(study))
         write_text(folder / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
-        done = journal.read() if resume else {}
+        done, budgets = journal.read_all() if resume else ({}, {})
         if not done:
             journal.start()
-        everything = cases(study)
+        everything, further = cases(study), budget_cases(study)
         pending = [case for case in everything if case not in done]
-        progress(len(done), len(everything), None)
+        total, computed = len(everything) + len(further), len(pending)
+        progress(len(done) + len(budgets), total, None)
         with journal.appending() as writer:
             for outcome in run_all(study, pending, jobs):
                 writer.write(outcome)
                 done[outcome.case] = outcome
-                progress(len(done), len(everything), outcome)
+                progress(len(done) + len(budgets), total, outcome)
+            for case in further:
+                if case not in budgets:
+                    budgets[case] = run_budget(study, case, done, jobs)
+                    writer.write(budgets[case])
+                    progress(len(done) + len(budgets), total, budgets[case])
+        found = tuple(budgets[case] for case in further)
+        if found:
+            write_text(folder / BUDGETS, budgets_csv(found))
         data = dataset(study, done)
         write_text(folder / SUMMARY, summary_csv(study, data))
         temporary = folder / f"{DATASET}.part"
         data.to_netcdf(temporary, engine="h5netcdf")
         temporary.replace(folder / DATASET)
-    return StudyResult(folder, study, data, len(pending))
+    return StudyResult(folder, study, data, computed, found)
 
 
 @contextmanager

@@ -17,6 +17,8 @@ from inerter.study.entries import (
     one_of,
     one_sweep,
     positive,
+    share,
+    some_names,
     some_of,
     sweep_list,
     text,
@@ -27,7 +29,10 @@ from inerter.units import shown
 MODELS = ("quarter-car", "half-car")
 RIG = "rig"
 INDICES = ("J1", "J3", "J5")
-METHODS = ("norm",)
+METHODS = ("norm", "statistical-linearisation", "expected-value", "approximate-linear")
+AVERAGING = ("expected-value", "approximate-linear")  # over random roads
+FORCED = ("expected-value", "statistical-linearisation")  # take J5 at a force of one amplitude
+_MOST_ROADS = 100_000
 CONVENTIONS = ("exact", "paper2008")
 SPACINGS = ("linear", "log")
 UNITS = {
@@ -44,6 +49,7 @@ UNITS = {
     "speed": "m/s",
     "roughness": "m^3/cycle",
     "high_pass": "rad/s",
+    "force": "N",
 }
 
 
@@ -187,6 +193,10 @@ class Settings(Shape):
     )
     seed: Annotated[int, whole(0, 2**63 - 1)] = 0
     high_pass: Annotated[float | None, positive("rad/s")] = None
+    realisations: Annotated[int | None, whole(2, _MOST_ROADS)] = None
+    relative_error: Annotated[float | None, PlainValidator(share)] = None
+    force: Annotated[float | None, positive("N")] = None
+    budgets: Annotated[tuple[str, ...], some_names("f")] = ()
 
 
 class StudyFile(Shape):

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from inerter.errors import StudyError
+from inerter.errors import NetworkError, StudyError
 from inerter.networks.elements import Element, Free
-from inerter.networks.parser import network
+from inerter.networks.parser import names, network
 from inerter.signals.road import Road
 from inerter.study.schema import UNITS
 from inerter.study.suggest import nearest
@@ -69,6 +69,15 @@ class Study:
     sweep: Sweep | None = None
     seed: int = 0
     high_pass: float | None = None  # corner of the filter of J3 [rad/s]
+    realisations: int | None = None  # random roads of methods that average; None: as many as they like
+    relative_error: float | None = None  # or as many as this needs
+    force: float | None = None  # amplitude of the sinusoidal force of J5 [N]
+    budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """All methods that it uses."""
+        return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
 
     def design(self, layout: str, swept: float | None = None) -> QuarterCar | HalfCar | Rig:
         """The vehicle with the struts of `layout`; `swept` replaces the value of the swept element [its SI unit].
@@ -113,8 +122,28 @@ class Study:
             "sweep": None if sweep is None else {sweep.element: [f"{v!r} {sweep.unit}" for v in sweep.values]},
             "seed": self.seed,
             "high_pass": None if self.high_pass is None else in_si("high_pass", self.high_pass),
+            "realisations": self.realisations,
+            "relative_error": self.relative_error,
+            "force": None if self.force is None else in_si("force", self.force),
+            "budgets": list(self.budgets) or None,
         }
         return {key: value for key, value in settings.items() if value is not None}
+
+
+def elements_used(study: Study) -> dict[str, list[str]]:
+    """The elements in layouts, each with the layouts that it is in."""
+    used: dict[str, list[str]] = {}
+    for layout, struts in study.layouts.items():
+        for element in dict.fromkeys(name for text in struts.struts.values() for name in _names(text)):
+            used.setdefault(element, []).append(layout)
+    return used
+
+
+def _names(expression: str) -> tuple[str, ...]:
+    try:
+        return names(expression)
+    except NetworkError:  # reported with its layout
+        return ()
 
 
 def write_resolved(study: Study) -> str:

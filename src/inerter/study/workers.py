@@ -26,27 +26,33 @@ _SHORT = 3.0  # seconds: to start processes takes about as long
 
 def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcome]:
     """Outcomes of `pending` as they are ready; see `spread`."""
-    return spread(partial(run_case, study), pending, jobs, lambda case: case.index)
+    here = partial(run_case, study, threads=jobs)
+    return spread(partial(run_case, study), pending, jobs, lambda case: case.index, here)
 
 
 def spread(
-    work: Callable[[Item], Result], pending: Sequence[Item], jobs: int, kind: Callable[[Item], object]
+    work: Callable[[Item], Result],
+    pending: Sequence[Item],
+    jobs: int,
+    kind: Callable[[Item], object],
+    here: Callable[[Item], Result] | None = None,
 ) -> Iterator[Result]:
     """Results of `work` on each of `pending` as they are ready.
 
-    The first item of each kind is worked on here, so that compiled code is in the cache before others look for it, and
+    The first item of each kind is worked on in this process (by `here`, if that is another way to the same), so that compiled code is in the cache before others look for it, and
     so are the next ones for as long as it would take to start processes. Those are spawned afresh (a fork of a
     threaded process may hang) and end when this one is gone, however it went.
 
     Raises `WorkError` if a process is killed from outside.
     """
     firsts = list({kind(item): item for item in reversed(pending)}.values())
+    at_home = here or work
     for item in firsts:
-        yield work(item)
+        yield at_home(item)
     rest = [item for item in pending if item not in firsts]
     start = time.monotonic()
     while rest and (jobs == 1 or time.monotonic() - start < _SHORT):
-        yield work(rest.pop(0))
+        yield at_home(rest.pop(0))
     if not rest:
         return
     context = multiprocessing.get_context("spawn")

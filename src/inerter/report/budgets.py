@@ -1,0 +1,73 @@
+"""How much of an element the layouts of a study bear, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from textwrap import wrap
+
+from inerter.figures.labels import printed, quantity
+from inerter.report.tables import Cell, Row, Table
+from inerter.study.budgets import BudgetOutcome
+from inerter.study.values import Study
+
+Writer = Callable[[float, str, float], str]
+
+
+def budget_lines(budgets: Sequence[BudgetOutcome], study: Study, width: int) -> Iterator[str]:
+    """The budgets for a terminal, a block for each element; none if there are none."""
+    for name, found in _by_element(budgets).items():
+        yield from ("", *wrap(_caption(name, found[0], study), width, subsequent_indent="  "))
+        longest = max(len(outcome.layout) for outcome in found)
+        for outcome in found:
+            begin = f"  {outcome.index}  {outcome.layout:<{longest}}  "
+            yield from wrap(begin + _answer(outcome, quantity), width, subsequent_indent=" " * min(len(begin), 20))
+
+
+def budget_tables(budgets: Sequence[BudgetOutcome], study: Study) -> list[Table]:
+    """The budgets for a page: a table for each element, layouts in rows and indices in columns."""
+    tables = []
+    for name, found in _by_element(budgets).items():
+        rows = []
+        for layout in dict.fromkeys(outcome.layout for outcome in found):
+            own = [outcome for outcome in found if outcome.layout == layout]
+            remarks = [f"{outcome.index}: {text}" for outcome in own if (text := _remark(outcome, printed))]
+            rows.append(
+                Row(layout, [Cell(_end(outcome, printed) or "–") for outcome in own], status="; ".join(remarks))
+            )
+        tables.append(Table(_caption(name, found[0], study), ["Layout", *study.indices], rows))
+    return tables
+
+
+def _by_element(budgets: Sequence[BudgetOutcome]) -> dict[str, list[BudgetOutcome]]:
+    names = dict.fromkeys(outcome.parameter for outcome in budgets)
+    return {name: [outcome for outcome in budgets if outcome.parameter == name] for name in names}
+
+
+def _caption(name: str, found: BudgetOutcome, study: Study) -> str:
+    return f"Budget of {name}: for which {name} each layout is better than {study.baseline}, by {found.method}"
+
+
+def _answer(found: BudgetOutcome, write: Writer) -> str:
+    end, remark = _end(found, write), _remark(found, write)
+    return f"{end} ({remark})" if end and remark else end or remark
+
+
+def _end(found: BudgetOutcome, write: Writer) -> str:
+    """The end of the range; empty if there is none."""
+    if found.value is None:
+        return ""
+    end = write(found.value, found.unit, found.standard_error or 0.0)
+    return f"up to {end}" if found.at_most else f"from {end} on"
+
+
+def _remark(found: BudgetOutcome, write: Writer) -> str:
+    """Why there is no end, what is wrong with it, and whether there are further crossings."""
+    remarks = []
+    if len(found.crossings) > 1:
+        places = [write(value, found.unit, float("nan")) for value in found.crossings]
+        remarks.append(f"equally good at {', '.join(places[:-1])} and {places[-1]}")
+    if found.status == "unbounded":
+        remarks.append(found.message)
+    elif found.status != "ok":
+        remarks.append(f"{found.status}: {found.message}")
+    return "; ".join(remarks)

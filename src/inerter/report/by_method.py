@@ -1,0 +1,141 @@
+"""What several methods say of the same designs, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from textwrap import wrap
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from inerter.figures.labels import (
+    Scale,
+    by_method,
+    compared,
+    error_of,
+    index_title,
+    index_unit,
+    indices,
+    is_told,
+    layouts,
+    measured,
+    methods,
+    percent,
+    quantity,
+    scale,
+    swept_element,
+    typeset,
+)
+from inerter.report.findings import extremes
+from inerter.report.tables import Cell, Row, Table
+
+_LONGEST_NAME = 20
+_LONGEST_METHOD = 18  # a longer name is cut at a hyphen
+
+
+class _Entry(NamedTuple):
+    """What a method says of a layout: two short texts, the second below the first."""
+
+    first: str
+    second: str = ""
+
+
+def method_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
+    """A table for a terminal: layouts in rows, methods in columns, in several parts if they need more than `width`."""
+    names, unit = _names(results), _unit(results, index)
+    yield from wrap(_what(results, unit), width, initial_indent="  ", subsequent_indent="    ")
+    labels = [_Entry("layout"), *(_Entry(name[:_LONGEST_NAME]) for name in names)]
+    columns = [
+        [_Entry(*_two_lines(method)), *(_entry(by_method(results, method), index, name, unit) for name in names)]
+        for method in methods(results)
+    ]
+    while columns:
+        count = _fitting([labels, *columns], width)
+        yield from _lines([labels, *columns[:count]])
+        columns = columns[count:]
+
+
+def method_tables(results: xr.Dataset) -> list[Table]:
+    """For each index, every layout by every method; none if there is but one method."""
+    if len(methods(results)) < 2:
+        return []
+    return [_table(results, index) for index in indices(results)]
+
+
+def _table(results: xr.Dataset, index: str) -> Table:
+    unit = _unit(results, index)
+    rows = []
+    for name in _names(results):
+        entries = [_entry(by_method(results, method), index, name, unit) for method in methods(results)]
+        rows.append(Row(name, [Cell(_typeset(entry.first), _typeset(entry.second)) for entry in entries]))
+    caption = f"{index_title(results, index)} ({index}) {_what(results, unit)}"
+    return Table(typeset(caption[:1].upper() + caption[1:]), ["Layout", *methods(results)], rows)
+
+
+def _what(results: xr.Dataset, unit: Scale) -> str:
+    if swept_element(results) is None:
+        return f"by each method, in {unit.unit}"
+    return "by each method, at its best" + (f" compared with {results.attrs['baseline']}" if compared(results) else "")
+
+
+def _names(results: xr.Dataset) -> list[str]:
+    return layouts(results) if swept_element(results) is None else compared(results) or layouts(results)
+
+
+def _unit(results: xr.Dataset, index: str) -> Scale:
+    return scale(results["value"].sel(index=index).values, index_unit(results, index))
+
+
+def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
+    """Value and improvement; over a sweep the largest improvement, or the least value, and where it is."""
+    row, baseline, element = results.sel(layout=layout, index=index), results.attrs["baseline"], swept_element(results)
+    if element is None:
+        value, error = float(row["value"]) * unit.factor, error_of(row) * unit.factor
+        better = "" if layout == baseline or not baseline else _percent(row)
+        return _Entry(measured(value, error) if is_told(value, error) else _plain(value), better)
+    ends = extremes(row["improvement" if compared(results) else "value"], element)
+    if ends is None:
+        return _Entry("n/a")
+    place = ends[1] if compared(results) else ends[0]
+    here = row.sel({element: place[1]})
+    text = _percent(here) if compared(results) else quantity(place[0], index_unit(results, index), error_of(here))
+    return _Entry(text, f"at {quantity(place[1], results[element].attrs['units'])}")
+
+
+def _percent(design: xr.Dataset) -> str:
+    return percent(float(design["improvement"]), error_of(design, "improvement"))
+
+
+def _plain(value: float) -> str:
+    return f"{value:.4g}" if np.isfinite(value) else quantity(value, "")
+
+
+def _typeset(text: str) -> str:
+    return typeset(text).replace(" ", "\N{NO-BREAK SPACE}")
+
+
+def _two_lines(name: str) -> tuple[str, str]:
+    """A long name in two parts, cut after its first hyphen."""
+    if len(name) <= _LONGEST_METHOD:
+        return name, ""
+    first, hyphen, second = name.partition("-")
+    return first + hyphen, second
+
+
+def _fitting(columns: list[list[_Entry]], width: int) -> int:
+    """How many columns fit beside the first, which holds the labels; one at least."""
+    count = len(columns) - 1
+    while count > 1 and max(map(len, _lines(columns[: count + 1]))) > width:
+        count -= 1
+    return count
+
+
+def _lines(columns: list[list[_Entry]]) -> list[str]:
+    widths = [max(len(text) for entry in column for text in entry) for column in columns]
+    lines = [
+        "  " + "  ".join(f"{entry[part]:<{width}}" for entry, width in zip(entries, widths, strict=True))
+        for entries in zip(*columns, strict=True)
+        for part in (0, 1)
+    ]
+    return [line.rstrip() for line in lines if line.strip()]

@@ -1,0 +1,169 @@
+"""Studies by methods that see friction: errors of differences, budgets, and what a failing method leaves behind."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from inerter.errors import IndicatorError, StudyError
+from inerter.methods.expected_value import ExpectedValue
+from inerter.methods.method import evaluate
+from inerter.networks.elements import Free
+from inerter.optimisation.budget import budget
+from inerter.optimisation.optimise import optimise
+from inerter.study import registry
+from inerter.study.budgets import BudgetOutcome, budget_cases
+from inerter.study.cases import Case, Outcome, run_case
+from inerter.study.file import load_study
+from inerter.study.registry import INDEX, METHOD
+from inerter.study.run import StudyResult, check_study, run_study
+from inerter.study.values import StrutLayout, Study
+
+TEXT = """
+title = "Friction on both sides"
+[vehicle]
+model = "quarter-car"
+sprung_mass = "320 kg"
+unsprung_mass = "38 kg"
+tyre_stiffness = "190 kN/m"
+[road]
+speed = "80 km/h"
+roughness = "2e-6 m^3/cycle"
+[elements]
+k = "90 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+b = "300 kg"
+f = "20 N"
+h = "20 N"
+[layouts]
+usual = "k | c | f"
+serial = "k | c - (b | h)"
+ideal = "k | c - b"
+[study]
+indices = ["J1"]
+optimise = "norm"
+evaluate = ["norm", "expected-value", "statistical-linearisation"]
+realisations = 4
+"""
+ROADS = ExpectedValue(realisations=4, jobs=1)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    path = tmp_path_factory.mktemp("study") / "study.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return load_study(path)
+
+
+@pytest.fixture(scope="module")
+def result(study: Study, tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
+    return run_study(study, tmp_path_factory.mktemp("run") / "out")
+
+
+@pytest.fixture(scope="module")
+def budgeted(study: Study, tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
+    layouts = {"plain": StrutLayout({"strut": "k | c"}), "serial": study.layouts["serial"]}
+    asked = replace(study, layouts=layouts, baseline="plain", evaluate=("norm", "expected-value"), budgets=("h",))
+    return run_study(asked, tmp_path_factory.mktemp("run") / "out")
+
+
+def rows(result: StudyResult, name: str = "summary.csv") -> list[dict[str, str]]:
+    with (result.folder / name).open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_every_method_judges_the_same_design(result: StudyResult) -> None:
+    study = result.study
+    for row in rows(result):
+        assert row["status"] == "ok"
+        design = study.design(row["layout"]).with_values({"c": float(row["c [N s/m]"])})
+        again = evaluate(design, INDEX["J1"](study), METHOD[row["method"]](study))
+        assert again.value == float(row["value"])
+        assert row["standard_error"] == ("" if again.standard_error is None else repr(again.standard_error))
+        assert int(row["realisations"]) == again.realisations
+    linear, real = (float(r["value"]) for r in rows(result) if r["layout"] == "ideal" and r["method"] != "norm")
+    assert linear == real  # without friction every method gives the norm
+
+
+def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(result: StudyResult) -> None:
+    """By the jackknife: the scatter of the ratio of means when each road is left out in turn."""
+    study, data = result.study, result.data.sel({"method": "expected-value"}).sel(index="J1")
+    designs = {n: study.design(n).with_values({"c": data.parameter_value.sel(layout=n).item()}) for n in study.layouts}
+    one, other = (np.array(evaluate(designs[n], INDEX["J1"](study), ROADS).samples) for n in ("serial", "usual"))
+    without = [(one.sum() - a) / (other.sum() - b) for a, b in zip(one, other, strict=True)]
+    expected = 100.0 * np.sqrt((one.size - 1) * np.var(without))
+    found = data.improvement_error.sel(layout="serial").item()
+    assert found == pytest.approx(expected, rel=0.02)
+
+
+def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyResult) -> None:
+    study = budgeted.study
+    (found,) = budgeted.budgets
+    assert (found.layout, found.index, found.method, found.at_most) == ("serial", "J1", "expected-value", True)
+    c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(budgeted)}
+    designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "plain")]
+    expected = budget(*designs, INDEX["J1"](study), parameter="h", method=ROADS)
+    assert (found.value, found.standard_error, found.status) == (expected.value, expected.standard_error, "ok")
+    (row,) = rows(budgeted, "budgets.csv")
+    assert (row["value"], row["better"], row["status"]) == (repr(expected.value), "below", "ok")
+
+
+def test_budgets_and_outcomes_survive_the_journal_and_are_not_computed_again(budgeted: StudyResult) -> None:
+    for found in budgeted.budgets:
+        again = BudgetOutcome(**json.loads(json.dumps(found.to_json())))
+        assert again.case == found.case
+        assert again.value == found.value
+    journal, before = budgeted.folder / "journal.jsonl", (budgeted.folder / "budgets.csv").read_bytes()
+    lines = journal.read_text().splitlines(keepends=True)
+    assert len(lines) == 1 + 2 + len(budget_cases(budgeted.study))
+    again = run_study(budgeted.study, budgeted.folder, resume=True)
+    assert (again.computed, again.budgets[0].value) == (0, budgeted.budgets[0].value)
+    assert journal.read_text().splitlines(keepends=True) == lines
+    journal.write_text("".join(lines[:-1]) + lines[-1][:40])  # ended while the budget was written down
+    assert run_study(budgeted.study, budgeted.folder, resume=True).computed == 0
+    assert (budgeted.folder / "budgets.csv").read_bytes() == before
+
+
+def test_threads_change_no_digit(study: Study) -> None:
+    one, two = (run_case(study, Case("serial", "J1"), threads) for threads in (1, 3))
+    assert one == two
+    assert Outcome(**json.loads(json.dumps(one.to_json()))).samples == one.samples
+    assert len(one.samples["expected-value"]) == 4
+
+
+def test_a_search_by_simulation_says_what_it_gains_over_the_best_linear_design(study: Study) -> None:
+    simulated = replace(study, optimise="expected-value", evaluate=("expected-value",), realisations=2)
+    outcome = run_case(simulated, Case("serial", "J1"))
+    expected = optimise(study.design("serial"), INDEX["J1"](study), ExpectedValue(realisations=2, jobs=1)).over_linear
+    assert expected is not None
+    assert outcome.over_linear == (-expected.percent, expected.percent_error)
+    assert outcome.over_linear[0] >= 0.0
+
+
+def test_a_method_that_fails_leaves_the_others(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Refuses:
+        name = "statistical-linearisation"
+
+        def estimate(self, *_: object) -> None:
+            raise IndicatorError("not this one")
+
+        estimate_many = objective = estimate
+
+    monkeypatch.setitem(registry.METHOD, "statistical-linearisation", lambda study: Refuses())
+    outcome = run_case(study, Case("serial", "J1"))
+    assert outcome.status["statistical-linearisation"] == "failed"
+    assert outcome.message == "statistical-linearisation: not this one"
+    assert np.isfinite(outcome.values["norm"]["J1"])
+    assert np.isfinite(outcome.values["expected-value"]["J1"])
+
+
+def test_a_layout_that_friction_alone_holds_is_no_question_for_the_norm(study: Study) -> None:
+    held = replace(study, layouts={**study.layouts, "held": replace(study.layouts["usual"], struts={"strut": "f"})})
+    with pytest.raises(StudyError, match=r"layouts\.held.*held by nothing"):
+        check_study(held)
+    fixed = {name: e.with_value(2e3) if isinstance(e.value, Free) else e for name, e in study.elements.items()}
+    check_study(replace(held, elements=fixed, optimise=None, evaluate=("expected-value",)))

@@ -39,9 +39,10 @@ def spread(
 ) -> Iterator[Result]:
     """Results of `work` on each of `pending` as they are ready.
 
-    The first item of each kind is worked on in this process (by `here`, if that is another way to the same), so that compiled code is in the cache before others look for it, and
-    so are the next ones for as long as it would take to start processes. Those are spawned afresh (a fork of a
-    threaded process may hang) and end when this one is gone, however it went.
+    The first item of each kind is worked on in this process (by `here`, if that is another way to the same), so that
+    compiled code is in the cache before others look for it, and so are the next ones for as long as it would take to
+    start processes. Those are spawned afresh (a fork of a threaded process may hang) and end when this one is gone,
+    however it went.
 
     Raises `WorkError` if a process is killed from outside.
     """

@@ -7,8 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 from inerter.indices.index import Index, LoadCarrying, RideComfort, TyreLoad
-from inerter.methods.approximate_linear import ApproximateLinear
-from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
@@ -20,18 +18,32 @@ INDEX: dict[str, Callable[[Study], Index]] = {
     "J5": lambda study: LoadCarrying(amplitude=study.force),
 }
 
+
+def _expected_value(study: Study) -> Method:
+    from inerter.methods.expected_value import ExpectedValue  # the simulation loads its compiler
+
+    return ExpectedValue(**_roads(study), jobs=1)
+
+
+def _approximate_linear(study: Study) -> Method:
+    from inerter.methods.approximate_linear import ApproximateLinear
+
+    return ApproximateLinear(**_roads(study))
+
+
 METHOD: dict[str, Callable[[Study], Method]] = {
     "norm": lambda study: Norm(conventions=study.conventions),
     "statistical-linearisation": lambda study: StatisticalLinearisation(conventions=study.conventions),
-    "expected-value": lambda study: ExpectedValue(**_roads(study), jobs=1),
-    "approximate-linear": lambda study: ApproximateLinear(**_roads(study)),
+    "expected-value": _expected_value,
+    "approximate-linear": _approximate_linear,
 }
 
 
 def method_of(study: Study, name: str, threads: int = 1) -> Method:
     """The method of that name; one that simulates shares its roads over `threads`, which changes no digit."""
-    method = METHOD[name](study)
-    return replace(method, jobs=threads) if isinstance(method, ExpectedValue) else method
+    method: Any = METHOD[name](study)
+    found: Method = replace(method, jobs=threads) if hasattr(method, "jobs") else method
+    return found
 
 
 def _roads(study: Study) -> Mapping[str, Any]:

@@ -27,7 +27,6 @@ from inerter.study.registry import INDEX, METHOD
 from inerter.study.results import dataset, summary_csv
 from inerter.study.values import Study, write_resolved
 from inerter.study.workers import run_all
-from inerter.systems.piecewise import piecewise
 from inerter.vehicle.cars import Vehicle
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
@@ -89,6 +88,8 @@ def _check_design(study: Study, vehicle: Vehicle) -> None:
         for question in questions:
             linear_problem(mechanism, question, CONVENTIONS[study.conventions])
     else:
+        from inerter.systems.piecewise import piecewise  # loads the compiler
+
         free = vehicle.free_values().items()
         piecewise(vehicle.with_values({name: (value.lower * value.upper) ** 0.5 for name, value in free}))
     if study.optimise is not None and vehicle.free_values():

@@ -57,17 +57,19 @@ class Comparison:
         return f"the first is {abs(self.percent):.2g} % ± {self.percent_error:.1g} % {word} than the second"
 
 
-def compare(first: Vehicle, second: Vehicle, index: Index, method: Method) -> Comparison:
+def compare(
+    first: Vehicle, second: Vehicle, index: Index, method: Method, *, known: Estimate | None = None
+) -> Comparison:
     """Two designs by one index and one method, with the standard error of their difference.
 
     A method that averages drives both over the same roads, as many for both, and the difference is averaged road by
     road: what the roads do to both alike cancels. What friction does to first order, which is quickly computed, is
     averaged over many more roads, and only the rest over these. Standard errors of numbers without samples add up as
-    independent ones.
+    independent ones. `known` is the estimate of the second by this very method, if it is there already.
 
     Raises what `evaluate` raises.
     """
-    one, other = (evaluate(design, index, method) for design in (first, second))
+    one, other = evaluate(first, index, method), known or evaluate(second, index, method)
     most = max(one.realisations, other.realisations)
     if min(one.realisations, other.realisations) < most and hasattr(method, "realisations"):
         settled: Any = replace(method, realisations=most, relative_error=None)  # type: ignore[type-var]

@@ -83,13 +83,13 @@ def budget(
     lower, upper = _bounds(chosen, parameter, bounds)
     known: dict[float, Comparison] = {}
     fixed = _as_many_roads(design, index, method)
-    own = None if _has(baseline, parameter) else baseline
+    same = None if _has(baseline, parameter) else evaluate(baseline, index, fixed)
 
     def difference(logarithm: float) -> float:
         if logarithm not in known:
             value = float(np.exp(logarithm))
-            other = own or with_element(baseline, parameter, value)
-            known[logarithm] = compare(with_element(design, parameter, value), other, index, fixed)
+            other = baseline if same else with_element(baseline, parameter, value)
+            known[logarithm] = compare(with_element(design, parameter, value), other, index, fixed, known=same)
         return known[logarithm].difference.value
 
     grid = np.linspace(np.log(lower), np.log(upper), _POINTS).tolist()

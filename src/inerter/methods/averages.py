@@ -16,7 +16,7 @@ def mean_and_error(values: NDArray[np.float64]) -> tuple[float, float, tuple[flo
 
 
 def interval_of(mean: float, error: float, count: int) -> tuple[float, float]:
-    """The interval of 95 % confidence about the mean of `count` values, by Student's t."""
+    """The interval of 95 % confidence about the mean of `count` values, by Student's t; a point if nothing scatters."""
     if error == 0.0 or count < 2:
         return mean, mean
     reach = float(scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, count - 1)) * error

@@ -62,12 +62,23 @@ def compare(
 ) -> Comparison:
     """Two designs by one index and one method, with the standard error of their difference.
 
-    A method that averages drives both over the same roads, as many for both, and the difference is averaged road by
-    road: what the roads do to both alike cancels. What friction does to first order, which is quickly computed, is
-    averaged over many more roads, and only the rest over these. Standard errors of numbers without samples add up as
-    independent ones. `known` is the estimate of the second by this very method, if it is there already.
+    A method that keeps its samples (`ExpectedValue`) drives both over the same roads, as many for both, and the
+    difference is averaged road by road: what the roads do to both alike cancels. What friction does to first order,
+    which is quickly computed, is averaged over many more roads, and only the rest over these (a control variate).
+    Standard errors of numbers without samples add up as independent ones. `known` is the estimate of the second by this
+    very method, if it is there already.
 
     Raises what `evaluate` raises.
+
+    >>> import inerter as it
+    >>> k, c, b = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
+    >>> one, other = (
+    ...     it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    ...     for strut in (k | c - (b | it.Friction(10.0)), k | c - (b | it.Friction(20.0)))
+    ... )
+    >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
+    >>> print(it.compare(one, other, comfort, it.ExpectedValue()))
+    the first is 0.28 % ± 0.007 % better than the second
     """
     one, other = evaluate(first, index, method), known or evaluate(second, index, method)
     most = max(one.realisations, other.realisations)
@@ -86,8 +97,8 @@ def compare(
 def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | None] = ()) -> Difference:
     """The difference of two estimates, sample by sample where both have the same samples.
 
-    `controls` hold for each design what is known of the same samples, and of many more: where it explains some of the
-    scatter, it is taken off sample by sample, and its mean over the many is added again.
+    `controls` hold for each design what is known of the same samples (samples,), and of many more (many,): where it
+    explains some of the scatter, it is taken off sample by sample, and its mean over the many is added again.
     """
     samples = np.array(one.samples), np.array(other.samples)
     if not samples[0].size == samples[1].size > 1:

@@ -85,7 +85,10 @@ def _summit(forced: Forced, lower: float, upper: float) -> tuple[Peak, Status] |
 
 
 def coarse_maxima(forced: Forced, poles: Array, pool: Executor) -> Array:
-    """About where the local maxima are [rad/s], from a grid around the poles of the linear motion; zero: below it."""
+    """About where the local maxima are [rad/s], from a grid around the `poles` [rad/s] of the linear motion.
+
+    Zero stands for one below the grid.
+    """
     grid = frequency_grid(poles)
     ratios = np.array([ratio for ratio, _ in pool.map(forced, grid.tolist())])
     inner = 1 + np.flatnonzero((ratios[1:-1] >= ratios[:-2]) & (ratios[1:-1] > ratios[2:]))

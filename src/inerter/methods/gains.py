@@ -50,7 +50,10 @@ class Runs:
     warning: Status = OK
 
     def upto(self, count: int) -> tuple[Array, Array]:
-        """Of the first `count` realisations, or fewer if one had to stop, which `status` then tells."""
+        """Squared sizes of outputs (realisations, outputs, harmonics) and of the input (realisations, harmonics).
+
+        Of the first `count` realisations, or fewer if one had to stop, which `status` then tells.
+        """
         while len(self.squares) < count and self.status.ok:
             self._add(len(self.squares))
         return np.array(self.squares), np.array(self.inputs)

@@ -1,7 +1,8 @@
 """What friction does to first order: the linear motion decides where it slips, and its force changes that motion.
 
-With the friction's force f sgn(v) of the frictionless velocity v as an input, the mean square of an output y changes by
-2 <y, dy>. This costs two Fourier transforms for a road, and explains most of what one road does that another does not.
+With the friction's force f sgn(v) of the frictionless velocity v as an input, an output y changes by dy, its mean
+square by 2 <y, dy> and a sum of weighted r.m.s. values by the sum of w <y, dy> / r.m.s.(y). This costs two Fourier
+transforms for a road, and explains most of what one road does that another does not.
 """
 
 from __future__ import annotations
@@ -29,13 +30,13 @@ class FirstOrder:
     """The change of an index of r.m.s. values by friction, to first order, on one road."""
 
     way: Drive
-    outputs: Complex  # (lines, outputs) per line of the road
-    velocities: Complex  # (lines, frictions) the same
+    outputs: Complex  # (lines, outputs) for a line of the road of 1 m
+    velocities: Complex  # (lines, frictions) across the frictions, the same
     responses: Complex  # (lines, outputs, frictions) of the outputs to sgn(v)
-    weights: Array  # (outputs,) of the mean squares in the index
+    weights: Array  # (outputs,) w / (2 r.m.s.): of changes of mean squares in the index
 
     def __call__(self, seed: int) -> float:
-        """The change on the road of a realisation's seed."""
+        """The change on the road of a realisation's seed [unit of the index]."""
         road = self.way.signal(seed).coefficient[:_LINES, None]
         spectrum = np.zeros((_TIMES // 2 + 1, self.velocities.shape[1]), dtype=complex)
         spectrum[1 : len(road) + 1] = self.velocities * road

@@ -43,7 +43,8 @@ class Budget:
     """The values of a parameter for which a design beats a baseline.
 
     `value` is the end of that range: the largest friction or gap, the smallest stiffness, damping or inertance. It is
-    nan, and `status` says why, where the design is better (or worse) at every value between `bounds`.
+    nan, and `status` says why, where the design is better (or worse) at every value between `bounds`. All are in SI
+    units; `interval` is of 95 % confidence and symmetric in the logarithm.
     """
 
     parameter: str
@@ -74,8 +75,21 @@ def budget(
     logarithms, and each change of sign is found by Brent's method, on the same roads throughout. The standard error of
     a crossing is that of the difference, over the slope.
 
-    Raises `DesignError` if no element has that name, or if the bounds are not positive and in order; and what
-    `evaluate` raises.
+    Two crossings between neighbouring points of the grid are not seen: narrow the bounds where that may be.
+
+    Raises `DesignError` if no element has that name, if elements of several kinds have it, if its value is free and no
+    bounds are given, or if the bounds are not positive and in order; and what `evaluate` raises.
+
+    >>> import inerter as it
+    >>> k, c, b = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
+    >>> design, baseline = (
+    ...     it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    ...     for strut in (k | c - (b | it.Friction(10.0)), k | it.Damper(4981))
+    ... )
+    >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
+    >>> found = it.budget(design, baseline, comfort, parameter="friction", method=it.StatisticalLinearisation())
+    >>> f"{found.value:.0f} {found.unit}"
+    '506 N'
     """
     check_request(design, index, method)
     check_request(baseline, index, method)
@@ -117,7 +131,10 @@ def budget(
 
 
 def with_element(vehicle: Vehicle, parameter: str, value: float) -> Mechanism:
-    """The vehicle's mechanism with another value of the elements of its struts that `parameter` names."""
+    """The vehicle's mechanism with another value (SI) of the elements of its struts that `parameter` names.
+
+    Raises `DesignError` if there is none, or if they are of several kinds.
+    """
     mechanism = vehicle.mechanism()
     chosen = {id(element) for element in _elements(mechanism, parameter)}
 

@@ -35,13 +35,13 @@ _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on 
 class Optimum:
     """The best design found, and what speaks for its being the best.
 
-    `over_linear`, for methods that see friction and gaps: how the optimum differs from the best linear design, by the
-    same method on the same roads (negative: so much lower).
+    `agreed` of `starts` local searches ended within 1e-6 of the best value, 1e-4 for a method that simulates (for a
+    peak gain: or approached the very place where one did); `ranges` gives for each parameter the least and the largest
+    value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to "lower" or "upper"
+    where its bound holds it back.
 
-    `agreed` of `starts` local searches ended within 1e-6 of the best value (for a peak gain: or approached the very
-    place where one did); `ranges` gives for each parameter the
-    least and the largest value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to
-    "lower" or "upper" where its bound holds it back.
+    `over_linear`, for methods other than `Norm`: the optimum beside the best linear design, by the same method on the
+    same roads (a negative difference: so much lower); None where linear analysis cannot decide all values.
     """
 
     estimate: Estimate

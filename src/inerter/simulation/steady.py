@@ -58,12 +58,10 @@ def repeating(table: InputTable) -> InputTable:
 
 
 def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integration, float]:
-    """From rest, one period (or the end of a long one) to settle and then the next, again until the state repeats.
+    """The last period, recorded, and how well it repeats: the change of the state over it, relative to its size.
 
-    The last one is recorded.
-
-    Also how well it repeats: the change of the state over that period, relative to its size. `table` is one period
-    that is repeated.
+    From rest, one period (or the end of a long one) is gone through to settle, then others until the state repeats.
+    `table` is one period that is repeated.
     """
     last = table.time.size - 1
     first = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))

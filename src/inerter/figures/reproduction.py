@@ -124,7 +124,7 @@ def _values_and_improvements(results: xr.Dataset, kinds: Mapping[str, str]) -> F
             for ax, letter in ((values, "ace"[row]), (improvement, "bdf"[row])):
                 ax.set_title(f"({letter}) {capital(index_title(results, index))}", loc="left")
         _finish(axes, results, 2)
-        add_legend(figure, axes)
+        add_legend(figure, axes, most=4)
     return figure
 
 

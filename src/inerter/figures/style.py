@@ -125,18 +125,18 @@ def new_figure(panels: int = 1, columns: int = 1, *, height: float, width: float
     return figure, axes[:panels]
 
 
-def add_legend(figure: Figure, axes: Iterable[Axes]) -> Legend:
-    """One legend for all axes, below them, in as many columns as the figure has room for."""
+def add_legend(figure: Figure, axes: Iterable[Axes], most: int | None = None) -> Legend:
+    """One legend for all axes, below them, in as many columns as the figure has room for, or `most`."""
     entries: dict[str, Artist] = {}
     for ax in axes:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
     available = figure.get_figwidth() * figure.dpi
-    for columns in range(max(len(entries), 1), 0, -1):
+    for columns in range(min(max(len(entries), 1), most or len(entries)), 0, -1):
         legend = figure.legend(
             list(entries.values()), list(entries), loc="outside lower center", ncols=columns, columnspacing=1.5
         )
-        if columns == 1 or legend.get_window_extent().width <= 0.95 * available:
+        if columns == 1 or legend.get_window_extent().width <= 0.98 * available:
             break
         legend.remove()
     return legend

@@ -65,7 +65,8 @@ _CAPTIONS = {
     ),
     drawn.METHODS: (
         "Increase of J1 and J3 by friction, printed designs of Table 1, by three methods; bars: two standard errors. "
-        "Method 1 shakes the car with 3.16 mm of white noise, another, far rougher road: its increase is another one."
+        "Method 1 drives the car with white noise of height, which moves the inerter far less than the road does: friction "
+        "then weighs about ten times more."
     ),
     _NETWORKS: (
         "The layouts, and the device: spring k, damper c, inerter b; shaft k_s and c_s, backlash eps, friction f."
@@ -196,6 +197,7 @@ def _curve_rows(found: Reproduction) -> Iterator[dict[str, Any]]:
                     "value": float(here["value"][i]),
                     "standard_error": float(here["standard_error"][i]),
                     "improvement_percent": float(here["improvement"][i]),
+                    "status": str(here["status"][i].item()),
                 }
 
 
@@ -281,10 +283,10 @@ def _simulated_text(table: int, rows: list[SimulatedRow]) -> list[str]:
             WIDTH,
         ),
         "",
-        f"{'index':6}{'design':34}{'printed':>11}{'paper2008':>11}{'':>9}{'exact':>9}",
+        f"{'index':6}{'design':34}{'printed':>11}{'paper2008':>10}{'':>9}{'exact':>10}",
         *(
-            f"{r.row.index:4}{_SIGNS[r.verdict]:2}{r.row.title:34}{r.row.printed:>11}{r.paper2008:>11.5g}"
-            f"{100.0 * r.difference:>+7.2f} %{r.exact:>9.4g}"
+            f"{r.row.index:4}{_SIGNS[r.verdict]:2}{r.row.title:34}{r.row.printed:>11}{r.paper2008:>10.5g}"
+            f"{100.0 * r.difference:>+7.2f} %{r.exact:>10.4g}"
             for r in rows
         ),
         "",

@@ -30,5 +30,5 @@ class Modes(NamedTuple):
     maps: Array  # (capacity, rows, width): rate of the state, guards, (a', w, F), entry conditions, outputs
     reaction: Array  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
     limits: Array  # (capacity, k, 2): interval of the guards
-    steps: Array  # (capacity, columns, rows): see `march.lines_of`, then jumps of the state with roads
+    steps: Array  # (capacity, columns, rows): see `march.lines_of`, then jumps of the state with inputs
     reach: Array  # (capacity,) how far a Taylor series of the flow serves [s]

@@ -61,7 +61,7 @@ class Record(NamedTuple):
     slot: Array  # (segments + 1,) number of the sample at each knot, or -1
     states: Array  # (samples or 0, n)
     visited: Array  # (samples or 0,) mode at each sample
-    sums: Array  # (outputs,) of squares
+    sums: Array  # (2, outputs) of squares, and the last squares that were added
     events: Array  # (events, 4): time, element, from, to
     branch_road: Array  # (branches or 0, roads)
     gauss: Array  # (2, points) nodes and weights on [0, 1]
@@ -140,7 +140,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
             if code != DONE:
                 return code
             place[JUMPED] = 1
-            _renew(now.maps[place[MODE]], sizes, work, record, place, k, nu)
+            _renew(now.maps[place[MODE]], sizes, work, record, place, k, nu, length)
         begun = record.visited[max(record.slot[k], 0) : record.slot[k] + 1]
         code = cross(now, record.events, begun, record.branch_road, record.gauss, record.time[k], length)
         if code != DONE:
@@ -153,7 +153,8 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
         if slot >= 0 and k >= place[SETTLED] and sizes[OUTPUTS] > 0:
             inputs_from(work[NUMBERS], nr, nu, length, length, length, work[U : U + 8])
             for o in range(sizes[OUTPUTS]):
-                record.sums[o] += over_columns(now.maps[m, sizes[OUTPUT] + o], work[STATE], work[U], n, nu) ** 2
+                record.sums[1, o] = over_columns(now.maps[m, sizes[OUTPUT] + o], work[STATE], work[U], n, nu) ** 2
+                record.sums[0, o] += record.sums[1, o]
     return DONE
 
 
@@ -543,14 +544,10 @@ def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, 
         kinks += abs(record.slope[k, c] - record.slope_before[k, c])
     if leaps == 0.0:
         return kinks > 0.0
-    counted = record.slot[k] >= 0 and k > place[SETTLED]
     for i in range(nr):
         u[i], u[nr + i], u[2 * nr + i] = record.value_before[k, i], record.slope_before[k, i], 0.0
     for i in range(3 * nr, nu):
         u[i] = record.value_before[k, i - 2 * nr]
-    for o in range(sizes[OUTPUTS]):
-        if counted:
-            record.sums[o] -= over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
     for c in range(nr):
         rise = record.value[k, c] - record.value_before[k, c]
         for half in range(2):
@@ -566,20 +563,20 @@ def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, 
 
 
 @borrowing
-def _renew(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> None:
+def _renew(
+    maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int, length: float
+) -> None:
     """The sample where an input breaks, and the squares where it jumps, are those from the right."""
-    n, nr, u, leaps = sizes[N], sizes[NR], work[U], 0.0
+    n, leaps = sizes[N], 0.0
     _sample(record.states, record.visited, record.slot[k], place[MODE], work, n)
     for c in range(record.value.shape[1]):
         leaps += abs(record.value[k, c] - record.value_before[k, c])
     if leaps == 0.0 or record.slot[k] < 0 or k <= place[SETTLED]:
         return
-    for i in range(nr):
-        u[i], u[nr + i], u[2 * nr + i] = record.value[k, i], record.slope[k, i], 0.0
-    for i in range(3 * nr, nu):
-        u[i] = record.value[k, i - 2 * nr]
+    inputs_from(work[NUMBERS], sizes[NR], nu, length, 0.0, length, work[U : U + 8])
     for o in range(sizes[OUTPUTS]):
-        record.sums[o] += over_columns(maps[sizes[OUTPUT] + o], work[STATE], u, n, nu) ** 2
+        square = over_columns(maps[sizes[OUTPUT] + o], work[STATE], work[U], n, nu) ** 2
+        record.sums[0, o] += square - record.sums[1, o]
 
 
 @borrowing
@@ -608,7 +605,7 @@ def _account(
 _FLOATS, _TABLE, _TABLES = float64[::1], float64[:, ::1], float64[:, :, ::1]
 _INTS, _INT_TABLE = int64[::1], int64[:, ::1]
 _MECHANICS, _MODES = (_INTS, _INT_TABLE, _FLOATS, _TABLE), (_INTS, _INT_TABLE, _TABLES, _TABLES, _TABLES, _FLOATS)
-_HISTORY = (_INTS, _INTS, _TABLE, _INTS, _FLOATS, _TABLE)
+_HISTORY = (_INTS, _INTS, _TABLE, _INTS, _TABLE, _TABLE)
 _tuple: Any = types.NamedTuple
 integrate = compiled(  # now, while another process compiles the kernels of modes
     integrate,

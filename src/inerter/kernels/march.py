@@ -16,7 +16,7 @@ SIGNATURE = types.int64(
     _TABLE,  # steps of the mode: a line each column, then the jump of the state with each input
     _TABLE,  # limits of the guards
     _FLOATS,  # state, changed in place
-    _FLOATS,  # work space: columns, rows, columns again
+    _FLOATS,  # work space: columns, rows, the state before a jump
     _TABLE,  # values of the inputs at the knots
     _TABLE,  # slopes
     _TABLE,  # values from the left
@@ -24,7 +24,7 @@ SIGNATURE = types.int64(
     _INTS,  # sample number at each knot, or -1
     _TABLE,  # samples of the state
     _INTS,  # modes at the samples
-    _FLOATS,  # sums of squared outputs
+    _TABLE,  # squared outputs: their sums, and the last that were added
     types.float64,  # step
     types.int64,  # number of the mode
     types.int64,  # first segment
@@ -62,8 +62,8 @@ def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int) -> tu
 def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: int) -> March:
     """The march for systems of n states, these of `flow.knot_numbers`, so many nonlinear elements and squared outputs.
 
-    It goes on while no guard can be crossed within the step, and returns the first segment that needs more care. Over
-    roads that are held, the first `jumps` inputs may jump at every knot: positions follow at once.
+    It goes on while no guard can be crossed within the step, and returns the first segment that needs more care. Where
+    signals are held, the first `jumps` inputs may jump at every knot: positions follow at once.
     """
     inputs = len(used)
     columns, rows, sways = lines_of(n, inputs, elements, outputs, jumps)
@@ -131,23 +131,13 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
                 if slot[k] < states.shape[0]:
                     for i in range(n):
                         states[slot[k], i] = v[i]
-                if outputs > 0 and k > settled:
-                    for j in range(inputs):
-                        c, number = numbers[j] // 4, numbers[j] % 4
-                        before[n + j] = 0.0
-                        if number == 0:
-                            before[n + j] = value_before[k, c]
-                        elif number == 2:
-                            before[n + j] = h * slope_before[k, c]
-                    before[columns - 1] = 1.0
+                if k > settled:
                     for o in range(outputs):
-                        total = 0.0
-                        for j in range(columns):
-                            total += steps[j, at_start + o] * before[j]
-                        sums[o] += y[at_start + o] ** 2 - total**2
-            if outputs > 0 and k >= settled and slot[k + 1] >= 0:
+                        sums[0, o] += y[at_start + o] ** 2 - sums[1, o]
+            if k >= settled and slot[k + 1] >= 0:
                 for o in range(outputs):
-                    sums[o] += y[at_end + o] ** 2
+                    sums[1, o] = y[at_end + o] ** 2
+                    sums[0, o] += sums[1, o]
             for i in range(n):
                 v[i] = y[i]
             k += 1

@@ -560,9 +560,9 @@ def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -
     into_knots(guards, n, used, steps, n + k)
     into_knots(product(outputs, exact), n, used, steps, n + 2 * k)
     columns, rows = n + used.shape[0] + 1, n + 2 * k + sizes[OUTPUTS]
-    for c in range(columns, steps.shape[0]):  # roads that jump: positions follow, and outputs are taken after it
+    for c in range(min(nr, steps.shape[0] - columns)):  # roads that jump: positions follow; with a force nothing does
         for i in range(n):
-            steps[c, i] = maps[i, n + nr + c - columns]
+            steps[columns + c, i] = maps[i, n + nr + c]
     if steps.shape[0] > columns:
         into_knots(outputs, n, used, steps, rows)
         rows += sizes[OUTPUTS]

@@ -228,7 +228,8 @@ class ApproximateLinear:
                 scatter = math.sqrt(0.5 * math.pi) * (single - single.mean())
         count = scatter.size
         error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
-        return Estimate(value, question.unit, OK, error, interval_of(value, error, count), count, peaks)
+        interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())
+        return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples)
 
     def _window(self, omega: Array) -> Array:
         reach = min(int(2.0 * math.pi * self.smoothing / omega[0] * (1.0 + 1e-9)), (omega.size - 1) // 2)

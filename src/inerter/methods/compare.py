@@ -8,11 +8,12 @@ from math import hypot
 from typing import Any
 
 import numpy as np
+import scipy.stats
 from numpy.typing import NDArray
 
 from inerter.errors import Status
 from inerter.indices.index import Index
-from inerter.methods.averages import interval_of, mean_and_error
+from inerter.methods.averages import CONFIDENCE, interval_of, mean_and_error
 from inerter.methods.method import Controlled, Estimate, Method, evaluate
 from inerter.vehicle.cars import Vehicle
 
@@ -89,7 +90,7 @@ def compare(
             for estimate, design in ((one, first), (other, second))
         )
     controls: list[Controls | None] = []
-    if one.samples and other.samples and isinstance(method, Controlled):
+    if most > 0 and isinstance(method, Controlled):
         controls = [method.controls(design, index, most) for design in (first, second)]
     return Comparison(one, other, difference_of(one, other, controls))
 
@@ -97,21 +98,30 @@ def compare(
 def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | None] = ()) -> Difference:
     """The difference of two estimates, sample by sample where both have the same samples.
 
-    `controls` hold for each design what is known of the same samples (samples,), and of many more (many,): where it
-    explains some of the scatter, it is taken off sample by sample, and its mean over the many is added again.
+    `controls` hold for each design what is known of the same samples (samples,), and of many more (many,): it is taken
+    off sample by sample, and its mean over the many is added again, unless that makes the variance larger than by chance alone. (To
+    take the smaller of the two standard errors would understate it: those of few samples are small by chance too.)
     """
-    samples = np.array(one.samples), np.array(other.samples)
+    samples = _samples(one, other), _samples(other, one)
     if not samples[0].size == samples[1].size > 1:
         value = one.value - other.value
         error = hypot(one.standard_error or 0.0, other.standard_error or 0.0)
         return Difference(value, one.unit, error, interval_of(value, error, max(samples[0].size, samples[1].size)))
     differences = samples[0] - samples[1]
+    value, alone, interval = mean_and_error(differences)
     if len(controls) == 2 and controls[0] is not None and controls[1] is not None:
         here, more = (a - b for a, b in zip(*controls, strict=True))
-        if np.var(differences - here) < np.var(differences):
-            rest, error, _ = mean_and_error(differences - here)
-            added, further, _ = mean_and_error(more)
-            error = hypot(error, further)
+        rest, error, _ = mean_and_error(differences - here)
+        added, further, _ = mean_and_error(more)
+        error = hypot(error, further)
+        by_chance = float(scipy.stats.f.ppf(CONFIDENCE, differences.size - 1, differences.size - 1))
+        if error**2 <= by_chance * alone**2:
             return Difference(rest + added, one.unit, error, interval_of(rest + added, error, differences.size))
-    value, error, interval = mean_and_error(differences)
-    return Difference(value, one.unit, error, interval)
+    return Difference(value, one.unit, alone, interval)
+
+
+def _samples(estimate: Estimate, other: Estimate) -> NDArray[np.float64]:
+    """The samples of an estimate; of a linear design, whose value does not scatter, as many of that as of the other."""
+    if not estimate.samples and estimate.standard_error == 0.0:
+        return np.full(len(other.samples), estimate.value)
+    return np.array(estimate.samples)

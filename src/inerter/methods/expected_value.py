@@ -16,6 +16,7 @@ from inerter.checks import is_number
 from inerter.errors import OK, IndicatorError, InerterError, LinearSystemError, MechanismError, Status, StatusKind
 from inerter.indices.index import Combination, Index, Question
 from inerter.methods.averages import mean_and_error
+from inerter.methods.equivalent import has_friction
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Objective
@@ -79,9 +80,11 @@ class ExpectedValue:
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)
-        _check_whole("The number of realisations", self.realisations, 2)
         _check_whole("The seed", self.seed, 0)
-        _check_whole("The number of threads", self.jobs, 1)
+        if self.realisations is not None:
+            _check_whole("The number of realisations", self.realisations, 2)
+        if self.jobs is not None:
+            _check_whole("The number of threads", self.jobs, 1)
         if self.realisations is not None and self.relative_error is not None:
             raise IndicatorError("Give either realisations or a relative_error to reach, not both.")
         if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
@@ -152,6 +155,8 @@ class ExpectedValue:
         beyond, status = (None, OK)
         if conventions.hold is None and linear is not None:
             beyond, status = _beyond(linear, way)
+        if status.kind is StatusKind.MARGINAL and has_friction(mechanism):
+            status = OK  # friction damps what nothing else does
         if not status.ok:
             return Estimate(np.inf, question.unit, status)
         rest = np.zeros(len(names)) if beyond is None else beyond
@@ -197,12 +202,13 @@ class ExpectedValue:
         value = weighted[0].gain if weighted else np.nan
         if self.conventions == "paper2008" and weighted and known.size and known[0] > 0.0:
             value = min(weighted, key=lambda peak: abs(np.log(max(peak.omega, 1e-9) / known[0]))).gain
-        return Estimate(
-            value, question.unit, worst(statuses), standard_error=0.0, interval=(value, value), peaks=weighted
-        )
+        status = worst(statuses)
+        if status.kind is StatusKind.FAILED:
+            value = np.nan
+        return Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
 
 
-_NO_LINEAR = "friction or a gap alone holds a part: nothing is added for the road outside 0.1 to 1000 Hz"
+_NO_LINEAR = "friction or a gap alone holds or damps a part: nothing is added for the road outside 0.1 to 1000 Hz"
 
 
 def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
@@ -264,5 +270,5 @@ def _averaged(
 
 
 def _check_whole(what: str, value: object, least: int) -> None:
-    if value is not None and (not isinstance(value, Integral) or isinstance(value, bool) or value < least):
+    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
         raise IndicatorError(f"{what} is a whole number from {least} on, got {value!r}.")

@@ -68,12 +68,14 @@ def check_drive(system: PiecewiseSystem, way: Drive) -> None:
 
 
 def squares(system: PiecewiseSystem, way: Drive, seed: int, outputs: Sequence[str]) -> tuple[Array, Status]:
-    """Mean squares (outputs,) of the outputs, filtered, over one period of the steady state on one realisation."""
+    """Mean squares (outputs,) of the outputs, filtered, over one period of the steady state on one realisation; or nan."""
     inputs = table(way, seed)
     state = initial_state(system, inputs.value[0], "rest")
     if way.corner is None:
         found, integration = mean_squares(system, inputs, outputs, state)
-        return found, integration.status if not integration.status.ok else integration.warning
+        if not integration.status.ok:
+            return np.full(len(outputs), np.nan), integration.status
+        return found, integration.warning
     integration, steady = settle(system, inputs, state, energy=False)
     integration.advance(inputs.time.size - 1)
     run = trajectory_of(integration, steady, "", state)

@@ -18,6 +18,7 @@ from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Method, check_request, evaluate
 from inerter.networks.elements import Element, Friction, Gap
 from inerter.networks.transform import map_elements
+from inerter.units import format_quantity
 from inerter.vehicle.cars import Vehicle
 from inerter.vehicle.mechanism import Mechanism
 
@@ -160,6 +161,11 @@ def _elements(mechanism: Mechanism, parameter: str) -> list[Element]:
             f'No strut has an element named {parameter!r} (there are: {labels}; or take "friction" or "gap" '
             f"for all). To find how much friction or backlash a design bears, put in a Friction(0.0) or Gap(0.0)."
         )
+    if len({(e.unit, e.value) for e in chosen if e.name is None}) > 1:
+        values = " and ".join(dict.fromkeys(str(e) for e in chosen))
+        raise DesignError(
+            f"{parameter!r} stands for {values}. Name the one that is meant, as in Spring(..., name=...)."
+        )
     if len({e.unit for e in chosen}) > 1:
         raise DesignError(f"{parameter!r} names elements of different kinds. Give them different names.")
     return chosen
@@ -218,7 +224,7 @@ def _status(
         return failed
     if end is not None:
         return OK
-    between = f"for every {parameter} from {lower:.4g} to {upper:.4g} {unit}"
+    between = f"for every {parameter} from {format_quantity(lower, unit)} to {format_quantity(upper, unit)}"
     if all(gap < 0.0 for gap in gaps):
         return Status(StatusKind.UNBOUNDED, f"the design is better {between}")
     if all(gap >= 0.0 for gap in gaps):

@@ -104,7 +104,7 @@ def simulate_many(
         integration.advance(table.time.size - 1)
         events[i, j], status[i, j] = integration.place[EVENTS], integration.status
         if integration.status.ok:
-            squares[i, j] = integration.record.sums / (knots - skipped)
+            squares[i, j] = integration.record.sums[0] / (knots - skipped)
 
     pool = ThreadPoolExecutor(jobs or os.cpu_count() or 1)
     try:

@@ -173,10 +173,10 @@ def start(
     )
     branches = system.graph.branches if account else ()
     samples, channels = table.samples if keep else 0, table.value.shape[1]
-    jumps = roads if table.jumps else 0
+    jumps = channels if table.jumps else 0
     columns, followed, swaying = lines_of(n, used.size, k, len(outputs), jumps)
     work = np.zeros(
-        (kernel.ROWS, max(64, 2 * columns + followed + swaying, nu, 4 * channels, channels + len(branches)))
+        (kernel.ROWS, max(64, columns + followed + swaying + n, nu, 4 * channels, channels + len(branches)))
     )
     work[kernel.STATE, :n], work[kernel.SCALE, :n] = state, np.abs(state)
     record = kernel.Record(
@@ -189,7 +189,7 @@ def start(
         slot=table.slot,
         states=np.empty((samples, n)),
         visited=np.zeros(samples, np.int64),
-        sums=np.zeros(len(outputs)),
+        sums=np.zeros((2, len(outputs))),
         events=np.empty((256, 4)),
         branch_road=np.array([b.roads for b in branches]).reshape(len(branches), roads),
         gauss=np.array([0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS]),

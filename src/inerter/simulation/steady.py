@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError, Status, StatusKind
-from inerter.kernels.events import EVENTS, SEGMENT, SPECIAL
+from inerter.kernels.events import EVENTS, SEGMENT, SETTLED, SPECIAL
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
@@ -108,7 +108,7 @@ def mean_squares(
     integration, settled = _repeated(begun, repeating(table), repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _unsettled(settled)
-    return integration.record.sums / (table.samples - 1), integration
+    return integration.record.sums[0] / (table.samples - 1), integration
 
 
 def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:
@@ -118,11 +118,12 @@ def _repeated(integration: Integration, again: InputTable, repeats: float, most:
     integration.record = record._replace(
         value_before=again.value_before, slope_before=again.slope_before, special=again.special
     )
+    integration.place[SETTLED] = -1  # a jump at the start is one at the end of the period before
     mismatch, periods = np.inf, 1
     while integration.status.ok and periods < most and mismatch > repeats:
         begun = integration.state
         integration.place[[SEGMENT, SPECIAL, EVENTS]] = 0
-        record.sums[:] = 0.0
+        record.sums[0] = 0.0
         integration.advance(last)
         periods += 1
         mismatch = integration.mismatch(begun)

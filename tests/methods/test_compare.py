@@ -1,0 +1,236 @@
+"""Differences of designs on the same roads: honest, sharper than two estimates apart, and right where nothing pairs."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import scipy.stats
+from strategies import paper_half_car, paper_quarter_car
+
+import inerter as it
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad
+from inerter.errors import OK, Status, StatusKind
+from inerter.methods.averages import mean_and_error
+from inerter.methods.compare import Comparison, Difference, difference_of
+from inerter.methods.linear import CONVENTIONS
+from inerter.methods.method import Estimate
+from inerter.methods.perturbation import first_order
+from inerter.methods.realisations import drive, realisation_seeds, squares
+from inerter.systems.piecewise import piecewise
+
+ROAD = Road(roughness=5e-7, speed=25.0)
+J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
+k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
+REPETITIONS, ROADS = 200, 3
+
+
+def parallel(friction):
+    return paper_quarter_car(k | Damper(3705.4) | (Inerter(128.57) | Friction(friction)))
+
+
+def series(friction):
+    return paper_quarter_car(k | Damper(7544.2) - (Inerter(366.52) | Friction(friction)))
+
+
+def light(friction):
+    return paper_quarter_car(k | Damper(1500.0) | (Inerter(128.57) | Friction(friction)))
+
+
+def elastic(friction):
+    return paper_quarter_car(k | Damper(7353.0) - shaft - (Inerter(328.72) | Friction(friction)))
+
+
+def half_car(friction):
+    front = k | Damper(4e3) - (Inerter(300.0) | Friction(friction))
+    return paper_half_car(front, Spring(100e3) | Damper(3e3) | (Inerter(50.0) | Friction(0.5 * friction)))
+
+
+HELD = ExpectedValue(realisations=ROADS, seed=11, conventions="paper2008")  # quick, and its scatter is the same
+
+
+@pytest.fixture(scope="module")
+def pools():
+    """J1 and J3 of S2 and S3 with 100 N on 600 roads, (designs, roads, indices), and J3's first-order changes there.
+
+    Every road has its own seed, so groups of 3 roads are as independent as runs with other seeds are.
+    """
+    systems = [piecewise(parallel(100.0)), piecewise(series(100.0))]
+    question = J3.question(systems[0].mechanism)
+    way = drive(systems[0], question, CONVENTIONS["paper2008"])
+    changes = [first_order(system, question, way) for system in systems]
+
+    def run(seed):
+        found = [squares(system, way, seed, ("sprung_acceleration", "tyre_load"))[0] for system in systems]
+        return np.sqrt(found), [change(seed) for change in changes]
+
+    with ThreadPoolExecutor(2) as pool:
+        values, known = zip(*pool.map(run, realisation_seeds(11, 0, REPETITIONS * ROADS)), strict=True)
+    return np.array(values).transpose(1, 0, 2), np.array(known).T
+
+
+def coverage(intervals, truth):
+    return np.mean([low <= truth <= high for low, high in intervals])
+
+
+@pytest.mark.parametrize("index", [J1, J3], ids=["J1", "J3"])
+def test_intervals_cover_the_converged_value_as_often_as_they_say(pools, index):
+    samples = pools[0][1, :, [J1, J3].index(index)]
+    groups = samples.reshape(REPETITIONS, ROADS)
+    first = it.evaluate(series(100.0), index, HELD)
+    assert first.samples == pytest.approx(groups[0], rel=1e-12)
+    assert first.interval == pytest.approx(mean_and_error(groups[0])[2], rel=1e-9)
+    assert 0.90 <= coverage([mean_and_error(group)[2] for group in groups], samples.mean()) <= 0.99
+
+
+def test_intervals_of_a_difference_do_too(pools):
+    """Each group adds the first-order effect on the roads of twenty further groups: within a group nothing is used
+    twice, so that its interval is what it would be alone; that groups share those roads hardly correlates them.
+    """
+    (one, other), known = pools[0][:, :, 1], pools[1]
+    intervals, errors = [], []
+    for group in range(REPETITIONS):
+        here = np.arange(group * ROADS, (group + 1) * ROADS)
+        more = np.arange(here[-1] + 1, here[-1] + 1 + 20 * ROADS) % one.size
+        parts = [Estimate(s[here].mean(), "N", realisations=ROADS, samples=tuple(s[here])) for s in (one, other)]
+        found = difference_of(*parts, [(changes[here], changes[more]) for changes in known])
+        intervals.append(found.interval)
+        errors.append(found.standard_error)
+    assert 0.90 <= coverage(intervals, np.mean(one - other)) <= 0.99
+    assert math.sqrt(np.mean(np.square(errors))) == pytest.approx(np.std(np.mean(intervals, axis=1)), rel=0.15)
+
+
+def test_many_roads_are_not_made_worse_by_few_more(pools):
+    """The first-order effect on a few more roads would add more scatter than it takes away."""
+    (one, other), known = pools[0][:, :, 1], pools[1]
+    parts = [Estimate(s.mean(), "N", realisations=s.size, samples=tuple(s)) for s in (one, other)]
+    assert difference_of(*parts, [(changes, changes[:10]) for changes in known]) == difference_of(*parts)
+
+
+@pytest.mark.parametrize("index", [J1, J3], ids=["J1", "J3"])
+def test_few_roads_suffice_to_compare(index):
+    found = it.compare(parallel(10.0), series(10.0), index, ExpectedValue(realisations=8, seed=0))
+    assert math.hypot(found.first.standard_error, found.second.standard_error) > 3.0 * found.difference.standard_error
+    norms = [it.evaluate(car(0.0), index, Norm()).value for car in (parallel, series)]
+    assert found.difference.value == pytest.approx(norms[0] - norms[1], rel=0.1)  # 10 N change little
+    assert "worse than the second" in str(found)
+    assert found.percent == pytest.approx(100.0 * found.difference.value / found.second.value)
+    assert found.percent_error == pytest.approx(100.0 * found.difference.standard_error / found.second.value)
+
+
+def test_a_design_against_itself():
+    found = it.compare(series(10.0), series(10.0), J3, ExpectedValue(realisations=3))
+    assert found.difference.value == 0.0
+    assert found.difference.standard_error == 0.0
+
+
+def test_where_one_design_is_linear_the_other_one_scatters_alone():
+    for first, second in ((series(0.0), series(100.0)), (series(100.0), series(0.0))):
+        found = it.compare(first, second, J3, ExpectedValue(realisations=4, seed=1))
+        error = found.first.standard_error + found.second.standard_error
+        assert found.difference.value == found.first.value - found.second.value
+        assert found.difference.standard_error == pytest.approx(error, rel=1e-14)
+        assert error > 0.0
+        reach = scipy.stats.t.ppf(0.975, 3) * error
+        assert found.difference.interval[1] - found.difference.value == pytest.approx(reach, rel=1e-9)
+
+
+@pytest.mark.parametrize("method", [Norm(), it.StatisticalLinearisation()], ids=lambda m: m.name)
+def test_what_does_not_scatter_has_no_error(method):
+    found = it.compare(parallel(10.0), series(10.0), J1, method)
+    values = [it.evaluate(car(10.0), J1, method).value for car in (parallel, series)]
+    assert found.difference.value == values[0] - values[1]
+    assert found.difference.standard_error == 0.0
+    assert found.difference.interval == (found.difference.value, found.difference.value)
+
+
+def test_both_get_as_many_roads_as_the_one_that_needs_more():
+    method = ExpectedValue(relative_error=1e-3, seed=3)
+    alone = [it.evaluate(car, J3, method).realisations for car in (parallel(10.0), series(100.0))]
+    assert alone[0] < alone[1]
+    for cars in ((parallel(10.0), series(100.0)), (series(100.0), parallel(10.0))):
+        found = it.compare(*cars, J3, method)
+        assert found.first.realisations == found.second.realisations == alone[1]
+        assert len(found.first.samples) == len(found.second.samples)
+
+
+def test_with_a_gap_differences_are_taken_road_by_road():
+    method = ExpectedValue(realisations=3, seed=1)
+    gap = paper_quarter_car(k | Damper(7353.0) - shaft - Gap(2e-4) - (Inerter(328.72) | Friction(10.0)))
+    assert method.controls(gap, J3, 3) is None
+    found = it.compare(gap, elastic(10.0), J3, method)
+    apart = np.array(found.first.samples) - np.array(found.second.samples)
+    assert found.difference.value == pytest.approx(apart.mean(), rel=1e-12)
+    assert found.difference.standard_error == pytest.approx(scipy.stats.sem(apart), rel=1e-9)
+    assert found.difference.interval == pytest.approx(
+        scipy.stats.t.interval(0.95, 2, loc=apart.mean(), scale=scipy.stats.sem(apart)), rel=1e-9
+    )
+
+
+def test_controls_that_explain_nothing_are_left_out():
+    rng = np.random.default_rng(0)
+    one, other = (Estimate(s.mean(), "N", realisations=10, samples=tuple(s)) for s in rng.normal(5.0, 1.0, (2, 10)))
+    plain = difference_of(one, other)
+    noise = [(rng.normal(0.0, 50.0, 10), rng.normal(0.0, 50.0, 400)) for _ in range(2)]
+    assert difference_of(one, other, noise) == plain
+    assert difference_of(one, other, [noise[0], None]) == plain
+    whole = [(np.array(e.samples), np.full(400, 7.0 + i)) for i, e in enumerate((one, other))]
+    assert difference_of(one, other, whole).value == pytest.approx(-1.0, abs=1e-12)
+    assert difference_of(one, other, whole).standard_error == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_comparison_is_as_good_as_the_worse_of_its_estimates():
+    bad = Status(StatusKind.INACCURATE, "so so")
+    for statuses in ((OK, bad), (bad, OK)):
+        one, other = (Estimate(1.0 + i, "N", s) for i, s in enumerate(statuses))
+        found = Comparison(one, other, Difference(-1.0, "N", 0.1, (-1.2, -0.8)))
+        assert found.status is bad
+        assert found.percent == -50.0
+        assert str(found) == "the first is 50 % ± 5 % better than the second"
+
+
+CASES = {
+    "light J1": (light, J1, ("sprung_acceleration",), "exact"),
+    "S3 J3": (series, J3, ("tyre_load",), "exact"),
+    "elastic J1": (elastic, J1, ("sprung_acceleration",), "exact"),
+    "half J1": (half_car, J1, ("sprung_acceleration", "pitch_acceleration"), "exact"),
+    "half J3 filtered": (half_car, TyreLoad(ROAD, high_pass=20.0), ("tyre_front_load", "tyre_rear_load"), "exact"),
+    "half J3 held": (half_car, J3, ("tyre_front_load", "tyre_rear_load"), "paper2008"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_small_friction_changes_each_road_as_predicted(case):
+    design, index, outputs, conventions = CASES[case]
+    system = piecewise(design(0.0))
+    question = index.question(system.mechanism)
+    way = drive(system, question, CONVENTIONS[conventions])
+    weights = [abs(output.weight) for output in question.outputs]
+    for seed in realisation_seeds(0, 0, 2):
+        power, status = squares(system, way, seed, outputs)
+        assert status.ok
+        rubbing = piecewise(design(2.0))
+        found, _ = squares(rubbing, way, seed, outputs)
+        change = (np.sqrt(found) - np.sqrt(power)) @ weights
+        assert first_order(rubbing, question, way)(seed) == pytest.approx(change, rel=0.05)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_mean_change_is_that_of_a_gaussian_motion(case):
+    """For a Gaussian velocity v, E[y sgn v] = sqrt(2/pi) E[y v] / sigma: statistical linearisation is exact for it."""
+    design, index, _, conventions = CASES[case]
+    here, more = ExpectedValue(seed=1, conventions=conventions).controls(design(1.0), index, 2)
+    method = it.StatisticalLinearisation(conventions)
+    expected = it.evaluate(design(1.0), index, method).value - it.evaluate(design(0.0), index, method).value
+    assert np.mean(more) == pytest.approx(expected, rel=0.05)
+    assert here.shape == (2,)
+
+
+def test_first_order_is_silent_where_it_knows_nothing():
+    loose = paper_quarter_car(k | Damper(4e3) - shaft - Gap(1e-4) - (Inerter(300.0) | Friction(10.0)))
+    assert ExpectedValue().controls(loose, J1, 2) is None
+    assert ExpectedValue().controls(series(10.0), it.LoadCarrying(1000.0), 2) is None
+    nothing = ExpectedValue().controls(series(0.0), J1, 2)
+    assert [part.tolist() for part in nothing] == [[0.0] * 2, [0.0] * nothing[1].size]

@@ -1,0 +1,289 @@
+"""Mean values over random roads against single simulations, quadrature and the norm; and what the method owns up to."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import scipy.signal
+import scipy.stats
+from strategies import paper_half_car, paper_quarter_car
+
+import inerter as it
+from inerter import (
+    Coordinate,
+    Damper,
+    ExpectedValue,
+    Friction,
+    Gap,
+    Inerter,
+    Mechanism,
+    Norm,
+    RideComfort,
+    Road,
+    Spring,
+    Strut,
+    TyreLoad,
+)
+from inerter.errors import DesignError, IndicatorError
+from inerter.methods.realisations import realisation_seeds
+
+ROAD = Road(roughness=5e-7, speed=25.0)
+J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
+LATE = 2.04 / 25.0
+k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
+TWO = ExpectedValue(realisations=2, seed=5)
+HELD = ExpectedValue(realisations=2, seed=5, conventions="paper2008")
+
+
+def quarter_car(friction):
+    return paper_quarter_car(k | Damper(7544.2) - (Inerter(366.52) | Friction(friction, "f")))
+
+
+def half_car(friction):
+    return paper_half_car(
+        k | Damper(4e3) - (Inerter(300.0) | Friction(friction)), Spring(100e3) | Damper(3e3) | Friction(0.5 * friction)
+    )
+
+
+OUTPUTS = {
+    "quarter J1": (quarter_car, J1, {"sprung_acceleration": 1.0}),
+    "quarter J3": (quarter_car, J3, {"tyre_load": 1.0}),
+    "half J1": (half_car, J1, {"sprung_acceleration": 1.0, "pitch_acceleration": 1.02}),
+    "half J3": (half_car, J3, {"tyre_front_load": 1.0, "tyre_rear_load": 1.0}),
+    "half J3 filtered": (half_car, TyreLoad(ROAD, high_pass=20.0), {"tyre_front_load": 1.0, "tyre_rear_load": 1.0}),
+}
+
+
+def roads(method):
+    return [it.multisine(ROAD, seed=seed) for seed in realisation_seeds(method.seed, 0, method.realisations)]
+
+
+def high_passed(samples, step, corner):
+    """Periodic samples through s/(s + corner) as a recursion in time (Tustin), run until it repeats."""
+    b, a = scipy.signal.bilinear([1.0, 0.0], [1.0, corner], 1.0 / step)
+    return scipy.signal.lfilter(b, a, np.tile(samples, 3))[-samples.size :]
+
+
+def outside(car, output, corner):
+    """Mean square of a linear output from the road but for the lines of its multisine, by quadrature over frequency."""
+    inputs = [r.name for r in car.mechanism().roads]
+    system = it.assemble(car, inputs, output).delayed("road", [0.0, LATE][: len(inputs)])
+
+    def gain(frequencies):
+        s = 2j * np.pi * frequencies
+        response = it.frequency_response(system, 2.0 * np.pi * frequencies)[:, 0, :].sum(axis=1)
+        return np.abs(response * (1.0 if corner is None else s / (s + corner))) ** 2
+
+    grid = np.geomspace(1e-3, 1e5, 200_001)
+    whole = np.trapezoid(gain(grid), grid)
+    lines = 0.1 * gain(0.1 * np.arange(1.0, 10_001.0)).sum()
+    return 2.0 * (2.0 * np.pi) ** 2 * ROAD.roughness * ROAD.speed * (whole - lines)
+
+
+@pytest.mark.parametrize("case", OUTPUTS)
+def test_each_road_is_one_simulation_and_what_lies_outside_its_band_is_added(case):
+    design, index, weights = OUTPUTS[case]
+    car, corner = design(100.0), index.high_pass if index is not J1 and index is not J3 else None
+    estimate = it.evaluate(car, index, TWO)
+    assert estimate.status.ok
+    assert estimate.unit == index.unit
+    assert not estimate.notes
+    for value, road in zip(estimate.samples, roads(TWO), strict=True):
+        run = it.simulate(car, road=road, initial="periodic")
+        expected = 0.0
+        for name, weight in weights.items():
+            samples = run[name][:-1] if corner is None else high_passed(run[name][:-1], 2e-4, corner)
+            expected += weight * math.sqrt(np.mean(samples**2) + outside(design(0.0), name, corner))
+        assert value == pytest.approx(expected, rel=2e-5)
+
+
+@pytest.mark.parametrize("case", [case for case in OUTPUTS if "filtered" not in case])
+def test_under_the_papers_conventions_roads_are_held_and_nothing_is_added(case):
+    design, index, weights = OUTPUTS[case]
+    estimate = it.evaluate(design(100.0), index, HELD)
+    assert estimate.status.ok
+    for value, road in zip(estimate.samples, roads(HELD), strict=True):
+        run = it.simulate(design(100.0), road=road.held(1e-3), initial="periodic", step=1e-3)
+        expected = 0.0
+        for name, weight in weights.items():
+            samples = run[name][:-1]
+            filtered = high_passed(samples, 1e-3, 2.0 * np.pi) if case == "half J3" else samples
+            expected += weight * math.sqrt(np.mean(filtered**2))
+        assert value == pytest.approx(expected, rel=1e-4 if case == "half J3" else 2e-6)
+
+
+@pytest.mark.parametrize("index", [J1, J3], ids=["J1", "J3"])
+@pytest.mark.parametrize("design", [quarter_car, half_car], ids=["quarter", "half"])
+def test_friction_that_vanishes_leaves_the_norm(design, index):
+    norm = it.evaluate(design(0.0), index, Norm()).value
+    linear = it.evaluate(design(0.0), index, TWO)
+    assert (linear.value, linear.standard_error, linear.realisations) == (norm, 0.0, 0)
+    values = [np.array(it.evaluate(design(f), index, TWO).samples) for f in (1e-6, 1e-3, 1.0)]
+    away = [np.abs(found / norm - 1.0).max() for found in values]
+    assert away[0] < 2e-6
+    assert away[0] < away[1] < 1e-4
+    assert away[2] < 5e-3
+
+
+def test_a_closed_gap_and_a_friction_of_zero_are_linear():
+    car = paper_quarter_car(k | Damper(4e3) - shaft - Gap(0.0) - (Inerter(300.0) | Friction(0.0)))
+    assert it.evaluate(car, J1, TWO).value == it.evaluate(car, J1, Norm()).value
+    held = it.evaluate(car, J1, HELD)
+    assert held.realisations == 2
+    assert held.value == pytest.approx(it.evaluate(car, J1, Norm("paper2008")).value, rel=0.01)
+
+
+def test_a_gap_is_simulated_and_closes_onto_the_norm():
+    def car(width):
+        return paper_quarter_car(k | Damper(4e3) - shaft - Gap(width) - Inerter(300.0))
+
+    norm = it.evaluate(car(0.0), J3, Norm()).value
+    wide, narrow = (it.evaluate(car(width), J3, TWO) for width in (1e-3, 1e-7))
+    assert wide.status.ok
+    assert not wide.notes
+    for value, road in zip(wide.samples, roads(TWO), strict=True):
+        run = it.simulate(car(1e-3), road=road, initial="periodic")
+        expected = np.mean(run["tyre_load"][:-1] ** 2) + outside(car(0.0), "tyre_load", None)
+        assert value == pytest.approx(math.sqrt(expected), rel=2e-5)
+    assert narrow.value == pytest.approx(norm, rel=1e-3)
+    assert abs(wide.value - norm) > 10.0 * abs(narrow.value - norm)
+
+
+def with_a_load(grip):
+    car = paper_quarter_car(k | Damper(4e3)).mechanism()
+    parts = (car.tyres, car.roads, car.forces, car.measures)
+    load = Strut("grip", grip, {"load": 1.0}, {"sprung": 1.0})
+    return Mechanism((*car.coordinates, Coordinate("load", 20.0)), (*car.struts, load), *parts)
+
+
+def test_a_part_that_friction_alone_holds_has_no_linear_model_and_a_note():
+    """A strong grip makes a heavier body, a weak one none, and then the load drifts."""
+    for force, mass, kind in ((5e3, 201.75, "ok"), (1e-3, 181.75, "inaccurate")):
+        found = it.evaluate(with_a_load(Friction(force)), J3, TWO)
+        assert found.status.kind == kind
+        assert "nothing is added" in found.notes[0]
+        alone = it.evaluate(it.QuarterCar(mass, 25.0, 120e3, k | Damper(4e3)), J3, Norm())
+        assert found.value == pytest.approx(alone.value, rel=5e-3)
+
+
+def test_friction_as_the_only_damping_is_simulated():
+    """The linear car is undamped and its norm infinite; that of the real one is not."""
+    found = it.evaluate(paper_quarter_car(k | Friction(500.0)), J1, TWO)
+    assert found.status.ok
+    assert "alone holds or damps a part" in found.notes[0]
+    for value, road in zip(found.samples, roads(TWO), strict=True):
+        run = it.simulate(paper_quarter_car(k | Friction(500.0)), road=road, initial="periodic")
+        assert value == pytest.approx(run["sprung_acceleration"][:-1].std(), rel=1e-3)
+
+
+def test_what_cannot_be_simulated_says_so():
+    stiff = it.evaluate(paper_quarter_car(k | Damper(4e3) | Damper(1e5) - (Inerter(1e-4) | Friction(10.0))), J1, TWO)
+    assert math.isnan(stiff.value)
+    assert stiff.status.kind == "failed"
+    assert "faster than the step" in stiff.status.message
+    ringing = it.evaluate(paper_quarter_car(k | Damper(0.3) | Friction(1e-4)), J1, HELD)
+    assert ringing.status.kind == "inaccurate"
+    assert "periods" in ringing.status.message
+    free = paper_quarter_car(k | Damper(it.free(1.0, 2e5, "c")) | Damper(1e5) - (Inerter(1e-4) | Friction(10.0)))
+    assert np.isnan(it.evaluate_many(free, J1, {"c": [4e3]}, TWO)).all()
+    assert TWO.objective(free, J1).values(np.array([[4e3]])) == math.inf
+    gap = paper_quarter_car(k | shaft - Gap(1e-3) - Spring(1e4))
+    assert it.evaluate(paper_quarter_car(k | Gap(1e-3) - Spring(1e4)), J1, TWO).status.kind == "marginal"
+    assert it.evaluate(gap, J1, TWO).status.kind in ("ok", "inaccurate")
+
+
+def test_the_same_seed_gives_the_same_roads_whatever_the_threads():
+    one = it.evaluate(quarter_car(100.0), J3, ExpectedValue(realisations=5, seed=3, jobs=1))
+    assert one == it.evaluate(quarter_car(100.0), J3, ExpectedValue(realisations=5, seed=3, jobs=3))
+    fewer = it.evaluate(quarter_car(100.0), J3, ExpectedValue(realisations=3, seed=3))
+    assert one.samples[:3] == fewer.samples
+    assert len(set(one.samples)) == 5
+    other = it.evaluate(quarter_car(100.0), J3, ExpectedValue(realisations=5, seed=4))
+    assert not set(one.samples) & set(other.samples)
+    assert it.evaluate(quarter_car(100.0), J3, ExpectedValue()).realisations == 8
+
+
+def test_seeds_of_realisations_do_not_meet():
+    seeds = [realisation_seeds(seed, 0, 50) for seed in range(20)]
+    assert len({s for row in seeds for s in row}) == 1000
+    assert realisation_seeds(7, 10, 50) == seeds[7][10:]
+
+
+def test_the_interval_is_students():
+    for count in (2, 3, 7):
+        found = it.evaluate(quarter_car(100.0), J1, ExpectedValue(realisations=count, seed=1))
+        error = scipy.stats.sem(found.samples)
+        assert found.value == pytest.approx(np.mean(found.samples), rel=1e-14)
+        assert found.standard_error == pytest.approx(error, rel=1e-12)
+        expected = scipy.stats.t.interval(0.95, count - 1, loc=found.value, scale=error)
+        assert found.interval == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_relative_error_is_reached_or_missed_with_a_sentence(monkeypatch):
+    found = it.evaluate(quarter_car(100.0), J3, ExpectedValue(relative_error=1e-3, seed=2))
+    assert found.status.ok
+    assert found.standard_error <= 1e-3 * found.value
+    assert found.realisations == len(found.samples) > 8
+    coarse = it.evaluate(quarter_car(100.0), J3, ExpectedValue(relative_error=0.05, seed=2))
+    assert coarse.realisations == 8
+    assert coarse.samples == found.samples[:8]
+    monkeypatch.setattr("inerter.methods.expected_value._MOST", 16)
+    missed = it.evaluate(quarter_car(100.0), J3, ExpectedValue(relative_error=1e-5, seed=2))
+    assert missed.status.kind == "inaccurate"
+    assert missed.realisations == 16
+    assert "after 16 roads" in missed.status.message
+
+
+def test_many_designs_and_objectives_are_single_estimates():
+    f, b = Friction(it.free(1.0, 200.0, "f")), Inerter(it.free(10.0, 500.0, "b"))
+    car = paper_quarter_car(k | Damper(7e3) - (b | f))
+    points = {"f": [10.0, 100.0], "b": [300.0, 200.0]}
+    many = it.evaluate_many(car, [J1, J3], points, TWO)
+    objective = TWO.objective(car, J3)
+    assert objective.costly
+    for row, f, b in zip(many, *points.values(), strict=True):
+        expected = [it.evaluate(car.with_values({"f": f, "b": b}), index, TWO).value for index in (J1, J3)]
+        assert row.tolist() == expected
+        order = [{"f": f, "b": b}[name] for name in car.free_values()]
+        assert objective.values(np.array([order])) == pytest.approx(expected[1], rel=1e-14)
+
+
+def test_an_adaptive_method_fixes_its_roads_for_a_search():
+    car = paper_quarter_car(k | Damper(it.free(6e3, 9e3, "c")) - (Inerter(366.52) | Friction(100.0)))
+    adaptive = ExpectedValue(relative_error=2e-3, seed=2)
+    roads = it.evaluate(car.with_values({"c": math.sqrt(6e3 * 9e3)}), J3, adaptive).realisations
+    expected = it.evaluate(car.with_values({"c": 6e3}), J3, ExpectedValue(realisations=roads, seed=2)).value
+    assert adaptive.objective(car, J3).values(np.array([[6e3]])) == pytest.approx(expected, rel=1e-14)
+
+
+WRONG = {
+    "one road": (lambda: ExpectedValue(realisations=1), "whole number from 2 on, got 1"),
+    "half a road": (lambda: ExpectedValue(realisations=2.5), "whole number from 2 on, got 2.5"),
+    "roads as truth": (lambda: ExpectedValue(realisations=True), "got True"),
+    "roads as text": (lambda: ExpectedValue(realisations="4"), "got '4'"),
+    "a negative seed": (lambda: ExpectedValue(seed=-1), "The seed is a whole number from 0 on"),
+    "a seed that is none": (lambda: ExpectedValue(seed=1.5), "The seed is a whole number"),
+    "no threads": (lambda: ExpectedValue(jobs=0), "number of threads is a whole number from 1 on"),
+    "both": (lambda: ExpectedValue(realisations=4, relative_error=0.01), "not both"),
+    "no error": (lambda: ExpectedValue(relative_error=0.0), "between 0 and 1, got 0.0"),
+    "an error of nan": (lambda: ExpectedValue(relative_error=math.nan), "between 0 and 1"),
+    "an error as text": (lambda: ExpectedValue(relative_error="1 %"), "between 0 and 1"),
+    "unknown conventions": (lambda: ExpectedValue(conventions="2008"), "known: exact, paper2008"),
+    "conventions in a list": (lambda: ExpectedValue(conventions=[]), "no conventions named"),
+    "no seed": (lambda: ExpectedValue(seed=None), "The seed is a whole number"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_numbers_are_one_clear_error(case):
+    request, words = WRONG[case]
+    with pytest.raises(IndicatorError) as refusal:
+        request()
+    assert words in str(refusal.value)
+
+
+def test_free_values_are_refused():
+    with pytest.raises(DesignError, match="free values: f"):
+        it.evaluate(paper_quarter_car(k | Friction(it.free(1.0, 2.0, "f"))), J1, TWO)

@@ -16,7 +16,7 @@ def mean_and_error(values: NDArray[np.float64]) -> tuple[float, float, tuple[flo
 
 
 def interval_of(mean: float, error: float, count: int) -> tuple[float, float]:
-    """The interval of 95 % confidence about the mean of `count` values by Student's t; the normal one if `count` is 0."""
+    """The interval of 95 % confidence about the mean of `count` values: Student's, or the normal one for none."""
     share = 0.5 + 0.5 * CONFIDENCE
     quantile = scipy.stats.t.ppf(share, count - 1) if count > 1 else scipy.stats.norm.ppf(share)
     reach = float(quantile) * error

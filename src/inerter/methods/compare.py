@@ -99,8 +99,9 @@ def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | 
     """The difference of two estimates, sample by sample where both have the same samples.
 
     `controls` hold for each design what is known of the same samples (samples,), and of many more (many,): it is taken
-    off sample by sample, and its mean over the many is added again, unless that makes the variance larger than by chance alone. (To
-    take the smaller of the two standard errors would understate it: those of few samples are small by chance too.)
+    off sample by sample, and its mean over the many is added again, unless that makes the variance larger than by
+    chance alone. (To take the smaller of the two standard errors would understate it: those of few samples are small by
+    chance too.)
     """
     samples = _samples(one, other), _samples(other, one)
     if not samples[0].size == samples[1].size > 1:

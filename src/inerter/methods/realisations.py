@@ -68,7 +68,7 @@ def check_drive(system: PiecewiseSystem, way: Drive) -> None:
 
 
 def squares(system: PiecewiseSystem, way: Drive, seed: int, outputs: Sequence[str]) -> tuple[Array, Status]:
-    """Mean squares (outputs,) of the outputs, filtered, over one period of the steady state on one realisation; or nan."""
+    """Mean squares (outputs,) of the filtered outputs over one period of the steady state on one road; or nan."""
     inputs = table(way, seed)
     state = initial_state(system, inputs.value[0], "rest")
     if way.corner is None:

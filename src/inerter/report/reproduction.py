@@ -65,8 +65,8 @@ _CAPTIONS = {
     ),
     drawn.METHODS: (
         "Increase of J1 and J3 by friction, printed designs of Table 1, by three methods; bars: two standard errors. "
-        "Method 1 drives the car with white noise of height, which moves the inerter far less than the road does: friction "
-        "then weighs about ten times more."
+        "Method 1 drives the car with white noise of height, which moves the inerter far less than the road does: "
+        "friction then weighs about ten times more."
     ),
     _NETWORKS: (
         "The layouts, and the device: spring k, damper c, inerter b; shaft k_s and c_s, backlash eps, friction f."

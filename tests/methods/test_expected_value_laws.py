@@ -1,0 +1,55 @@
+"""Mean values of random cars: positive numbers, or a status with a sentence, and no exception but the project's own."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from strategies import elements, logarithmic, networks, paper_half_car, paper_quarter_car
+
+import inerter as it
+from inerter import Damper, ExpectedValue, Friction, Gap, InerterError, RideComfort, Road, Spring, TyreLoad
+
+ROAD = Road(roughness=5e-7, speed=25.0)
+INDICES = [RideComfort(ROAD), TyreLoad(ROAD)]
+
+
+def honest(estimate):
+    """A positive value with its error, or none and the reason."""
+    if estimate.status.kind in ("ok", "inaccurate"):
+        assert 0.0 < estimate.value < math.inf
+        assert estimate.standard_error >= 0.0
+        assert estimate.interval[0] <= estimate.value <= estimate.interval[1]
+    else:
+        assert not 0.0 < estimate.value < math.inf
+    assert estimate.status.ok or estimate.status.message
+
+
+@settings(max_examples=12)
+@given(
+    networks(depth=1, most=3), elements(), logarithmic(1.0, 1e3), logarithmic(1e-5, 1e-2), st.booleans(), st.booleans()
+)
+def test_random_struts_with_friction_or_a_gap(inner, other, force, width, gap, held):
+    loose = Gap(width) if gap else Friction(force)
+    strut = Spring(3e4) | Damper(500.0) | (Spring(5e5) | Damper(1e3)) - (inner | Friction(force)) - (other | loose)
+    method = ExpectedValue(realisations=2, conventions="paper2008" if held else "exact")
+    for index in INDICES:
+        with suppress(InerterError):  # such as a gap between inertias
+            honest(it.evaluate(paper_quarter_car(strut), index, method))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_random_half_cars(seed):
+    rng = np.random.default_rng(seed)
+    front, rear = (
+        Spring(1e5) | Damper(s) | Friction(f) for s, f in zip([2e3, 3e3], rng.uniform(1, 500, 2), strict=True)
+    )
+    method = ExpectedValue(realisations=2, conventions=["exact", "paper2008", "exact"][seed])
+    for index in INDICES:
+        estimate = it.evaluate(paper_half_car(front, rear), index, method)
+        honest(estimate)
+        assert estimate.status.ok

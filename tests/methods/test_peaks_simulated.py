@@ -1,0 +1,100 @@
+"""Load carrying of designs with friction and gaps: against a scan over frequencies, scaling laws and the norm."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from strategies import paper_half_car, paper_quarter_car
+
+import inerter as it
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, Spring
+from inerter.errors import IndicatorError
+
+k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
+J5 = LoadCarrying(1000.0)
+SIMULATED = ExpectedValue()
+
+
+def parallel(size=1.0):
+    return paper_quarter_car(k | Damper(9301.3) | (Inerter(328.34) | Friction(100.0 * size)))
+
+
+def series(size=1.0):
+    return paper_quarter_car(k | Damper(11174.5) - (Inerter(1232.42) | Friction(100.0 * size)))
+
+
+def elastic(size=1.0):
+    return paper_quarter_car(k | Damper(10174.3) - shaft - (Inerter(888.29) | Friction(30.0 * size)))
+
+
+def backlash(size=1.0):
+    return paper_quarter_car(k | Damper(5e3) | shaft - Gap(2e-3 * size) - (Inerter(300.0) | Friction(20.0 * size)))
+
+
+def gain(car, frequency):
+    """R.m.s. displacement over r.m.s. force under a sine, after it repeats."""
+    push = it.sine(amplitude=1000.0, frequency=frequency)
+    run = it.simulate(car, forces={"sprung_force": push}, initial="periodic", step=push.period / 150)
+    return np.sqrt(np.mean(run["sprung_displacement"][:-1] ** 2)) / (1000.0 / np.sqrt(2.0))
+
+
+@pytest.mark.parametrize("design", [parallel, series, elastic, backlash])
+def test_every_maximum_of_a_fine_scan_is_there(design):
+    found = it.evaluate(design(), J5, SIMULATED)
+    assert found.status.ok
+    assert found.value == found.peaks[0].gain == max(peak.gain for peak in found.peaks)
+    assert (found.standard_error, found.interval) == (0.0, (found.value, found.value))
+    frequencies = np.geomspace(0.3, 9.0, 50)  # beyond, the strut sticks where the start has left it
+    scan = np.array([gain(design(), frequency) for frequency in frequencies])
+    assert scan.max() <= found.value * (1.0 + 1e-5)
+    inner = 1 + np.flatnonzero((scan[1:-1] > scan[:-2]) & (scan[1:-1] > scan[2:]))
+    assert inner.size
+    for i in inner:
+        near = [p for p in found.peaks if frequencies[i - 1] < p.omega / (2.0 * np.pi) < frequencies[i + 1]]
+        assert len(near) == 1
+        assert scan[i] * (1.0 - 1e-5) <= near[0].gain <= scan[i] * 1.03
+    for peak in (peak for peak in found.peaks if peak.omega > 0.0):
+        assert peak.gain == pytest.approx(gain(design(), peak.omega / (2.0 * np.pi)), rel=1e-4)
+
+
+@pytest.mark.parametrize("design", [series, backlash])
+def test_only_the_ratio_of_friction_and_gap_to_force_matters(design):
+    one = it.evaluate(design(1.0), LoadCarrying(800.0), SIMULATED)
+    other = it.evaluate(design(2.5), LoadCarrying(2000.0), SIMULATED)
+    assert other.value == pytest.approx(one.value, rel=1e-5)
+    assert [p.omega for p in other.peaks] == pytest.approx([p.omega for p in one.peaks], rel=5e-3)
+
+
+@pytest.mark.parametrize("design", [parallel, series, elastic])
+def test_a_large_force_finds_the_linear_peaks(design):
+    found = it.evaluate(design(1e-5), J5, SIMULATED)
+    linear = it.evaluate(design(0.0), J5, Norm())
+    assert found.value == pytest.approx(linear.value, rel=1e-5)
+    moving = [p for p in linear.peaks if p.omega > 0.0]
+    assert [p.gain for p in found.peaks if p.omega > 0.0] == pytest.approx([p.gain for p in moving], rel=1e-5)
+    assert it.evaluate(design(0.0), J5, SIMULATED).value == linear.value
+
+
+def test_under_the_papers_conventions_the_linear_peak_is_followed():
+    car = series()
+    exact, followed = (it.evaluate(car, J5, ExpectedValue(conventions=c)) for c in ("exact", "paper2008"))
+    linear = it.evaluate(series(0.0), J5, Norm()).peaks[0]
+    nearest = min(exact.peaks, key=lambda peak: abs(np.log((peak.omega or 1e-9) / linear.omega)))
+    assert followed.value == nearest.gain
+    assert followed.peaks == exact.peaks
+
+
+def test_a_half_car_answers_in_bounce():
+    strut = k | Damper(8e3) - (Inerter(500.0) | Friction(50.0))
+    car = paper_half_car(strut, strut)
+    found = it.evaluate(car, LoadCarrying(2000.0), SIMULATED)
+    harmonic = it.evaluate(car, LoadCarrying(2000.0), it.StatisticalLinearisation())
+    assert found.status.ok
+    assert found.value == pytest.approx(harmonic.value, rel=0.02)
+
+
+@pytest.mark.parametrize("design", [series, backlash])
+def test_without_an_amplitude_there_is_no_answer(design):
+    with pytest.raises(IndicatorError, match="Give its amplitude"):
+        it.evaluate(design(), LoadCarrying(), SIMULATED)
+    assert it.evaluate(series(0.0), LoadCarrying(), SIMULATED).status.ok

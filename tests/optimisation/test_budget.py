@@ -1,0 +1,237 @@
+"""Budgets against direct scans and roots of plain evaluations."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import scipy.optimize
+import scipy.stats
+from strategies import paper_half_car, paper_quarter_car
+
+import inerter as it
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad, budget
+from inerter import StatisticalLinearisation as Linearisation
+from inerter.errors import DesignError, IndicatorError, StatusKind
+from inerter.optimisation.budget import with_element
+
+ROAD = Road(roughness=5e-7, speed=25.0)
+J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
+shaft = Spring(1e6, "ks") | Damper(3200.0, "cs")
+
+
+def conventional(stiffness=120e3, damping=4674.8):
+    return paper_quarter_car(Spring(stiffness, "k") | Damper(damping, "c"))
+
+
+def series(stiffness=120e3, friction=0.0, damping=6666.4):
+    screw = shaft - (Inerter(363.55, "b") | Friction(friction, "f"))
+    return paper_quarter_car(Spring(stiffness, "k") | Damper(damping, "c") - screw)
+
+
+def value(car, index, method):
+    return it.evaluate(car, index, method).value
+
+
+def test_two_stiffness_curves_cross_where_their_values_are_equal():
+    def difference(stiffness):
+        return value(series(stiffness), J1, Norm()) - value(conventional(stiffness), J1, Norm())
+
+    scan = np.geomspace(1e4, 3e5, 400)
+    signs = np.sign([difference(s) for s in scan])
+    at = np.flatnonzero(np.diff(signs))
+    roots = [scipy.optimize.brentq(difference, scan[i], scan[i + 1]) for i in at]
+    assert len(roots) == 1
+    found = budget(series(), conventional(), J1, parameter="k", method=Norm(), bounds=(1e4, 3e5))
+    assert [c.value for c in found.crossings] == pytest.approx(roots, rel=3e-5)
+    assert found.value == found.crossings[0].value
+    assert found.crossings[0].better == "above"
+    assert (found.unit, found.parameter, found.bounds) == ("N/m", "k", (1e4, 3e5))
+    assert (found.standard_error, found.interval) == (0.0, (found.value, found.value))
+    assert found.status.ok
+
+
+def test_a_damper_of_the_design_alone_has_a_range():
+    """Better between two dampings: the smallest that beats the baseline is the budget, and both are crossings."""
+    found = budget(series(), conventional(), J3, parameter="c", method=Norm(), bounds=(500.0, 1e5))
+    scan = np.geomspace(500.0, 1e5, 300)
+    better = [value(series(damping=c), J3, Norm()) < value(conventional(damping=c), J3, Norm()) for c in scan]
+    edges = scan[1:][np.diff(better)]
+    assert [c.value for c in found.crossings] == pytest.approx(edges, rel=0.02)
+    alone = paper_quarter_car(Spring(120e3) | Damper(4674.8, "c0"))
+    found = budget(series(), alone, J3, parameter="c", method=Norm(), bounds=(500.0, 1e5))
+    level = value(alone, J3, Norm())
+    sides = [c.better for c in found.crossings]
+    assert sides == ["above", "below"]
+    for crossing in found.crossings:
+        assert value(series(damping=crossing.value), J3, Norm()) == pytest.approx(level, rel=1e-6)
+    assert found.value == found.crossings[0].value
+
+
+def test_friction_budget_by_a_root_and_larger_for_a_worse_baseline():
+    budgets = []
+    for damping in (4674.8, 5600.0, 6500.0):
+        level = value(conventional(damping=damping), J3, Norm())
+        root = scipy.optimize.brentq(lambda f, y=level: value(series(friction=f), J3, Linearisation()) - y, 1.0, 1.5e3)
+        found = budget(series(), conventional(damping=damping), J3, parameter="friction", method=Linearisation())
+        assert found.value == pytest.approx(root, rel=3e-5)
+        assert found.bounds == (0.1, 1e4)
+        assert found.unit == "N"
+        assert found.crossings[0].better == "below"
+        budgets.append(found.value)
+    assert budgets == sorted(budgets)
+
+
+def test_a_friction_budget_of_simulated_values_is_where_the_difference_vanishes():
+    method = ExpectedValue(realisations=3, seed=2)
+    found = budget(series(), conventional(), J3, parameter="f", method=method, bounds=(200.0, 2000.0))
+    assert found.status.ok
+    here = it.compare(series(friction=found.value), conventional(), J3, method)
+    assert abs(here.difference.value) < 0.02 * here.difference.standard_error
+    sides = [
+        it.compare(series(friction=found.value * r), conventional(), J3, method).difference.value for r in (0.9, 1.1)
+    ]
+    assert sides[0] < 0.0 < sides[1]
+    slope = (sides[1] - sides[0]) / (0.2 * found.value)
+    assert found.standard_error == pytest.approx(here.difference.standard_error / slope, rel=0.1)
+    reach = scipy.stats.t.ppf(0.975, 2) * found.standard_error / found.value
+    expected = (found.value * math.exp(-reach), found.value * math.exp(reach))
+    assert found.interval == pytest.approx(expected, rel=1e-6)
+
+
+def test_an_adaptive_method_keeps_its_roads_throughout():
+    method, fixed = ExpectedValue(relative_error=0.02, seed=2), ExpectedValue(realisations=8, seed=2)
+    wanted = {"parameter": "f", "bounds": (400.0, 1000.0)}
+    found, expected = (budget(series(), conventional(), J3, method=m, **wanted) for m in (method, fixed))
+    assert found == expected
+
+
+def test_a_gap_budget():
+    def backlash(width):
+        inner = shaft - Gap(width, "play") - (Inerter(363.55) | Friction(10.0))
+        return paper_quarter_car(Spring(120e3, "k") | Damper(6666.4) - inner)
+
+    method = ExpectedValue(realisations=2, seed=2, conventions="paper2008")
+    found = budget(backlash(0.0), conventional(), J3, parameter="gap", method=method, bounds=(1e-4, 2e-2))
+    assert found.status.ok
+    assert found.unit == "m"
+    inside, outside = (it.compare(backlash(found.value * r), conventional(), J3, method) for r in (0.95, 1.05))
+    assert inside.difference.value < 0.0 < outside.difference.value
+
+
+def test_better_or_worse_throughout_is_said():
+    best, worst = conventional(damping=4674.8), conventional(damping=100.0)
+    always = budget(series(), worst, J3, parameter="friction", method=Linearisation(), bounds=(1.0, 100.0))
+    assert always.status.kind is StatusKind.UNBOUNDED
+    assert always.status.message == "the design is better for every friction from 1 to 100 N"
+    never = budget(series(), best, J3, parameter="friction", method=Linearisation(), bounds=(2e3, 1e4))
+    assert never.status.kind is StatusKind.UNBOUNDED
+    assert "is not better for every friction from 2000 to 1e+04 N" in never.status.message
+    for found in (always, never):
+        assert found.crossings == ()
+        assert np.isnan([found.value, found.standard_error, *found.interval]).all()
+    poor = paper_quarter_car(Spring(120e3) | Damper(1000.0) | Friction(0.0))
+    only = budget(
+        poor, conventional(damping=1500.0), J3, parameter="friction", method=Linearisation(), bounds=(1.0, 500.0)
+    )
+    assert [c.better for c in only.crossings] == ["above"]
+    assert only.status.kind is StatusKind.UNBOUNDED
+    assert "beyond the crossings" in only.status.message
+
+
+def test_equal_at_a_bound_is_a_crossing_too():
+    at_bound = float(np.exp(np.log(8000.0)))
+    alone = paper_quarter_car(Spring(120e3) | Damper(at_bound, "c0"))
+    found = budget(conventional(), alone, J3, parameter="c", method=Norm(), bounds=(5000.0, 8000.0))
+    assert [c.value for c in found.crossings] == pytest.approx([8000.0], rel=1e-5)
+
+
+def test_values_that_cannot_be_had_are_not_taken_for_worse():
+    """A damper on next to no inertance is too stiff to simulate; what lies there stays unknown, and is said to be."""
+    method = ExpectedValue(realisations=2)
+    base = Spring(120e3) | Damper(4e3)
+    design = paper_quarter_car(base | Damper(1e5) - (Inerter(100.0, "b") | Friction(10.0)))
+    found = budget(design, paper_quarter_car(base), J3, parameter="b", method=method, bounds=(1e-4, 2e-4))
+    assert found.status.kind is StatusKind.FAILED
+    assert "faster than the step" in found.status.message
+
+
+def half_car(friction=0.0):
+    front = Spring(120e3, "k") | Damper(4e3) - shaft - (Inerter(300.0) | Friction(friction, "f"))
+    rear = Spring(100e3, "k") | Damper(3e3) - shaft - (Inerter(250.0) | Friction(2.0 * friction))
+    return paper_half_car(front, rear)
+
+
+def test_both_struts_of_a_half_car_change():
+    base = paper_half_car(Spring(120e3) | Damper(3.5e3), Spring(100e3) | Damper(3e3))
+
+    def same(f):
+        front = Spring(120e3) | Damper(4e3) - shaft - (Inerter(300.0) | Friction(f))
+        rear = Spring(100e3) | Damper(3e3) - shaft - (Inerter(250.0) | Friction(f))
+        return value(paper_half_car(front, rear), J3, Linearisation())
+
+    found = budget(half_car(), base, J3, parameter="friction", method=Linearisation())
+    root = scipy.optimize.brentq(lambda f: same(f) - value(base, J3, Norm()), 1.0, 1e4)
+    assert found.value == pytest.approx(root, rel=3e-5)
+    changed = with_element(half_car(), "k", 5e4)
+    assert [next(iter(s.network.elements())).value for s in changed.struts] == [5e4, 5e4]
+    assert [t.network.value for t in changed.tyres] == [120e3, 100e3]  # tyres keep theirs
+
+
+def test_bounds_by_default_lie_about_the_present_value():
+    found = budget(series(friction=10.0), conventional(), J3, parameter="f", method=Linearisation())
+    assert found.bounds == pytest.approx((0.01, 1e4))
+    assert found.evaluations > 16
+
+
+WRONG = {
+    "no such name": (lambda: budget(series(), conventional(), J3, parameter="q", method=Norm()), "named 'q'"),
+    "no gap there": (lambda: budget(series(), conventional(), J3, parameter="gap", method=Norm()), "Gap(0.0)"),
+    "two kinds": (
+        lambda: budget(
+            paper_quarter_car(Spring(1e5, "x") | Damper(1e3, "x")), conventional(), J3, parameter="x", method=Norm()
+        ),
+        "different kinds",
+    ),
+    "reversed bounds": (
+        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds=(2.0, 1.0)),
+        "positive and in order",
+    ),
+    "a bound of zero": (
+        lambda: budget(series(), conventional(), J3, parameter="f", method=Norm(), bounds=(0.0, 1.0)),
+        "positive and in order",
+    ),
+    "bounds of text": (
+        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds="12"),
+        "two numbers in SI units",
+    ),
+    "one bound": (
+        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds=5.0),
+        "two numbers in SI units",
+    ),
+    "an endless bound": (
+        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds=(1.0, math.inf)),
+        "two numbers in SI units",
+    ),
+    "a free value": (
+        lambda: budget(
+            paper_quarter_car(Spring(it.free(1e4, 1e5, "k"), "k") | Damper(1e3)),
+            conventional(), J3, parameter="k", method=Norm(),
+        ),
+        "is free; fix it",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_requests_are_one_clear_error(case):
+    request, words = WRONG[case]
+    with pytest.raises(DesignError) as refusal:
+        request()
+    assert words in str(refusal.value)
+
+
+def test_a_method_that_is_none():
+    with pytest.raises(IndicatorError, match="Expected a method"):
+        budget(series(), conventional(), J3, parameter="k", method="norm")

@@ -1,0 +1,88 @@
+"""Optima of simulated indices: against a simplex search on the same roads, and over the best linear design."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.optimize
+from strategies import paper_quarter_car
+
+import inerter as it
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, free
+
+J1 = RideComfort(Road(roughness=5e-7, speed=25.0))
+k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
+c = Damper(free(500.0, 5e4, "c"))
+
+
+def value(car, point, index, method):
+    return it.evaluate(car.with_values(dict(zip(car.free_values(), point, strict=True))), index, method).value
+
+
+def simplex(car, index, method, starts):
+    """The least value that Nelder and Mead find in logarithms."""
+    found = [
+        scipy.optimize.minimize(
+            lambda x: np.log(value(car, np.exp(x), index, method)),
+            np.log(start),
+            method="Nelder-Mead",
+            options={"xatol": 2e-3, "fatol": 1e-5, "maxfev": 60},
+        ).fun
+        for start in starts
+    ]
+    return float(np.exp(min(found)))
+
+
+def test_friction_moves_the_optimum_and_no_simplex_finds_less():
+    car = paper_quarter_car(k | c - (Inerter(free(10.0, 5e3, "b")) | Friction(100.0)))
+    method = ExpectedValue(realisations=4, seed=0)
+    best = it.optimise(car, J1, method)
+    linear = it.optimise(car, J1, Norm())
+    start = list(linear.parameters.values())
+    at_linear = value(car, start, J1, method)
+    assert best.status.ok
+    assert best.value <= at_linear * (1.0 + 1e-12)
+    assert best.value == pytest.approx(simplex(car, J1, method, [start, [4e3, 150.0]]), rel=1e-3)
+    assert best.value == it.evaluate(best.design, J1, method).value
+    assert best.design == car.with_values(best.parameters)
+    assert best.over_linear == it.compare(best.design, linear.design, J1, method)
+    assert best.over_linear.second.value == at_linear
+    assert best.over_linear.difference.value <= 0.0
+    assert 1 <= best.agreed <= best.starts
+    assert best.evaluations > best.starts
+
+
+def test_a_gap_is_searched_without_statistical_linearisation():
+    car = paper_quarter_car(k | c - shaft - Gap(5e-4) - Inerter(300.0))
+    method = ExpectedValue(realisations=2, seed=0)
+    best = it.optimise(car, J1, method, starts=2)
+    scan = np.geomspace(1e3, 3e4, 25)
+    assert best.status.ok
+    assert best.value <= min(value(car, [point], J1, method) for point in scan) * (1.0 + 1e-4)
+    assert best.over_linear is not None
+    assert best.over_linear.difference.value <= 0.0
+
+
+def test_load_carrying_is_searched_too():
+    car = paper_quarter_car(k | c - (Inerter(1000.0) | Friction(100.0)))
+    index, method = LoadCarrying(1000.0), ExpectedValue()
+    best = it.optimise(car, index, method, starts=1)
+    assert best.status.ok
+    scan = np.geomspace(2e3, 3e4, 25)
+    assert best.value <= min(value(car, [point], index, method) for point in scan) * (1.0 + 1e-4)
+    assert best.over_linear.difference.value <= 0.0
+
+
+def test_a_free_friction_has_no_best_linear_design():
+    """Linear analysis does not see it, so that there is nothing to compare with; less friction is better here."""
+    car = paper_quarter_car(k | Damper(7544.2) - (Inerter(366.52) | Friction(free(1.0, 100.0, "f"))))
+    best = it.optimise(car, J1, ExpectedValue(realisations=2, seed=0, conventions="paper2008"), starts=1)
+    assert best.over_linear is None
+    assert best.parameters["f"] < 5.0
+    assert best.status.ok
+
+
+def test_by_the_norm_there_is_nothing_over_linear():
+    assert it.optimise(paper_quarter_car(k | c), J1, Norm()).over_linear is None
+    best = it.optimise(paper_quarter_car(k | c), J1, it.StatisticalLinearisation())
+    assert best.over_linear.difference.value == pytest.approx(0.0, abs=1e-9)

@@ -135,7 +135,7 @@ class ExpectedValue:
         if change is None:
             return None
         seeds = realisation_seeds(self.seed, 0, count + _MORE)
-        changes = np.array([change(seed) for seed in seeds])
+        changes = change(seeds)
         return changes[:count], changes[count:]
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:

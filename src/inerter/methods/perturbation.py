@@ -7,7 +7,9 @@ transforms for a road, and explains most of what one road does that another does
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,8 @@ from numpy.typing import NDArray
 from inerter.indices.index import Question
 from inerter.kernels.arrays import FRICTION, KIND
 from inerter.methods.realisations import Drive, table
+from inerter.signals.harmonics import multisine
+from inerter.signals.road import Road
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
@@ -23,6 +27,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 _LINES = 1000  # of the road: what moves a vehicle lies below 100 Hz
 _TIMES = 8192  # a period
+_TOGETHER = 64  # roads at a time: 8 MB
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,20 +35,30 @@ class FirstOrder:
     """The change of an index of r.m.s. values by friction, to first order, on one road."""
 
     way: Drive
-    outputs: Complex  # (lines, outputs) for a line of the road of 1 m
-    velocities: Complex  # (lines, frictions) across the frictions, the same
-    responses: Complex  # (lines, outputs, frictions) of the outputs to sgn(v)
-    weights: Array  # (outputs,) w / (2 r.m.s.): of changes of mean squares in the index
+    velocities: Complex  # (lines, frictions) across the frictions, for a line of the road of 1 m
+    effects: Complex  # (lines, frictions) of a line of sgn(v) on the index, for a line of the road of 1 m
 
-    def __call__(self, seed: int) -> float:
-        """The change on the road of a realisation's seed [unit of the index]."""
-        road = self.way.signal(seed).coefficient[:_LINES, None]
-        spectrum = np.zeros((_TIMES // 2 + 1, self.velocities.shape[1]), dtype=complex)
-        spectrum[1 : len(road) + 1] = self.velocities * road
-        sides = np.sign(np.fft.irfft(spectrum, _TIMES, axis=0))
-        forces = np.fft.rfft(sides, axis=0)[1 : len(road) + 1] * (2.0 / _TIMES)
-        change = np.einsum("kof,kf->ko", self.responses, forces)
-        return float(np.real(np.conj(self.outputs * road) * change).sum(axis=0) @ self.weights)
+    def __call__(self, seeds: Sequence[int]) -> Array:
+        """The change on the roads of realisations' seeds (seeds,), in the unit of the index."""
+        parts = [seeds[i : i + _TOGETHER] for i in range(0, len(seeds), _TOGETHER)]
+        return np.concatenate([self._changes(part) for part in parts]) if parts else np.zeros(0)
+
+    def _changes(self, seeds: Sequence[int]) -> Array:
+        roads = np.array([_lines(self.way.road, seed) for seed in seeds])
+        total = np.zeros(len(seeds))
+        for velocity, effect in zip(self.velocities.T, self.effects.T, strict=True):
+            spectrum = np.zeros((len(seeds), _TIMES // 2 + 1), dtype=complex)
+            spectrum[:, 1 : _LINES + 1] = velocity * roads
+            sides = np.sign(np.fft.irfft(spectrum, _TIMES))
+            forces = np.fft.rfft(sides)[:, 1 : _LINES + 1] * (2.0 / _TIMES)
+            total += np.real(np.conj(roads) * forces @ effect)
+        return total
+
+
+@lru_cache(maxsize=1024)
+def _lines(road: Road, seed: int) -> Complex:
+    """The slow lines of a realisation."""
+    return multisine(road, seed).coefficient[:_LINES].copy()
 
 
 def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> FirstOrder | None:
@@ -80,7 +95,8 @@ def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> Firs
     if not np.all(np.isfinite(power)) or not np.all(power > 0.0) or count == 0:
         return None
     weights = np.array([abs(output.weight) for output in question.outputs]) / (2.0 * np.sqrt(power))
-    return FirstOrder(way, outputs, velocities, responses, weights)
+    effects = np.einsum("o,ko,kof->kf", weights, np.conj(outputs), responses)
+    return FirstOrder(way, velocities, effects)
 
 
 def _over_slip(system: PiecewiseSystem, question: Question) -> tuple[Array, Array]:

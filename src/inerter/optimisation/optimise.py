@@ -79,7 +79,8 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     same seed gives the same result.
 
     A method that simulates is searched without derivatives (COBYQA), from the best two among the best linear design and
-    the local optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the best.
+    the local optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the
+    best.
 
     Raises `DesignError` if nothing is free, if a free value has no effect in the method, or if `starts` is not a
     positive whole number; and what `evaluate` raises.

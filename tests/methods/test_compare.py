@@ -127,7 +127,7 @@ def test_a_design_against_itself():
 
 
 def test_a_linear_design_does_not_scatter_but_is_compared_road_by_road():
-    """What friction does to the other one to first order is known beforehand: a fifth of its scatter is left at 10 N."""
+    """What friction does to first order is known beforehand: at 10 N less than a third of its scatter is left."""
     for first, second, sign in ((series(0.0), series(10.0), 1.0), (series(10.0), series(0.0), -1.0)):
         found = it.compare(first, second, J3, ExpectedValue(seed=1))
         error = max(found.first.standard_error, found.second.standard_error)

@@ -55,6 +55,8 @@ def test_a_row_of_the_approximated_linear_model() -> None:
     row = judged(2, "J3 9")
     assert abs(row.difference) < 15e-3
     assert row.paper2008_error > 0.0
+    assert row.improvement is not None
+    assert abs(row.improvement - float(row.row.improvement)) < 1.5
 
 
 def test_every_simulated_row_is_there() -> None:

@@ -177,6 +177,8 @@ def _simulated_row(r: SimulatedRow) -> dict[str, Any]:
         "tolerance_percent": 100.0 * r.tolerance,
         "verdict": r.verdict,
         "reason": reason(r),
+        "improvement_printed_percent": r.row.improvement,
+        "improvement_percent": r.improvement,
         "omega_followed": r.omega,
         "peaks": "; ".join(f"{peak.omega:.6g} rad/s: {peak.gain:.6g}" for peak in r.peaks),
     }
@@ -459,6 +461,7 @@ def _simulated_table(found: Reproduction, number: int) -> Table | None:
                 Cell(typeset(_with_error(r.paper2008, r.paper2008_error))),
                 Cell(typeset(f"{_signed(100.0 * r.difference)} %")),
                 Cell(typeset(_with_error(r.exact, r.exact_error))),
+                *([] if r.improvement is None else [Cell(f"{r.improvement:.2f} %", f"printed {r.row.improvement}")]),
                 Cell(_printed_verdict(r), strong=r.verdict == "differs"),
             ],
             status=reason(r),
@@ -466,7 +469,8 @@ def _simulated_table(found: Reproduction, number: int) -> Table | None:
         for r in found.rows.values()
         if r.row.table == number
     ]
-    header = ["Design", "Printed", "paper2008", "Difference", "Exact", "Verdict"]
+    over = ["Improvement"] if number == 2 else []
+    header = ["Design", "Printed", "paper2008", "Difference", "Exact", *over, "Verdict"]
     method = "approximated linear model (Method 1)" if number == 2 else "expected value (Method 2)"
     return Table(f"Table {number} anew, {method}: J1 in m/s², J3 in N, J5 in m/N", header, rows) if rows else None
 

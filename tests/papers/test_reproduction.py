@@ -20,7 +20,7 @@ from inerter.papers.wang_su_2008.claims import Claim, Curves, Evidence, judge
 from inerter.papers.wang_su_2008.reproduce import JOURNAL, Task, work
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import simulated_rows, study
-from inerter.report.reproduction import reason
+from inerter.report.reproduction_rows import reason
 
 
 def judged(table: int, name: str) -> SimulatedRow:

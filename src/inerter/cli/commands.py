@@ -73,7 +73,9 @@ def reproduce(
 ) -> int:
     """Reproduce Wang and Su (2008), or some parts of it; returns the exit code."""
     from inerter.papers.wang_su_2008 import reproduce as paper
-    from inerter.report import reproduction as pages
+    from inerter.report.reproduction import write_reproduction
+    from inerter.report.reproduction_rows import tables
+    from inerter.report.reproduction_text import reproduction_text
 
     folder = output or Path(f"{KEY}-results")
     processes = _processes(jobs)
@@ -83,9 +85,9 @@ def reproduce(
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")
         return 1
-    pages.write_reproduction(found, folder)
+    write_reproduction(found, folder)
     _say(f"report: {folder / REPORT}")
-    print(json.dumps(pages.tables(found), indent=2) if as_json else pages.reproduction_text(found))
+    print(json.dumps(tables(found), indent=2) if as_json else reproduction_text(found))
     return max([_judge(result) for result in found.studies.values()], default=0)
 
 

@@ -25,6 +25,7 @@ _TOLERANCES = {
     (2, "friction 10 N"): 15e-3,
     (2, "friction 20 N"): 15e-3,
 }
+VERDICTS = EQUAL, WITHIN, DIFFERS = "agrees to the printed digits", "within the tolerance", "differs"
 _PEAK_TOLERANCE = {1: 3e-3, 2: 3e-2, 3: 3e-3}
 
 
@@ -59,8 +60,8 @@ class SimulatedRow:
     def verdict(self) -> str:
         """In words."""
         if abs(self.paper2008 - self.row.value) <= 1.000001 * self.row.last_digit:
-            return "agrees to the printed digits"
-        return "within the tolerance" if abs(self.difference) <= self.tolerance else "differs"
+            return EQUAL
+        return WITHIN if abs(self.difference) <= self.tolerance else DIFFERS
 
 
 def names(table: int) -> list[str]:

@@ -1,0 +1,152 @@
+"""The reproduction of a paper as plain rows, one list for each file."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator
+from typing import Any
+
+from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
+from inerter.papers.wang_su_2008.origins import origins
+from inerter.papers.wang_su_2008.reproduce import Reproduction
+from inerter.papers.wang_su_2008.rows import DIFFERS, SimulatedRow
+
+
+def tables(found: Reproduction) -> dict[str, list[dict[str, Any]]]:
+    """The reproduction as plain rows, by the name of the file that holds them."""
+    linear = found.linear
+    return {
+        "linear-rows": [_linear_row(c) for c in linear.compared] if linear else [],
+        "designs": [_design_row(f) for f in linear.found] if linear else [],
+        "simulated-rows": [_simulated_row(row) for row in found.rows.values()],
+        "curves": list(_curve_rows(found)),
+        "claims": [
+            {"claim": c.number, "statement": c.statement, "verdict": c.verdict, "evidence": c.evidence}
+            for c in found.claims
+        ],
+        "methods": method_points(found),
+        "optima": [_optimum_row(name, numbers) for name, numbers in found.optima.items()],
+        "budgets": [_budget_row(name, numbers) for name, numbers in found.budgets.items()],
+        "origins": [{"title": o.title, "text": o.text} for o in origins(found)],
+    }
+
+
+def csv_text(rows: list[dict[str, Any]]) -> str:
+    columns = dict.fromkeys(column for row in rows for column in row)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(columns), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def reason(r: SimulatedRow) -> str:
+    """Why a row differs from the printed one, as far as can be told; empty if it does not."""
+    if r.verdict != DIFFERS:
+        return ""
+    if r.row.index == "J5" and r.row.table == 2:
+        return (
+            "a maximum of raw gains has no expectation where friction adds output of its own; how it was averaged "
+            "there is not printed. Here: smoothed over 0.2 Hz to both sides"
+        )
+    if not r.row.has_friction:
+        return "the printed value differs from the linear norm beside it, which a linear design cannot do"
+    return "no convention that was tried explains the difference"
+
+
+def _linear_row(c: ComparedRow) -> dict[str, Any]:
+    return {
+        "table": c.row.table,
+        "index": c.row.index,
+        "case": c.row.case,
+        "layout": c.row.layout,
+        "unit": c.unit,
+        "printed": c.row.value,
+        "paper2008": c.paper2008,
+        "exact": c.exact,
+        "off_by_last_digits": c.off_by,
+        "exact_over_printed_percent": 100.0 * (c.exact / c.row.value - 1.0),
+        "agrees": c.agrees,
+        **{f"{name} printed": value for name, value in c.row.parameters.items()},
+    }
+
+
+def _design_row(f: FoundDesign) -> dict[str, Any]:
+    return {
+        "table": f.row.table,
+        "index": f.row.index,
+        "case": f.row.case,
+        "layout": f.row.layout,
+        "unit": f.unit,
+        "printed": f.row.value,
+        "found": f.value,
+        "gain_percent": f.gain_percent,
+        "agreed": f.agreed,
+        "starts": f.starts,
+        **{f"{name} printed": value for name, value in f.row.parameters.items()},
+        **{f"{name} found": value for name, value in f.parameters.items()},
+    }
+
+
+def _simulated_row(r: SimulatedRow) -> dict[str, Any]:
+    return {
+        "table": r.row.table,
+        "index": r.row.index,
+        "case": r.row.case,
+        "design": r.row.title,
+        "unit": r.unit,
+        "printed": r.row.value,
+        "paper2008": r.paper2008,
+        "paper2008_standard_error": r.paper2008_error,
+        "exact": r.exact,
+        "exact_standard_error": r.exact_error,
+        "difference_percent": 100.0 * r.difference,
+        "tolerance_percent": 100.0 * r.tolerance,
+        "verdict": r.verdict,
+        "reason": reason(r),
+        "improvement_printed_percent": r.row.improvement,
+        "improvement_percent": r.improvement,
+        "omega_followed": r.omega,
+        "peaks": "; ".join(f"{peak.omega:.6g} rad/s: {peak.gain:.6g}" for peak in r.peaks),
+    }
+
+
+def _curve_rows(found: Reproduction) -> Iterator[dict[str, Any]]:
+    if found.curves is None:
+        return
+    data = found.curves
+    for layout in data["layout"].values.tolist():
+        for index in data["index"].values.tolist():
+            here = data.sel(layout=layout, index=index)
+            for i, k in enumerate(data["k"].values.tolist()):
+                yield {
+                    "layout": layout,
+                    "index": index,
+                    "k [N/m]": k,
+                    "value": float(here["value"][i]),
+                    "standard_error": float(here["standard_error"][i]),
+                    "improvement_percent": float(here["improvement"][i]),
+                    "status": str(here["status"][i].item()),
+                }
+
+
+def method_points(found: Reproduction) -> list[dict[str, Any]]:
+    points = []
+    for name, numbers in found.methods.items():
+        index, layout, force = name.split()
+        kept = {key: value for key, value in numbers.items() if key != "seconds"}
+        points.append({"index": index, "layout": layout, "friction": float(force), **kept})
+    return points
+
+
+def _optimum_row(name: str, numbers: dict[str, Any]) -> dict[str, Any]:
+    index, layout = name.split()
+    parameters = {f"{key} found": value for key, value in numbers["parameters"].items()}
+    plain = {key: value for key, value in numbers.items() if key not in ("parameters", "seconds")}
+    return {"index": index, "layout": layout, **plain, **parameters}
+
+
+def _budget_row(name: str, numbers: dict[str, Any]) -> dict[str, Any]:
+    index, layout, what = name.split(maxsplit=2)
+    return {"index": index, "layout": layout, "of": what, **{k: v for k, v in numbers.items() if k != "seconds"}}

@@ -33,10 +33,10 @@ def test_transform_is_the_plain_sum(seed, harmonics, points, start, count):
     step = signal.period / points
     times = start + step * np.arange(count)
     peak = math.sqrt(2.0 * harmonics)
-    turns = harmonics * np.abs(times).max()  # a time is known to 1e-16 of itself, and so is the phase in turns
+    phase = 2.0 * math.pi * harmonics * np.abs(times).max()  # a time, and so a phase, is known to a unit of rounding
     expected = plain_sum(signal, times)
     for got, want, size in zip(signal._by_transform(start, points, count), expected, (1.0, 7 * harmonics), strict=True):
-        assert np.abs(got - want).max() <= (1e-13 + 4e-16 * turns) * peak * size
+        assert np.abs(got - want).max() <= (1e-13 + np.finfo(float).eps * phase) * peak * size
 
 
 def test_transform_agrees_to_1e_12():

@@ -8,15 +8,15 @@ from math import hypot
 from typing import Any
 
 import numpy as np
-import scipy.stats
 from numpy.typing import NDArray
 
 from inerter.errors import Status
 from inerter.indices.index import Index
-from inerter.methods.averages import CONFIDENCE, interval_of, mean_and_error
+from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.method import Controlled, Estimate, Method, evaluate
 from inerter.vehicle.cars import Vehicle
 
+_FEWEST = 4  # samples for a regression
 Controls = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
@@ -98,27 +98,33 @@ def compare(
 def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | None] = ()) -> Difference:
     """The difference of two estimates, sample by sample where both have the same samples.
 
-    `controls` hold for each design what is known of the same samples (samples,), and of many more (many,): it is taken
-    off sample by sample, and its mean over the many is added again, unless that makes the variance larger than by
-    chance alone. (To take the smaller of the two standard errors would understate it: those of few samples are small by
-    chance too.)
+    `controls` hold for each design what is known of the same samples (samples,), and of many more (many,). From four
+    samples on, and if the many are more, the difference is regressed on theirs, and is that at their mean over the
+    many: exact for normal values, with two degrees of freedom less than samples (Lavenberg and Welch 1981).
     """
     samples = _samples(one, other), _samples(other, one)
-    if not samples[0].size == samples[1].size > 1:
+    count = samples[0].size
+    if not count == samples[1].size > 1:
         value = one.value - other.value
         error = hypot(one.standard_error or 0.0, other.standard_error or 0.0)
-        return Difference(value, one.unit, error, interval_of(value, error, max(samples[0].size, samples[1].size)))
+        return Difference(value, one.unit, error, interval_of(value, error, max(count, samples[1].size)))
     differences = samples[0] - samples[1]
-    value, alone, interval = mean_and_error(differences)
-    if len(controls) == 2 and controls[0] is not None and controls[1] is not None:
-        here, more = (a - b for a, b in zip(*controls, strict=True))
-        rest, error, _ = mean_and_error(differences - here)
-        added, further, _ = mean_and_error(more)
-        error = hypot(error, further)
-        by_chance = float(scipy.stats.f.ppf(CONFIDENCE, differences.size - 1, differences.size - 1))
-        if error**2 <= by_chance * alone**2:
-            return Difference(rest + added, one.unit, error, interval_of(rest + added, error, differences.size))
-    return Difference(value, one.unit, alone, interval)
+    value, error, interval = mean_and_error(differences)
+    if count < _FEWEST or len(controls) != 2 or controls[0] is None or controls[1] is None:
+        return Difference(value, one.unit, error, interval)
+    here, more = (a - b for a, b in zip(*controls, strict=True))
+    if more.size <= count:
+        return Difference(value, one.unit, error, interval)
+    centred, shift = here - here.mean(), float(more.mean() - here.mean())
+    spread = float(centred @ centred)
+    if spread == 0.0:
+        return Difference(value, one.unit, error, interval)
+    slope = float(centred @ differences) / spread
+    rest = differences - value - slope * centred
+    variance = float(rest @ rest) / (count - 2) * (1.0 / count + shift**2 / spread)
+    error = float(np.sqrt(variance + slope**2 * np.var(more, ddof=1) / more.size))
+    value += slope * shift
+    return Difference(value, one.unit, error, interval_of(value, error, count - 1))
 
 
 def _samples(estimate: Estimate, other: Estimate) -> NDArray[np.float64]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -110,16 +112,37 @@ def reproduce(
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
     with claimed(folder, own=_OWN, resume=resume, force=force):
-        studies = {
-            name: run_study(study(name), folder / name, jobs=jobs, resume=resume, progress=_named(progress, name))
-            for name in needed
-        }
+        with _compiling_beside(jobs > 1 and bool(needed) and wanted > {"linear"}):
+            studies = {
+                name: run_study(study(name), folder / name, jobs=jobs, resume=resume, progress=_named(progress, name))
+                for name in needed
+            }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
         tasks = [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
         tasks += [Task(part, name) for part in ("table2", "table3", "table1") if part in wanted for name in _rows(part)]
         tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
         found = _run(tasks, folder / JOURNAL, jobs, resume, progress)
     return _put_together(tuple(part for part in PARTS if part in wanted), studies, found)
+
+
+@contextmanager
+def _compiling_beside(wanted: bool) -> Iterator[None]:
+    """Meanwhile another process goes through some quick tasks, which compiles what simulations need if it is not yet."""
+    if not wanted:
+        yield
+        return
+    process = multiprocessing.get_context("spawn").Process(target=_warm_up, daemon=True)
+    process.start()
+    try:
+        yield
+        process.join()
+    finally:
+        process.terminate()
+
+
+def _warm_up() -> None:
+    for part, name in (("table1", "J5 4"), ("table1", "J1 4"), ("table3", "J1 3"), ("table3", "J5 3")):
+        work(Task(part, name))
 
 
 def _put_together(

@@ -127,7 +127,7 @@ def reproduce(
 
 @contextmanager
 def _compiling_beside(wanted: bool) -> Iterator[None]:
-    """Meanwhile another process goes through some quick tasks, which compiles what simulations need if it is not yet."""
+    """Meanwhile another process goes through some quick tasks, and so compiles what simulations need."""
     if not wanted:
         yield
         return

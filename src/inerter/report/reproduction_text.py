@@ -13,6 +13,7 @@ from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import VERDICTS, SimulatedRow
 from inerter.papers.wang_su_2008.source import TITLE
 from inerter.report.text import WIDTH
+from inerter.units import format_quantity
 
 _SIGNS = dict(zip(VERDICTS, "=~!", strict=True))
 
@@ -101,9 +102,9 @@ def _simulated_text(table: int, rows: list[SimulatedRow]) -> list[str]:
             WIDTH,
         ),
         "",
-        f"{'index':6}{'design':34}{'printed':>11}{'paper2008':>10}{'':>9}{'exact':>10}",
+        f"{'index':6}{'design':33}{'printed':>10}{'paper2008':>12}{'':>9}{'exact':>10}",
         *(
-            f"{r.row.index:4}{_SIGNS[r.verdict]:2}{r.row.title:34}{r.row.printed:>11}{r.paper2008:>10.5g}"
+            f"{r.row.index:4}{_SIGNS[r.verdict]:2}{r.row.title:33}{r.row.printed:>10}{r.paper2008:>12.5g}"
             f"{100.0 * r.difference:>+7.2f} %{r.exact:>10.4g}"
             for r in rows
         ),
@@ -121,7 +122,7 @@ def budget_value(numbers: dict[str, Any]) -> str:
     if numbers["value"] != numbers["value"]:
         return str(numbers["status"]).removeprefix("unbounded: ")
     error = numbers["error"]
-    about = f" ± {printed(error, numbers['unit'])}" if error else ""
+    about = f" ± {format_quantity(error, numbers['unit'], digits=2)}" if error else ""
     return f"{printed(numbers['value'], numbers['unit'])}{about}".replace("\N{NO-BREAK SPACE}", " ")
 
 

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -141,6 +142,7 @@ def _compiling_beside(wanted: bool) -> Iterator[None]:
 
 
 def _warm_up() -> None:
+    import_module("inerter.simulation.event_driven")  # first what the linear studies do not compile themselves
     for part, name in (("table1", "J5 4"), ("table1", "J1 4"), ("table3", "J1 3"), ("table3", "J5 3")):
         work(Task(part, name))
 

@@ -253,3 +253,21 @@ def test_a_changed_kernel_is_compiled_again(tmp_path):
     assert changed != text
     flow.write_text(changed)
     assert said()[0] == 6.0
+
+
+def test_threads_that_compile_at_once_keep_their_files_in_the_cache(tmp_path):
+    """The compiler's settings belong to the whole process; a thread must not see those of another."""
+    program = textwrap.dedent(
+        """
+        from concurrent.futures import ThreadPoolExecutor
+        from inerter.kernels.march import march_of
+        with ThreadPoolExecutor(6) as pool:
+            list(pool.map(lambda n: march_of(n, (1,), 1, 0, 0), range(1, 7)))
+        """
+    )
+    work, cache = tmp_path / "work", tmp_path / "cache"
+    work.mkdir()
+    environment = {"PYTHONPATH": str(Path(it.__file__).parents[1]), "XDG_CACHE_HOME": str(cache), "HOME": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", program], env=environment, cwd=work, capture_output=True, check=True)
+    assert list(work.iterdir()) == []
+    assert len(list(cache.rglob("march-*/**/*.nbc"))) == 6

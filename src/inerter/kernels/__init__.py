@@ -16,11 +16,13 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from threading import RLock
 from typing import Any, TypeVar, cast
 
 import numba
 
 F = TypeVar("F", bound=Callable[..., Any])
+_ALONE = RLock()
 
 _IMPORTED = re.compile(r"^from inerter\.kernels\.(\w+) import", re.MULTILINE)
 
@@ -63,7 +65,15 @@ def _tell() -> None:
 
 
 def compiled(function: F, signature: Any = None, *, fused: bool = False, borrowing: bool = False) -> F:
-    """Compile on first use, or at once for a given signature, and keep the result between processes."""
+    """Compile on first use, or at once for a given signature, and keep the result between processes.
+
+    One thread at a time: the compiler's settings, such as where it keeps its files, belong to the whole process.
+    """
+    with _ALONE:
+        return _compiled(function, signature, fused, borrowing)
+
+
+def _compiled(function: F, signature: Any, fused: bool, borrowing: bool) -> F:
     folder = cache_folder(Path(function.__code__.co_filename))
     if not any(folder.iterdir()):
         _tell()

@@ -6,15 +6,21 @@ import shutil
 import subprocess
 import sys
 import textwrap
+import time
+from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 from scipy.io import loadmat
 
 import inerter as it
+from inerter import kernels
 from inerter.errors import SimulationError
+from inerter.kernels.events import over_columns
+from inerter.kernels.flow import first_root
 
 ROAD = it.Road(roughness=5e-7, speed=25)
 
@@ -255,19 +261,22 @@ def test_a_changed_kernel_is_compiled_again(tmp_path):
     assert said()[0] == 6.0
 
 
-def test_threads_that_compile_at_once_keep_their_files_in_the_cache(tmp_path):
-    """The compiler's settings belong to the whole process; a thread must not see those of another."""
-    program = textwrap.dedent(
-        """
-        from concurrent.futures import ThreadPoolExecutor
-        from inerter.kernels.march import march_of
-        with ThreadPoolExecutor(6) as pool:
-            list(pool.map(lambda n: march_of(n, (1,), 1, 0, 0), range(1, 7)))
-        """
-    )
-    work, cache = tmp_path / "work", tmp_path / "cache"
-    work.mkdir()
-    environment = {"PYTHONPATH": str(Path(it.__file__).parents[1]), "XDG_CACHE_HOME": str(cache), "HOME": str(tmp_path)}
-    subprocess.run([sys.executable, "-c", program], env=environment, cwd=work, capture_output=True, check=True)
-    assert list(work.iterdir()) == []
-    assert len(list(cache.rglob("march-*/**/*.nbc"))) == 6
+def test_threads_that_compile_at_once_do_not_see_each_others_settings(monkeypatch):
+    """The compiler's settings, such as where it keeps its files, belong to the whole process."""
+    kept = []
+
+    def slow(signature, **options):
+        def compiler(function):
+            folder = numba.config.CACHE_DIR
+            time.sleep(0.02)
+            kept.append(folder != "" and folder == numba.config.CACHE_DIR)
+            return function
+
+        return compiler
+
+    before = numba.config.CACHE_DIR
+    monkeypatch.setattr(numba, "njit", slow)
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(kernels.compiled, [first_root.py_func, over_columns.py_func] * 4))
+    assert kept == [True] * 8
+    assert before == numba.config.CACHE_DIR

@@ -29,6 +29,11 @@ class Difference:
     standard_error: float
     interval: tuple[float, float]  # of 95 % confidence
 
+    @property
+    def reach(self) -> float:
+        """Half the width of the interval."""
+        return 0.5 * (self.interval[1] - self.interval[0])
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -63,9 +68,9 @@ def compare(
 ) -> Comparison:
     """Two designs by one index and one method, with the standard error of their difference.
 
-    A method that keeps its samples (`ExpectedValue`) drives both over the same roads, as many for both, and the
-    difference is averaged road by road: what the roads do to both alike cancels. What friction does to first order,
-    which is quickly computed, is averaged over many more roads, and only the rest over these (a control variate).
+    A method that averages drives both over the same roads, as many for both, and the difference is averaged road by
+    road: what the roads do to both alike cancels. What friction does to first order, which is quickly computed, is
+    averaged over many more roads by `ExpectedValue`, and only the rest over these (a control variate).
     Standard errors of numbers without samples add up as independent ones. `known` is the estimate of the second by this
     very method, if it is there already.
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import scipy.optimize
-import scipy.stats
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
@@ -209,9 +208,8 @@ def _crossing(difference: Callable[[float], float], known: dict[float, Compariso
     slope = (difference(root + _SLOPE) - difference(root - _SLOPE)) / (2.0 * _SLOPE)
     difference(root)
     here = known[root]
-    error = here.difference.standard_error / abs(slope) if slope else np.inf
-    count = max(here.first.realisations, here.second.realisations)
-    reach = float(scipy.stats.t.ppf(0.975, count - 1)) * error if count > 1 else 0.0
+    found = here.difference
+    error, reach = (part / abs(slope) if slope else np.inf for part in (found.standard_error, found.reach))
     value = float(np.exp(root))
     with np.errstate(over="ignore"):
         interval = (value * float(np.exp(-reach)), value * float(np.exp(reach)))

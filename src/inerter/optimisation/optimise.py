@@ -97,13 +97,9 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     with one_blas_thread():
         linear = None if isinstance(method, Norm) else _linear_optimum(vehicle, index, method, seed, starts)
         if objective.costly:
-            first = [linear] if linear is not None else []
+            first = [] if linear is None else [linear]
             first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)
-            tried = _apart(first)
-            values = objective.values(np.array(tried)) if tried else np.zeros(0)
-            best_first = np.argsort(values, kind="stable")[:_MOST_CREEPS]
-            found = [creep(objective, tried[i], lower, upper) for i in best_first]
-            evaluations = len(tried)
+            found, evaluations = _costly_searches(objective, _apart(first), lower, upper)
         else:
             first, evaluations = _starting_points(objective, lower, upper, starts, seed)
             found = _searches(objective, first, lower, upper)
@@ -118,9 +114,8 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     design = vehicle.with_values(parameters)
     over_linear = None
     if linear is not None:
-        over_linear = compare(
-            design, vehicle.with_values(dict(zip(variables, linear.tolist(), strict=True))), index, method
-        )
+        best_linear = vehicle.with_values(dict(zip(variables, linear.tolist(), strict=True)))
+        over_linear = compare(design, best_linear, index, method)
     return Optimum(
         estimate=over_linear.first if over_linear else _confirmed(method.estimate(design, index), best.value),
         parameters=parameters,
@@ -168,6 +163,15 @@ def _apart(points: list[Array]) -> list[Array]:
         if all(np.abs(np.log(point / other)).max() > _APART for other in chosen):
             chosen.append(point)
     return chosen[:_MOST_TRIED]
+
+
+def _costly_searches(
+    objective: Objective, tried: list[Array], lower: Array, upper: Array
+) -> tuple[list[LocalOptimum], int]:
+    """A search from each of the best two starts, and how many starts were valued to tell which they are."""
+    values = objective.values(np.array(tried)) if tried else np.zeros(0)
+    best_first = np.argsort(values, kind="stable")[:_MOST_CREEPS]
+    return [creep(objective, tried[i], lower, upper) for i in best_first], len(tried)
 
 
 def _searches(objective: Objective, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:

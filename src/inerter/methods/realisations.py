@@ -14,6 +14,7 @@ from inerter.indices.index import Question
 from inerter.methods.linear import Conventions, corner_of
 from inerter.signals.harmonics import Harmonics, multisine
 from inerter.signals.road import Road
+from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
 from inerter.simulation.observe import trajectory_of
 from inerter.simulation.start import initial_state
@@ -63,7 +64,7 @@ def table(way: Drive, seed: int) -> InputTable:
 def check_drive(system: PiecewiseSystem, way: Drive) -> None:
     """Raises `SimulationError` if the mechanism cannot be driven over roads that are held."""
     if way.hold is not None:
-        held = way.signal(0).held(way.hold)
+        held = Signal(label=f"a road held for {way.hold:g} s", hold="zero")
         check_holds(system, [held for _ in way.delays])
 
 

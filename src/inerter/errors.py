@@ -45,6 +45,14 @@ class SimulationError(InerterError, ValueError):
     """A simulation that cannot be run as it was asked for."""
 
 
+class RecordError(InerterError, ValueError):
+    """A measured record, or a file of one, that cannot be used."""
+
+
+class IdentificationError(InerterError, ValueError):
+    """A model and records from which nothing can be identified."""
+
+
 class StudyError(InerterError, ValueError):
     """A study file, or a result folder, that cannot be used."""
 

@@ -1,0 +1,1 @@
+"""Measured records: reading them, judging them, preparing them, and their frequency response."""

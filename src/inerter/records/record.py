@@ -1,0 +1,139 @@
+"""A measured record: force and displacement over time, where they came from and what was done to them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import RecordError
+
+Matrix = NDArray[np.float64]
+CHANNELS = {"time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2"}
+UNIFORM = 1e-3  # of an interval: times that stray less from an even spacing count as even
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """What a rig measured: channels of one length over uniform or other increasing time, in SI units.
+
+    The displacement is that of the moved end of the device; the force is positive in tension, as everywhere here.
+    `notes` say, one sentence each, what was done to the channels since they were received.
+
+    Raises `RecordError` for channels that are no finite real vectors of one length of at least 4, or times that do
+    not increase.
+    """
+
+    time: Matrix  # (n,) [s]
+    displacement: Matrix  # (n,) [m]
+    force: Matrix  # (n,) [N]
+    velocity: Matrix | None = None  # (n,) [m/s], where it was measured
+    acceleration: Matrix | None = None  # (n,) [m/s^2], where it was measured
+    source: str = "record"
+    notes: tuple[str, ...] = ()
+    force_range: float | None = None  # [N] the largest force that the load cell can tell, where it is known
+    period: float | None = None  # [s] of the excitation, where it is known to repeat
+    meta: dict[str, Any] = field(default_factory=dict)  # what else the file said, such as its units
+
+    def __post_init__(self) -> None:
+        size = None
+        for name, values in self.channels().items():
+            array = np.asarray(values)
+            if array.ndim != 1 or array.dtype.kind not in "fiu":
+                raise RecordError(
+                    f"The {name} of a record must be a vector of real numbers, got {array.dtype}, shape {array.shape}."
+                )
+            array = np.ascontiguousarray(array, dtype=float)
+            size = array.size if size is None else size
+            if array.size != size:
+                raise RecordError(
+                    f"The channels of a record must have one length; time has {size} samples, {name} {array.size}."
+                )
+            bad = np.flatnonzero(~np.isfinite(array))
+            if bad.size:
+                raise RecordError(
+                    f"The {name} of {self.source!r} has {bad.size} samples that are no finite numbers, the first at "
+                    f"sample {bad[0]}. Trim them away, or read the file with gaps='fill'."
+                )
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if self.time.size < 4:
+            raise RecordError(f"A record needs at least 4 samples, {self.source!r} has {self.time.size}.")
+        if not np.all(np.diff(self.time) > 0.0):
+            at = int(np.argmax(np.diff(self.time) <= 0.0)) + 1
+            raise RecordError(
+                f"The times of {self.source!r} must increase, but do not at sample {at} (t = {self.time[at]:g} s)."
+            )
+        for name in ("force_range", "period"):
+            value = getattr(self, name)
+            if value is not None and (not is_number(value) or value <= 0.0):
+                raise RecordError(f"The {name} of a record must be a positive number, got {value!r}.")
+
+    def channels(self) -> dict[str, Matrix]:
+        """All channels that there are, by name."""
+        return {name: getattr(self, name) for name in CHANNELS if getattr(self, name) is not None}
+
+    @property
+    def interval(self) -> float:
+        """Mean sampling interval [s]."""
+        return float(self.time[-1] - self.time[0]) / (self.time.size - 1)
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last [s]."""
+        return float(self.time[-1] - self.time[0])
+
+    @property
+    def uniform(self) -> bool:
+        """Whether the samples are evenly spaced, within `UNIFORM` of an interval."""
+        even = self.time[0] + self.interval * np.arange(self.time.size)
+        return bool(np.max(np.abs(self.time - even)) <= UNIFORM * self.interval)
+
+    def noted(self, *sentences: str, **changes: Any) -> Record:
+        """The same record with changed fields, and sentences about what was done."""
+        return replace(self, notes=(*self.notes, *sentences), **changes)
+
+    def samples(self, chosen: slice, *sentences: str) -> Record:
+        """A part of the samples."""
+        return self.noted(*sentences, **{name: values[chosen] for name, values in self.channels().items()})
+
+    def trim(self, start: float | None = None, stop: float | None = None) -> Record:
+        """The samples from `start` to `stop` [s], both included.
+
+        Raises `RecordError` if fewer than 4 are left.
+        """
+        first, last = float(self.time[0]), float(self.time[-1])
+        begin, end = (d if v is None else v for v, d in ((start, first), (stop, last)))
+        for value in (begin, end):
+            if not is_number(value):
+                raise RecordError(f"A record is trimmed at times in s, got {value!r}.")
+        slack = 1e-6 * self.interval
+        a, b = np.searchsorted(self.time, [begin - slack, end + slack])
+        if b - a < 4:
+            raise RecordError(
+                f"Between {begin:g} and {end:g} s {self.source!r} has {max(b - a, 0)} samples; it lasts from "
+                f"{first:g} to {last:g} s."
+            )
+        return self.samples(slice(int(a), int(b)), f"Trimmed to {begin:.6g} to {end:.6g} s.")
+
+    def split(self, fraction: float = 0.7) -> tuple[Record, Record]:
+        """The first `fraction` of the time to fit, and the rest to check.
+
+        Raises `RecordError` unless both parts have at least 4 samples.
+        """
+        if not is_number(fraction) or not 0.0 < fraction < 1.0:
+            raise RecordError(f"The part to fit is a fraction between 0 and 1, got {fraction!r}.")
+        at = math.floor(fraction * self.time.size)
+        if not 4 <= at <= self.time.size - 4:
+            raise RecordError(
+                f"A record of {self.time.size} samples cannot be split at {fraction:g}: a part is too short."
+            )
+        cut = float(self.time[at])
+        return (
+            self.samples(slice(0, at), f"The part before {cut:.6g} s, to fit."),
+            self.samples(slice(at, None), f"The part from {cut:.6g} s on, to check."),
+        )

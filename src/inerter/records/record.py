@@ -36,6 +36,7 @@ class Record:
     source: str = "record"
     notes: tuple[str, ...] = ()
     force_range: float | None = None  # [N] the largest force that the load cell can tell, where it is known
+    force_bandwidth: float | None = None  # [Hz] of the load cell (second order, Butterworth), where it is known
     period: float | None = None  # [s] of the excitation, where it is known to repeat
     meta: dict[str, Any] = field(default_factory=dict)  # what else the file said, such as its units
 
@@ -68,7 +69,7 @@ class Record:
             raise RecordError(
                 f"The times of {self.source!r} must increase, but do not at sample {at} (t = {self.time[at]:g} s)."
             )
-        for name in ("force_range", "period"):
+        for name in ("force_range", "force_bandwidth", "period"):
             value = getattr(self, name)
             if value is not None and (not is_number(value) or value <= 0.0):
                 raise RecordError(f"The {name} of a record must be a positive number, got {value!r}.")

@@ -1,0 +1,145 @@
+"""A test rig with a known truth: a motion table, an encoder and a load cell, with the faults that real ones have."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import cont2discrete, lfilter, lfilter_zi
+
+from inerter.checks import check_positive, is_number
+from inerter.errors import IdentificationError
+from inerter.networks.elements import Network
+from inerter.records.record import Record
+from inerter.signals.signal import Signal
+from inerter.simulation.simulate import simulate
+from inerter.vehicle.cars import Rig
+
+Matrix = NDArray[np.float64]
+GRAVITY = 9.80665  # [m/s^2] standard, for load cells that are rated in kg
+_FINEST = 1e-4  # [s] between the knots of the table's motion, at most
+_TABLE_DAMPING = 0.7
+_ORDER = {"table": 2, "force": 2}
+
+
+@dataclass(frozen=True)
+class VirtualRig:
+    """A rig whose device is known, so that what is identified from its records can be compared with the truth.
+
+    The command goes through a motion table of second order, which follows up to `table_bandwidth` [Hz] and does not
+    yield to the device. The encoder and the load cell are sampled `sampling` times a second; both have normal noise
+    (r.m.s.) before they are rounded to their resolution. The load cell has a bandwidth (Butterworth, second order), a
+    range beyond which it saturates, an offset, a gain and a delay; it counts tension as positive unless `reversed`.
+
+    The defaults are those of the rig of Wang and Su (2008), section 4: a load cell of 100 kg with a resolution of
+    0.02 kg, an encoder of 1 um; what the paper does not print is an assumption.
+
+    Raises `IdentificationError` for numbers that no sensor can have, `DesignError` if a value of the device is free.
+    """
+
+    device: Network
+    seed: int = 0
+    sampling: float = 1000.0  # [Hz]
+    table_bandwidth: float = 50.0  # [Hz]
+    encoder_resolution: float = 1e-6  # [m]
+    encoder_noise: float = 0.2e-6  # [m]
+    force_range: float = 100.0 * GRAVITY  # [N]
+    force_resolution: float = 0.02 * GRAVITY  # [N]
+    force_noise: float = 0.1  # [N]
+    force_bandwidth: float = 300.0  # [Hz]
+    force_offset: float = 0.0  # [N]
+    force_gain: float = 1.0
+    force_delay: float = 0.0  # [s]
+    reversed: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("sampling", "table_bandwidth", "force_range", "force_bandwidth"):
+            check_positive(IdentificationError, f"The {name} of a rig", getattr(self, name), "its unit")
+        for name in ("encoder_resolution", "encoder_noise", "force_resolution", "force_noise", "force_delay"):
+            value = getattr(self, name)
+            if not is_number(value) or value < 0.0:
+                raise IdentificationError(f"The {name} of a rig must be a number from 0 on, got {value!r}.")
+        if not is_number(self.force_offset) or not is_number(self.force_gain) or self.force_gain <= 0.0:
+            raise IdentificationError(
+                f"The offset of a load cell is a number of N and its gain a positive one, got {self.force_offset!r} "
+                f"and {self.force_gain!r}. A load cell that counts compression is `reversed`."
+            )
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
+            raise IdentificationError(f"A seed is a whole number from 0 on, got {self.seed!r}.")
+        Rig(self.device)
+
+    def run(self, command: Signal, duration: float, start: float = 0.0) -> Record:
+        """What the sensors read from `start` to `start` + `duration` [s] while the table is moved as commanded.
+
+        The rig is at rest at t = 0 where the command begins. The record's time begins at zero. The same rig reads the
+        same noise for the same number of samples.
+
+        Raises `IdentificationError` for a command or times that cannot be, and as `simulate` does.
+        """
+        check_positive(IdentificationError, "The duration of a run", duration, "s")
+        if not is_number(start) or start < 0.0:
+            raise IdentificationError(f"A record starts at a time from 0 s on, got {start!r}.")
+        if not isinstance(command, Signal):
+            raise IdentificationError(f"A table is moved by a signal, such as cosine(...), got {command!r}.")
+        interval = 1.0 / self.sampling
+        parts = math.ceil(interval / _FINEST)
+        first, count = round(start * self.sampling), round(duration * self.sampling) + 1
+        if count < 4:
+            raise IdentificationError(f"{duration:g} s are less than 4 samples at {self.sampling:g} Hz.")
+        step = interval / parts
+        steps = (first + count - 1) * parts
+        position, velocity = self._moved(command.grid(0.0, step, steps + 1)[0], step)
+        table = Signal.sampled(step * np.arange(steps + 1), position, derivative=velocity, label=command.label)
+        run = simulate(Rig(self.device), displacement=table, duration=steps * step, step=step)
+        if not run.status.ok:
+            raise IdentificationError(f"The virtual rig cannot be simulated: {run.status}.")
+        at = (first + np.arange(count)) * parts
+        sensed = _low_pass(run["device_force"], self.force_bandwidth, math.sqrt(0.5), step)[0]
+        delayed = np.interp(step * at - self.force_delay, table.time, sensed)
+        return self._read(position[at], delayed, interval, command)
+
+    def _moved(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:
+        """Position and velocity of the table, which begins at rest."""
+        position, velocity = _low_pass(command - command[0], self.table_bandwidth, _TABLE_DAMPING, step)
+        return command[0] + position, velocity
+
+    def _read(self, displacement: Matrix, force: Matrix, interval: float, command: Signal) -> Record:
+        random = np.random.default_rng(self.seed)
+        count = displacement.size
+        position = _rounded(displacement + self.encoder_noise * random.standard_normal(count), self.encoder_resolution)
+        sign = -1.0 if self.reversed else 1.0
+        load = sign * self.force_gain * force + self.force_offset + self.force_noise * random.standard_normal(count)
+        load = np.clip(_rounded(load, self.force_resolution), -self.force_range, self.force_range)
+        return Record(
+            time=interval * np.arange(count),
+            displacement=position,
+            force=load,
+            source=f"virtual rig, {command.label}, seed {self.seed}",
+            force_range=self.force_range,
+            force_bandwidth=self.force_bandwidth,
+            period=command.period,
+        )
+
+
+def _rounded(values: Matrix, resolution: float) -> Matrix:
+    return np.asarray(values if resolution == 0.0 else resolution * np.rint(values / resolution))
+
+
+def _low_pass(signal: Matrix, bandwidth: float, damping: float, step: float) -> tuple[Matrix, Matrix]:
+    """A signal after a low pass of second order, and its derivative; exact for a signal that is linear over a step.
+
+    It starts as if the signal had always had its first value.
+    """
+    w = 2.0 * math.pi * bandwidth
+    A = np.array([[0.0, 1.0], [-w * w, -2.0 * damping * w]])
+    system = (A, np.array([[0.0], [w * w]]), np.eye(2), np.zeros((2, 1)))
+    Ad, Bd, Cd, Dd, _ = cont2discrete(system, step, "foh")
+    denominator = np.poly(Ad)
+    results = []
+    for row in range(2):
+        numerator = np.poly(Ad - Bd @ Cd[row : row + 1]) + (Dd[row, 0] - 1.0) * denominator
+        start = lfilter_zi(numerator, denominator) * signal[0]
+        results.append(lfilter(numerator, denominator, signal, zi=start)[0])
+    return results[0], results[1]

@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from inerter.optimisation.budget import budget as budget
     from inerter.optimisation.optimise import Optimum as Optimum
     from inerter.optimisation.optimise import optimise as optimise
+    from inerter.records.readers import read_record as read_record
+    from inerter.records.record import Record as Record
+    from inerter.records.writers import write_record as write_record
     from inerter.signals.harmonics import cosine as cosine
     from inerter.signals.harmonics import flat_multisine as flat_multisine
     from inerter.signals.harmonics import multisine as multisine
@@ -101,6 +104,7 @@ __all__ = [
     "Norm",
     "Optimum",
     "QuarterCar",
+    "Record",
     "RideComfort",
     "Rig",
     "Road",
@@ -135,10 +139,12 @@ __all__ = [
     "network",
     "optimise",
     "profile",
+    "read_record",
     "simulate",
     "simulate_many",
     "sine",
     "step",
+    "write_record",
 ]
 
 _HOME = {
@@ -183,6 +189,9 @@ _HOME = {
     "Norm": "methods.norm",
     "Optimum": "optimisation.optimise",
     "QuarterCar": "vehicle.cars",
+    "Record": "records.record",
+    "read_record": "records.readers",
+    "write_record": "records.writers",
     "RideComfort": "indices.index",
     "Road": "signals.road",
     "RoadInput": "vehicle.mechanism",

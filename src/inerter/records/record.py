@@ -67,7 +67,8 @@ class Record:
         if not np.all(np.diff(self.time) > 0.0):
             at = int(np.argmax(np.diff(self.time) <= 0.0)) + 1
             raise RecordError(
-                f"The times of {self.source!r} must increase, but do not at sample {at} (t = {self.time[at]:g} s)."
+                f"The times of {self.source!r} must increase, but do not at sample {at} (t = {self.time[at]:g} s). "
+                f"Where a file rounds or repeats its times, read it with interval= instead."
             )
         for name in ("force_range", "force_bandwidth", "period"):
             value = getattr(self, name)

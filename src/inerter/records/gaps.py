@@ -1,0 +1,175 @@
+"""Samples that are missing: refused, filled, or cut away; and channels that were sampled at different times."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import binary_dilation, find_objects, label
+
+from inerter.checks import is_number
+from inerter.errors import RecordError
+from inerter.records.channels import Samples
+
+Vector = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+LONGEST = 10  # samples in a row that gaps="fill" fills
+HOLE = 3.0  # intervals without a sample that count as a hole in a raster
+
+
+def mend(
+    source: str, channels: dict[str, Samples], gaps: str | float
+) -> tuple[dict[str, Samples], list[str], dict[str, tuple[int, int]]]:
+    """The channels without missing samples, notes, and how many were filled: all, and in the longest run, of each.
+
+    Raises `RecordError` for gaps that are not to be filled, or are too long.
+    """
+    if not (gaps in ("refuse", "fill", "longest") or (is_number(gaps) and gaps > 0.0)):
+        raise RecordError(f"gaps must be 'refuse', 'fill', 'longest' or a number of s to fill, got {gaps!r}.")
+    missing = {role: ~np.isfinite(samples.values) for role, samples in channels.items()}
+    bad = {role: mask for role, mask in missing.items() if mask.any()}
+    if not bad:
+        return channels, [], {}
+    if "time" in bad:
+        raise RecordError(
+            f"{source}: {int(bad['time'].sum())} times are missing or no finite numbers, the first at sample "
+            f"{int(np.argmax(bad['time']))}. Remove those rows, or give interval= instead of the times."
+        )
+    if gaps == "refuse":
+        raise _refusal(source, bad)
+    if gaps == "longest":
+        return _longest(channels, bad)
+    return _filled(source, channels, bad, gaps)
+
+
+def runs(mask: Mask) -> list[tuple[int, int]]:
+    """Where the mask is true: first sample and one after the last, of each run.
+
+    >>> runs(np.array([False, True, True, False, True]))
+    [(1, 3), (4, 5)]
+    """
+    return [(found[0].start, found[0].stop) for found in find_objects(label(mask)[0])]
+
+
+def fill(time: Vector, values: Vector, missing: Mask) -> Vector:
+    """The values with those that are missing interpolated by a cubic spline through their neighbours.
+
+    Needs two values that are not missing on either side of the first gap and the last.
+    """
+    near = binary_dilation(missing, iterations=6) & ~missing  # what is further off counts for nothing
+    result = values.copy()
+    result[missing] = CubicSpline(time[near], values[near])(time[missing])
+    return result
+
+
+def onto_force(source: str, channels: dict[str, Samples]) -> tuple[dict[str, Samples], list[str]]:
+    """Every channel at the times of the force, by a cubic spline through its own samples.
+
+    The force is what a model is fitted to, so its samples stay as they were measured.
+
+    Raises `RecordError` if the times of a channel do not increase, or the channels do not overlap.
+    """
+    for role, samples in channels.items():
+        if samples.time is None or samples.values.size < 4 or not np.all(np.diff(samples.time) > 0.0):
+            raise RecordError(
+                f"{source}: the {role} has no four samples at increasing times of its own, so it cannot be brought "
+                f"to the times of the force. Export all channels with one raster."
+            )
+    spans = [(s.time[0], s.time[-1]) for s in channels.values() if s.time is not None]
+    start, stop = max(span[0] for span in spans), min(span[1] for span in spans)
+    clock = channels["force"].time
+    assert clock is not None
+    inside = (clock >= start) & (clock <= stop)
+    if inside.sum() < 4:
+        raise RecordError(
+            f"{source}: the channels do not overlap in time (the latest starts at {start:g} s, the earliest ends at "
+            f"{stop:g} s). Choose channels of one measurement."
+        )
+    time = clock[inside]
+    result = {"time": Samples(time)}
+    result |= {role: Samples(s.values[inside] if role == "force" else _at(time, s)) for role, s in channels.items()}
+    steps = {role: float(np.median(np.diff(s.time))) for role, s in channels.items() if s.time is not None}
+    others = ", ".join(f"{role} every {step:.4g} s" for role, step in steps.items() if role != "force")
+    return result, [
+        f"The channels have times of their own ({others}); they were interpolated to those of the force, "
+        f"every {steps['force']:.4g} s."
+    ]
+
+
+def alike(rasters: list[Vector]) -> bool:
+    """Whether these times are the same, to a thousandth of an interval."""
+    first = rasters[0]
+    if first.size < 2 or any(other.size != first.size for other in rasters):
+        return False
+    slack = 1e-3 * (first[-1] - first[0]) / (first.size - 1)
+    return all(other is first or bool(np.max(np.abs(other - first)) <= slack) for other in rasters[1:])
+
+
+def _at(time: Vector, samples: Samples) -> Vector:
+    """The spline through finite samples; missing where the samples leave a hole."""
+    assert samples.time is not None
+    good = np.isfinite(samples.values)
+    knots, values = samples.time[good], samples.values[good]
+    if knots.size < 4:
+        return np.full(time.size, np.nan)
+    result: Vector = CubicSpline(knots, values)(time)
+    steps = np.diff(knots)
+    before = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, steps.size - 1)
+    on_knot = (time == knots[before]) | (time == knots[before + 1])
+    hole = (steps > HOLE * np.median(steps))[before] & ~on_knot
+    result[hole | (time < knots[0]) | (time > knots[-1])] = np.nan
+    return result
+
+
+def _refusal(source: str, bad: dict[str, Mask]) -> RecordError:
+    role, mask = next(iter(bad.items()))
+    found = runs(mask)
+    longest = max(stop - start for start, stop in found)
+    return RecordError(
+        f"{source}: the {role} has {int(mask.sum())} samples that are missing or no finite numbers, in {len(found)} "
+        f"runs of up to {longest}, the first at sample {found[0][0]}. Read it with gaps='fill' (short ones are "
+        f"interpolated), gaps=0.05 (those up to 0.05 s) or gaps='longest' (the longest stretch without any is kept)."
+    )
+
+
+def _longest(
+    channels: dict[str, Samples], bad: dict[str, Mask]
+) -> tuple[dict[str, Samples], list[str], dict[str, tuple[int, int]]]:
+    good = ~np.logical_or.reduce(list(bad.values()))
+    start, stop = max(runs(good), key=lambda run: run[1] - run[0], default=(0, 0))
+    kept = {role: Samples(samples.values[start:stop].copy()) for role, samples in channels.items()}
+    note = (
+        f"Of {good.size} samples those from {start} to {stop - 1} were kept: the longest stretch without a missing one."
+    )
+    return kept, [note], {}
+
+
+def _filled(
+    source: str, channels: dict[str, Samples], bad: dict[str, Mask], gaps: str | float
+) -> tuple[dict[str, Samples], list[str], dict[str, tuple[int, int]]]:
+    every = ~np.logical_or.reduce(list(bad.values()))
+    inside = np.flatnonzero(every)
+    if inside.size < 4:
+        raise RecordError(f"{source}: fewer than 4 samples have all channels, so nothing can be filled in.")
+    first, last = int(inside[0]), int(inside[-1]) + 1
+    cut = {role: samples.values[first:last] for role, samples in channels.items()}
+    time = cut["time"]
+    limit = LONGEST * float(np.median(np.diff(time))) * (1 + 1e-6) if isinstance(gaps, str) else float(gaps)
+    notes, filled = [], {}
+    for role, mask in bad.items():
+        found = runs(mask[first:last])
+        if not found:
+            continue
+        start, stop = max(found, key=lambda run: time[run[1]] - time[run[0]])
+        if time[stop] - time[start] > limit:
+            raise RecordError(
+                f"{source}: the {role} misses {stop - start} samples in a row from {time[start]:g} s on, too many to "
+                f"fill ({limit:g} s at most). Use gaps='longest', or a number of s if you trust an interpolation."
+            )
+        cut[role] = fill(time, cut[role], mask[first:last])
+        count, longest = int(mask[first:last].sum()), max(b - a for a, b in found)
+        filled[role] = (count, longest)
+        notes.append(f"{count} missing samples of the {role}, up to {longest} in a row, were interpolated.")
+    if last - first < every.size:
+        notes.append(f"{every.size - last + first} samples at the ends, where a channel is missing, were cut off.")
+    return {role: Samples(values) for role, values in cut.items()}, notes, filled

@@ -1,0 +1,221 @@
+"""Reading a record from a file: the channels chosen, put into SI units and onto common times."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import RecordError
+from inerter.records import matlab, mdf, tables, tdms
+from inerter.records.channels import Channel, Contents, Progress, Samples, choose
+from inerter.records.gaps import alike, mend, onto_force
+from inerter.records.record import Record
+from inerter.records.scales import check_units, fits, scale
+
+Vector = NDArray[np.float64]
+Opener = Callable[[str, str], AbstractContextManager[Contents]]
+FORMATS: dict[str, tuple[str, Opener]] = {
+    ".csv": ("text", tables.opened),
+    ".tsv": ("text", tables.opened),
+    ".txt": ("text", tables.opened),
+    ".tdms": ("TDMS", tdms.opened),
+    ".mf4": ("MDF", mdf.opened),
+    ".mdf": ("MDF", mdf.opened),
+    ".mat": ("MAT", matlab.opened),
+}
+# How files of each kind begin, and what to do with one that is none of ours.
+_MAGIC = (
+    (b"TDSm", "TDMS", "Rename it to end in .tdms."),
+    (b"MDF ", "MDF", "Rename it to end in .mf4."),
+    (b"UnFinMF", "MDF", "Rename it to end in .mf4."),
+    (b"MATLAB ", "MAT", "Rename it to end in .mat."),
+    (b"\x89HDF", "HDF5", "Export it as CSV, or as a MAT file of version 7.3."),
+    (b"PK\x03\x04", "Excel or zip", "Export the sheet as CSV, or unpack it."),
+    (b"\x1f\x8b", "gzip", "Unpack it first."),
+    (b"%PDF", "PDF", "Export the measurement as CSV."),
+)
+
+
+def read_record(
+    path: str | os.PathLike[str],
+    *,
+    displacement: str | int | None = None,
+    force: str | int | None = None,
+    time: str | int | None = None,
+    velocity: str | int | None = None,
+    acceleration: str | int | None = None,
+    units: dict[str, str] | None = None,
+    interval: float | None = None,
+    gaps: str | float = "refuse",
+    force_range: float | None = None,
+    period: float | None = None,
+    progress: Progress | None = None,
+) -> Record:
+    """The record in a file of measurements: .csv, .tsv, .txt, .tdms, .mf4, .mdf or .mat.
+
+    A channel is named as in the file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name
+    (time, displacement, position, x, force, load, ...). Units come from the file; `units`, such as
+    {"force": "kgf"}, adds or overrules them, and may say what one volt is worth, {"force": "250 N"}.
+    `interval` [s] gives the sampling where the file has no times, or overrules them.
+
+    Samples that are missing or no finite numbers are refused; `gaps="fill"` interpolates up to 10 in a row, a number
+    those up to so many seconds, and `gaps="longest"` keeps the longest stretch without any.
+    `progress` is called with the fraction read so far.
+
+    Raises `RecordError` for a file, channel or unit that cannot be used, in one sentence that says what to try.
+    """
+    units = check_units(units)
+    name = _checked_path(path)
+    source = Path(name).name
+    opener = _opener(name, source)
+    asked: dict[str, str | int | None] = {"time": time, "displacement": displacement, "force": force}
+    asked |= {"velocity": velocity, "acceleration": acceleration}
+    _check_interval(interval, time)
+    with opener(name, source) as contents:
+        chosen = choose(source, contents, asked, timed=interval is not None)
+        scales, notes = _scales(source, chosen, units, asked)
+        samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or _silent), strict=True))
+    channels = {role: _scaled(source, chosen[role], samples[role], scales[role]) for role in chosen}
+    channels, more = _timed(source, chosen, channels, interval, bool(contents.meta.get("cut")))
+    channels, mended, filled = mend(source, channels, gaps)
+    meta = {
+        **contents.meta,
+        "channels": {role: channel.name for role, channel in chosen.items()},
+        "units": {role: units.get(role, channel.unit) for role, channel in chosen.items()},
+        **({"filled": filled} if filled else {}),
+    }
+    return Record(
+        **{role: samples.values for role, samples in channels.items()},
+        source=source,
+        notes=(*contents.notes, *notes, *more, *mended),
+        force_range=force_range,
+        period=period,
+        meta=meta,
+    )
+
+
+def _silent(fraction: float) -> None:
+    pass
+
+
+def _checked_path(path: str | os.PathLike[str]) -> str:
+    if not isinstance(path, str | os.PathLike):
+        raise RecordError(f"A record is read from the path of a file, got {path!r}.")
+    name = os.fsdecode(path)
+    if os.path.isdir(name):
+        raise RecordError(f"{name!r} is a folder; give the path of a file in it.")
+    if not os.path.exists(name):
+        raise RecordError(f"There is no file {name!r}, looked for in {os.getcwd()!r}.")
+    return name
+
+
+def _opener(name: str, source: str) -> Opener:
+    """How a file of that suffix is opened, once its first bytes agree with it."""
+    suffix = Path(name).suffix.lower()
+    if suffix not in FORMATS:
+        raise RecordError(
+            f"{source}: records are read from {', '.join(FORMATS)}, by the suffix of the file, "
+            f"not from {suffix or 'a file without one'}. Export or rename it."
+        )
+    expected, opener = FORMATS[suffix]
+    try:
+        with open(name, "rb") as file:
+            head = file.read(128)
+    except OSError as problem:
+        raise RecordError(f"{source} cannot be opened: {problem.strerror}.") from None
+    found, advice = next(((what, to) for magic, what, to in _MAGIC if head.startswith(magic)), ("text", ""))
+    if found == "text" and expected != "text":
+        found = "empty" if not head.strip(b" \0\r\n\t") else "something else"
+        advice = "Is it complete, and its suffix right?"
+    if found != expected and not (expected == "MAT" and found == "HDF5"):
+        raise RecordError(f"{source} should hold {expected} by its suffix, but by its first bytes is {found}. {advice}")
+    return opener
+
+
+def _check_interval(interval: float | None, time: str | int | None) -> None:
+    if interval is None:
+        return
+    if not is_number(interval) or interval <= 0.0:
+        raise RecordError(f"The interval between samples must be a positive number of s, got {interval!r}.")
+    if time is not None:
+        raise RecordError(f"Give the interval ({interval:g} s) or the channel of times ({time!r}), not both.")
+
+
+def _scales(
+    source: str, chosen: dict[str, Channel], units: dict[str, str], asked: dict[str, str | int | None]
+) -> tuple[dict[str, float], list[str]]:
+    """What a unit of each channel is worth, and notes. Rates whose unit does not fit are left out unless asked for."""
+    scales, notes = {}, []
+    for role, channel in list(chosen.items()):
+        wanted = asked[role] is not None or role in units or role not in ("velocity", "acceleration")
+        if not wanted and not fits(role, channel.unit):
+            del chosen[role]
+            notes.append(f"The channel {channel.label} was left out, since its unit is none of {role}.")
+            continue
+        scales[role], _, note = scale(source, role, channel, units.get(role))
+        notes += [note] if note else []
+    return scales, notes
+
+
+def _scaled(source: str, channel: Channel, samples: Samples, factor: float) -> Samples:
+    values = np.asarray(samples.values)
+    if values.dtype.kind == "c":
+        raise RecordError(f"{source}: {channel.name!r} holds complex numbers; a record needs real ones.")
+    if values.dtype.kind not in "fiub" or values.ndim != 1:
+        raise RecordError(
+            f"{source}: {channel.name!r} holds {values.dtype} of shape {values.shape}; a record needs a vector of "
+            f"real numbers."
+        )
+    own = values.dtype == np.float64 and values.flags.owndata and values.flags.writeable
+    values = values if own else values.astype(float)
+    inverse = 1.0 / factor
+    if abs(inverse) > 1.0 and abs(inverse - round(inverse)) < 1e-9 * abs(inverse):
+        values /= round(inverse)  # exact to the last digit, where multiplying is not
+    else:
+        values *= factor
+    return Samples(values, samples.time)
+
+
+def _timed(
+    source: str, chosen: dict[str, Channel], channels: dict[str, Samples], interval: float | None, cut: bool
+) -> tuple[dict[str, Samples], list[str]]:
+    """All channels over the same times, which are a channel of their own, from here on."""
+    notes = []
+    if cut:
+        shortest = min(samples.values.size for samples in channels.values())
+        notes.append(f"The file is cut short; the first {shortest} samples are complete and were kept.")
+        channels = {role: _first(samples, shortest) for role, samples in channels.items()}
+    rasters = {role: samples.time for role, samples in channels.items()}
+    timed = "time" not in channels and interval is None
+    if timed and any(time is None for time in rasters.values()):
+        raise RecordError(
+            f"{source}: no channel has an obvious name for the time, and no other gives the sampling. Name it, such as "
+            f"time='Zeit', or give interval=1e-3 in s."
+        )
+    if timed and not alike([time for time in rasters.values() if time is not None]):
+        return onto_force(source, channels)
+    sizes = {role: samples.values.size for role, samples in channels.items()}
+    if len(set(sizes.values())) > 1:
+        counts = ", ".join(f"{chosen[role].name!r} {size}" for role, size in sizes.items())
+        raise RecordError(
+            f"{source}: the channels have different numbers of samples ({counts}), so they are not over the same "
+            f"times. Choose channels that were sampled together."
+        )
+    size = channels["force"].values.size
+    if interval is not None:
+        channels = {"time": Samples(interval * np.arange(size)), **channels}
+        notes.append(f"The samples were taken to be {interval:g} s apart, as the call says.")
+    elif timed:
+        time = rasters["force"]
+        channels = {"time": Samples(np.array(time)), **channels} if time is not None else channels
+    return channels, notes
+
+
+def _first(samples: Samples, count: int) -> Samples:
+    return Samples(samples.values[:count], None if samples.time is None else samples.time[:count])

@@ -1,0 +1,113 @@
+"""Units of measured channels: what one unit of a file is worth in SI units, never guessed."""
+
+from __future__ import annotations
+
+import re
+
+from inerter.errors import RecordError, UnitError
+from inerter.records.channels import Channel
+from inerter.records.record import CHANNELS
+from inerter.units import parse_quantity
+
+STANDARD_GRAVITY = 9.80665  # [m/s^2]
+_EXAMPLES = {
+    "time": "s or ms",
+    "displacement": "mm or um",
+    "force": "N, kN, kgf or lbf",
+    "velocity": "mm/s",
+    "acceleration": "m/s^2 or g",
+}
+# Mass units that a load cell may show when it means the weight; taken as forces only when the call says so.
+_WEIGHTS = {"kg": "kgf", "lb": "lbf"}
+_POWER = re.compile(r"(?<=[A-Za-z])([23])(?!\w)")
+
+
+def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[float, str, str | None]:
+    """What one unit of the channel is worth in the SI unit of its role, the unit, and a note where one is due.
+
+    `given` is the unit that the call names, and wins over that of the file. It may be a quantity, "250 N", for a file
+    that holds volts or counts.
+
+    Raises `RecordError` for a missing or unknown unit, or one of another kind.
+    """
+    unit = channel.unit if given is None else given
+    if not isinstance(unit, str):
+        raise RecordError(f"The unit of the {role} must be a text such as {_first(role)!r}, got {unit!r}.")
+    if not unit.strip():
+        raise RecordError(
+            f"{source}: {channel.name!r} has no unit. Name the unit of the {role}, such as "
+            f"units={{{role!r}: {_first(role)!r}}}."
+        )
+    plain = unit.strip()
+    if role == "force" and given is not None:
+        plain = _WEIGHTS.get(plain, plain)
+    value = _value(role, plain)
+    if value is None:
+        raise RecordError(f"{source}: {_problem(role, channel, unit, given)}")
+    return value, unit, _note(role, channel, unit, given, value)
+
+
+def fits(role: str, unit: str) -> bool:
+    """Whether a unit as a file writes it is one of that role."""
+    return _value(role, unit.strip()) is not None
+
+
+def check_units(units: dict[str, str] | None) -> dict[str, str]:
+    """The units of a call, by role.
+
+    Raises `RecordError` for a name that is no role.
+    """
+    if units is None:
+        return {}
+    if not isinstance(units, dict):
+        raise RecordError(f"units must be a table such as {{'force': 'kN'}}, got {units!r}.")
+    for role in units:
+        if role not in CHANNELS:
+            raise RecordError(
+                f"units has {role!r}, which is none of {', '.join(CHANNELS)}. A unit is given by what the channel is, "
+                f"not by its name in the file."
+            )
+    return units
+
+
+def _value(role: str, unit: str) -> float | None:
+    """The size of a unit or quantity, or None where it is none of that role."""
+    if role == "acceleration" and unit in ("g", "G", "g_n", "gn"):
+        return STANDARD_GRAVITY
+    text = _POWER.sub(r"^\1", unit)
+    if not re.match(r"[+-]?[\d.]", text):
+        text = f"1 {text}"
+    for spelling in (text, text.lower()) if len(unit) > 3 else (text,):
+        try:
+            value = parse_quantity(spelling, CHANNELS[role])
+        except UnitError:
+            continue
+        return value or None
+    return None
+
+
+def _problem(role: str, channel: Channel, unit: str, given: str | None) -> str:
+    whose = f"the unit {unit!r} of {channel.name!r}" if given is None else f"the unit {unit!r} that was named"
+    if role == "force" and unit.strip() in _WEIGHTS:
+        force = _WEIGHTS[unit.strip()]
+        return (
+            f"{whose} is a mass, not a force. If the load cell shows the weight of that mass, say so with "
+            f"units={{'force': {force!r}}} (1 {force} = {parse_quantity('1 ' + force, 'N'):.6g} N)."
+        )
+    return (
+        f"{whose} is not known as a unit of {role}, which is one such as {_EXAMPLES[role]}. Name the unit, "
+        f"units={{{role!r}: {_first(role)!r}}}, or what one count or volt of the file is worth, "
+        f"units={{{role!r}: '250 {CHANNELS[role]}'}}."
+    )
+
+
+def _note(role: str, channel: Channel, unit: str, given: str | None, value: float) -> str | None:
+    if given is None or (given == channel.unit and given.strip() not in _WEIGHTS):
+        return None
+    said = f"where the file says {channel.unit}" if channel.unit else "as the call says"
+    what = unit if re.match(r"\s*[+-]?[\d.]", unit) else f"1 {unit} = {value:.6g} {CHANNELS[role]}"
+    return f"The {role} {channel.name!r} was taken in {unit} ({what}), {said}."
+
+
+def _first(role: str) -> str:
+    return re.split(r",| or ", _EXAMPLES[role])[0]

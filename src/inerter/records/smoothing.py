@@ -1,0 +1,187 @@
+"""Velocity and acceleration from a measured displacement: filtered to a stated bandwidth, then a spline.
+
+Two differences of an encoder's samples multiply its steps by 1/interval^2: 1 um at 1 kHz becomes 1 m/s^2. So the
+displacement is filtered first, as little as its own spectrum allows, and what that costs is told.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.signal import detrend, periodogram, welch
+
+from inerter.checks import is_number
+from inerter.errors import RecordError
+from inerter.records.filtering import HIGHEST, gain, low_pass
+from inerter.records.record import Record
+
+Vector = NDArray[np.float64]
+MARGIN = 4.0  # the bandwidth over the highest frequency in the displacement
+ABOVE = 5.0  # times the noise floor, that a band has to hold to count as motion
+_BANDS = 6  # an octave
+_FEWEST = 64  # samples that a spectrum needs to tell noise from motion
+_LEVELS = 1 << 17  # values in which a step is looked for
+_LONGEST = 1 << 20  # samples of one spectrum
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The displacement of a record as a smooth curve, its derivatives, and how far they can be trusted.
+
+    Nearer to the ends than 1/bandwidth all three rest on samples of one side only and are less certain.
+    """
+
+    time: Vector  # (n,) [s]
+    displacement: Vector  # (n,) [m]
+    velocity: Vector  # (n,) [m/s]
+    acceleration: Vector  # (n,) [m/s^2]
+    bandwidth: float  # [Hz] where the gain of the filter is 1/2
+    highest: float  # [Hz] the highest frequency at which the displacement stands out of its noise
+    attenuation: float  # what the filter takes from the amplitude at that frequency, as a fraction
+    noise: float  # [m] r.m.s. of the noise in the displacement as measured
+    velocity_noise: float  # [m/s] r.m.s. of what is left of it in the velocity
+    acceleration_noise: float  # [m/s^2] and in the acceleration
+    sentence: str = ""
+
+
+def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motion:
+    """The displacement, velocity and acceleration below `bandwidth` [Hz], without phase.
+
+    By default the bandwidth is four times the highest frequency at which the displacement stands out of its noise
+    floor (at most 0.4 of the sampling rate), where the filter takes less than 2e-5 of the amplitude. The filter is a
+    Butterworth of order 4, forwards and backwards; a cubic spline goes through the result, whose slope is the
+    velocity, and the slope of a spline through that the acceleration.
+
+    Raises `RecordError` if the samples are not evenly spaced, or the bandwidth is not between 0 and half the rate.
+    """
+    if not record.uniform:
+        raise RecordError(
+            f"The samples of {record.source!r} are not evenly spaced, which a filter needs. Use resample(record) first."
+        )
+    if bandwidth is not None and (not is_number(bandwidth) or bandwidth <= 0.0):
+        raise RecordError(f"A bandwidth must be a positive number of Hz, got {bandwidth!r}.")
+    interval = record.interval
+    noise = noise_of(record.displacement, interval)
+    limit = HIGHEST / interval
+    chosen = min(MARGIN * noise.highest, limit) if bandwidth is None else float(bandwidth)
+    displacement = low_pass(record.displacement, interval, chosen)
+    velocity = CubicSpline(record.time, displacement)(record.time, 1)
+    acceleration = CubicSpline(record.time, velocity)(record.time, 1)
+    attenuation = 1.0 - float(gain(np.array([noise.highest]), interval, chosen)[0])
+    noises = _noises(noise.density, interval, chosen)
+    return Motion(
+        time=record.time,
+        displacement=displacement,
+        velocity=velocity,
+        acceleration=acceleration,
+        bandwidth=chosen,
+        highest=noise.highest,
+        attenuation=attenuation,
+        noise=noise.rms,
+        velocity_noise=noises[0],
+        acceleration_noise=noises[1],
+        sentence=_sentence(chosen, bandwidth is not None, noise.highest, attenuation, noises),
+    )
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What the spectrum of a channel tells of its noise, and of the motion above it."""
+
+    density: float  # [unit^2/Hz], one-sided
+    rms: float  # [unit]
+    highest: float  # [Hz] the highest frequency that stands out of the noise
+
+
+def noise_of(values: Vector, interval: float) -> Noise:
+    """The noise floor of a channel, and how far its motion reaches above that.
+
+    The spectrum is averaged over sixths of an octave; its lowest wide band is the floor, unless the steps of the
+    values, spread over the rate at which they are taken, ask for more. A record too short for a spectrum has no noise
+    that could be told, and its highest frequency is that which leaves the filter of `smooth_displacement` at its limit.
+    """
+    limit = HIGHEST / (MARGIN * interval)
+    if values.size < _FEWEST or np.ptp(values) == 0.0:
+        return Noise(0.0, 0.0, limit)
+    centre, level, lines = _bands(*_spectrum(values, interval))
+    lowest = float(np.min(level[lines >= min(64, lines.max())]))
+    step = resolution(values)
+    steps = _step_density(values, interval, step)
+    floor = max(lowest, steps)
+    motion = centre[level > ABOVE * floor]
+    highest = min(float(motion[-1]) if motion.size else limit, 0.5 / interval)
+    rms = step / math.sqrt(12.0) if steps >= lowest else math.sqrt(0.5 * floor / interval)
+    return Noise(floor, rms, highest)
+
+
+def resolution(values: Vector) -> float:
+    """The step in which the values are read: all differences between distinct values are multiples of it.
+
+    0 where there is none that could be told: fewer than 3 steps, or steps as small as rounding. It is looked for in
+    the first 131072 values.
+
+    >>> round(resolution(np.round(np.sin(np.arange(100.0)), 2)), 6)
+    0.01
+    """
+    levels = np.unique(values[:_LEVELS])
+    rounding = 1e-9 * float(np.max(np.abs(levels)))
+    steps = np.diff(levels)
+    steps = steps[steps > 100.0 * rounding]
+    if steps.size < 3:
+        return 0.0
+    multiples = steps / np.min(steps)
+    if np.max(np.abs(multiples - np.round(multiples))) > 0.05 or np.min(steps) < 1e3 * rounding:
+        return 0.0
+    return float(np.sum(steps) / np.sum(np.round(multiples)))
+
+
+def _spectrum(values: Vector, interval: float) -> tuple[Vector, Vector]:
+    straight = detrend(values)
+    if values.size <= _LONGEST:
+        frequency, density = periodogram(straight, 1.0 / interval, window="hann", detrend=False)
+    else:
+        frequency, density = welch(straight, 1.0 / interval, window="hann", nperseg=_LONGEST, detrend=False)
+    return frequency, density
+
+
+def _bands(frequency: Vector, density: Vector) -> tuple[Vector, Vector, NDArray[np.int64]]:
+    """The highest frequency, the mean density and the lines of each sixth of an octave; at least 8 lines in each."""
+    edges = [2]
+    while edges[-1] < frequency.size:
+        edges.append(max(edges[-1] + 8, int(edges[-1] * 2.0 ** (1.0 / _BANDS))))
+    edges = [edge for edge in edges if edge <= frequency.size - 8] + [frequency.size]
+    lines = np.diff(np.array(edges))
+    means = np.add.reduceat(density, np.array(edges[:-1])) / lines
+    return frequency[np.array(edges[1:]) - 1], means, lines
+
+
+def _step_density(values: Vector, interval: float, step: float) -> float:
+    """Density of the rounding error: step^2/12 over the rate at which steps are taken, or half the sampling rate."""
+    if step == 0.0:
+        return 0.0
+    rate = float(np.sum(np.abs(np.diff(values)))) / (step * interval * values.size)
+    return step**2 / 12.0 / max(min(rate, 0.5 / interval), 1.0 / (interval * values.size))
+
+
+def _noises(floor: float, interval: float, bandwidth: float) -> tuple[float, float]:
+    """R.m.s. of white noise of that density after the filter, in velocity and acceleration, as the splines see it."""
+    top = min(0.5 / interval, 6.0 * bandwidth)
+    frequency = np.linspace(0.0, top, 4001)
+    theta = 2.0 * np.pi * frequency * interval
+    slope = 3.0 * np.sin(theta) / (2.0 + np.cos(theta)) / interval
+    passed = np.sqrt(floor) * gain(frequency, interval, bandwidth)
+    squares = (np.trapezoid((passed * slope**n) ** 2, frequency) for n in (1, 2))
+    velocity, acceleration = (float(np.sqrt(square)) for square in squares)
+    return velocity, acceleration
+
+
+def _sentence(bandwidth: float, asked: bool, highest: float, attenuation: float, noises: tuple[float, float]) -> str:
+    why = "as asked" if asked else f"the displacement stands out of its noise up to {highest:.3g} Hz"
+    return (
+        f"Smoothed to {bandwidth:.4g} Hz ({why}), which takes {100.0 * attenuation:.2g} % at {highest:.3g} Hz and "
+        f"leaves noise of {noises[0]:.2g} m/s in the velocity and {noises[1]:.2g} m/s^2 in the acceleration (r.m.s.)."
+    )

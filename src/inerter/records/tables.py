@@ -1,0 +1,251 @@
+"""Records from text: CSV, TSV and columns of numbers, with units beside, below or above the names, or in the call."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import RecordError
+from inerter.records.channels import Channel, Contents, Progress, Samples
+from inerter.units import shown
+
+HEAD = 1 << 18  # bytes within which the numbers must begin
+BLOCK = 1 << 23  # bytes that are parsed at a time
+MISSING = frozenset({"", "nan", "-nan", "+nan", "na", "n/a", "null", "none", "inf", "-inf", "+inf", "-"})
+_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
+_HEADING = re.compile(r"\s*(\S.*?)\s*[\[(]([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)[\])]\s*")
+_DELIMITERS = ("\t", ";", ",", None)  # None: any white space
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a table is written, and where its numbers begin."""
+
+    delimiter: str | None
+    decimal: str
+    columns: int
+    offset: int  # bytes before the first line of numbers
+    line: int  # its number, from 1
+    encoding: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    preamble: tuple[str, ...] = ()
+
+
+@contextmanager
+def opened(path: str, source: str) -> Iterator[Contents]:
+    """The columns of a text file.
+
+    Raises `RecordError`, which names the line, for a file that is no table of numbers.
+    """
+    with open(path, "rb") as file:
+        layout = _layout(source, file.read(HEAD))
+        pairs = zip(layout.names, layout.units, strict=True)
+        channels = tuple(Channel(name, unit, key=at) for at, (name, unit) in enumerate(pairs))
+
+        def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
+            return [Samples(values) for values in _columns(source, file, layout, [c.key for c in chosen], progress)]
+
+        yield Contents(channels, read, meta={"preamble": layout.preamble} if layout.preamble else {})
+
+
+def _layout(source: str, head: bytes) -> Layout:
+    start = 3 if head.startswith(b"\xef\xbb\xbf") else 0
+    raw = head[start:].splitlines(keepends=True)
+    if len(head) == HEAD:
+        raw = raw[:-1]  # may be cut short
+    if not b"".join(raw).strip() and len(head) < HEAD:
+        raise RecordError(f"{source} is empty; expected a header with names and units, and rows of numbers.")
+    lines, encoding = _decoded(source, head, raw)
+    for at, line in enumerate(lines):
+        for delimiter in _DELIMITERS:
+            cells = _cells(line, delimiter)
+            if len(cells) >= 2 and _is_data(lines[at : at + 3], delimiter, len(cells)):
+                offset = start + sum(map(len, raw[:at]))
+                return _described(source, lines, at, delimiter, offset, encoding)
+    first = next((line for line in lines if line.strip()), "with one very long line")
+    raise RecordError(
+        f"{source}: no rows of numbers in two or more columns were found; the file begins {shown(first.strip())}. "
+        f"Expected a header such as 'time [s], displacement [mm], force [N]' and rows of numbers below it."
+    )
+
+
+def _decoded(source: str, head: bytes, raw: list[bytes]) -> tuple[list[str], str]:
+    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise RecordError(f"{source} is written in UTF-16. Save it as UTF-8, which most programs offer.")
+    try:
+        return [line.decode("utf-8") for line in raw], "utf-8"
+    except UnicodeDecodeError:
+        lines = [line.decode("latin-1") for line in raw]  # a micro sign of an older program
+    text = "".join(lines)
+    if sum(not c.isprintable() and not c.isspace() for c in text) > 0.01 * len(text):
+        raise RecordError(f"{source} is not text, so it cannot be read as a table. Is its suffix right?")
+    return lines, "latin-1"
+
+
+def _cells(line: str, delimiter: str | None) -> list[str]:
+    line = line.strip("\r\n")
+    if not line.strip() or line.lstrip().startswith(("#", "%")):
+        return []
+    if delimiter is None:
+        return line.split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
+
+
+def _is_number(cell: str) -> bool:
+    return _NUMBER.fullmatch(cell) is not None
+
+
+def _is_data(lines: list[str], delimiter: str | None, columns: int) -> bool:
+    """Whether these lines look like rows of numbers: as many cells each, and at least two numbers."""
+    rows = [cells for line in lines if (cells := _cells(line, delimiter))]
+    return all(len(cells) == columns and sum(map(_is_number, cells)) >= 2 for cells in rows)
+
+
+def _described(source: str, lines: list[str], at: int, delimiter: str | None, offset: int, encoding: str) -> Layout:
+    columns = len(_cells(lines[at], delimiter))
+    header, above = _header(source, lines[:at], delimiter, columns)
+    names, units = _names(header, columns)
+    numbers = [cell for line in lines[at:] for cell in _cells(line, delimiter) if _is_number(cell)]
+    decimal = "," if delimiter != "," and any("," in cell for cell in numbers) else "."
+    preamble = tuple(line.strip() for line in lines[: at - above][:50] if line.strip())
+    return Layout(delimiter, decimal, columns, offset, at + 1, encoding, names, units, preamble)
+
+
+def _header(source: str, above: list[str], delimiter: str | None, columns: int) -> tuple[list[list[str]], int]:
+    """The rows of names and units directly above the numbers: none, one or two; and how many lines they take."""
+    rows: list[list[str]] = []
+    for count, line in enumerate(reversed(above), 1):
+        comment = line.lstrip().startswith(("#", "%"))
+        if not line.strip():
+            continue
+        text = line.lstrip(" \t#%") if comment else line
+        cells = _spaced(text) if delimiter is None else _cells(text, delimiter)
+        if len(cells) != columns:
+            _check_counts(source, len(above) - count + 1, cells, columns, comment)
+            return rows, count - 1
+        if not comment and sum(map(_is_number, cells)) > columns / 2:
+            raise _bad_cell(source, len(above) - count + 1, cells)
+        rows.insert(0, cells)
+        if len(rows) == 2 or comment or any(_HEADING.fullmatch(cell) for cell in cells):
+            return rows, count
+    return rows, len(above)
+
+
+def _check_counts(source: str, line: int, cells: list[str], columns: int, comment: bool) -> None:
+    headings = [cell for cell in cells if _HEADING.fullmatch(cell)]
+    if not comment and len(headings) >= 2:
+        half = " A decimal comma needs another delimiter than a comma." if columns == 2 * len(cells) else ""
+        raise RecordError(
+            f"{source}, line {line}: the header has {len(cells)} columns, the rows below it have {columns}.{half}"
+        )
+
+
+def _spaced(text: str) -> list[str]:
+    """Cells between white space, of which a unit in brackets belongs to the name before it."""
+    return re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)
+
+
+def _names(header: list[list[str]], columns: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    if not header:
+        return tuple(f"column {at}" for at in range(columns)), ("",) * columns
+    found = [_HEADING.fullmatch(cell) for cell in header[0]]
+    names = tuple(match[1] if match else cell for match, cell in zip(found, header[0], strict=True))
+    beside = [match[2].strip() if match else "" for match in found]
+    below = [cell.strip("[]() ") for cell in header[1]] if len(header) == 2 else [""] * columns
+    return names, tuple(a or b for a, b in zip(beside, below, strict=True))
+
+
+def _columns(
+    source: str, file: BinaryIO, layout: Layout, wanted: list[int], progress: Progress
+) -> list[NDArray[np.float64]]:
+    """The wanted columns, read block by block so that the text is never held as a whole."""
+    size = max(os.fstat(file.fileno()).st_size, 1)
+    parts: list[list[NDArray[np.float64]]] = [[] for _ in wanted]
+    file.seek(layout.offset)
+    line, rest, more = layout.line, b"", True
+    while more:
+        block = file.read(BLOCK)
+        more = bool(block)
+        block = rest + block
+        end = block.rfind(b"\n") + 1 if more else len(block)
+        block, rest = block[:end], block[end:]
+        if block.strip():
+            for part, values in zip(parts, _parsed(source, block, line, layout, wanted), strict=True):
+                part.append(values)
+        line += block.count(b"\n")
+        progress(min(file.tell() / size, 1.0))
+    return [np.concatenate(parts.pop(0)) for _ in wanted]
+
+
+def _parsed(source: str, block: bytes, line: int, layout: Layout, wanted: list[int]) -> list[NDArray[np.float64]]:
+    """The wanted columns of a block of lines; what is odd about it is looked for by a second, slower reading."""
+    import pandas as pd
+
+    options: dict[str, Any] = {"sep": layout.delimiter or r"\s+", "decimal": layout.decimal, "comment": "#"}
+    try:
+        frame = pd.read_csv(
+            io.BytesIO(block), header=None, names=list(range(layout.columns)), usecols=wanted, dtype=float,
+            skipinitialspace=True, index_col=False, encoding=layout.encoding, na_values=["-"], **options,
+        )  # fmt: skip
+        columns = [frame[at].to_numpy() for at in wanted]
+        clean = all(np.isfinite(values).all() for values in columns) and _even(block, len(frame), layout)
+    except (ValueError, TypeError):
+        columns, clean = [], False  # pandas' errors do not name the line of the file
+    if not clean:
+        _inspect(source, block, line, layout, wanted)
+    if not columns:
+        raise RecordError(f"{source}: the rows from line {line} on cannot be read as numbers.")
+    return columns
+
+
+def _even(block: bytes, rows: int, layout: Layout) -> bool:
+    """Whether there are as many delimiters as rows of equal length have."""
+    return layout.delimiter is not None and block.count(layout.delimiter.encode()) == rows * (layout.columns - 1)
+
+
+def _inspect(source: str, block: bytes, line: int, layout: Layout, wanted: list[int]) -> None:
+    """Raises `RecordError` for the first row of another length, or cell that is neither a number nor missing."""
+    for at, text in enumerate(block.decode(layout.encoding, errors="replace").split("\n"), line):
+        cells = _cells(text.split("#")[0], layout.delimiter)
+        if not cells:
+            continue
+        spare = cells[layout.columns :]
+        if len(cells) < layout.columns or any(spare):
+            raise RecordError(
+                f"{source}, line {at}: expected {layout.columns} cells, got {len(cells)} in {shown(text.strip())}. "
+                f"Remove or complete that line."
+            )
+        for column in wanted:
+            if not _is_value(cells[column], layout.decimal):
+                raise _bad_cell(source, at, [cells[column]], layout.decimal)
+
+
+def _is_value(cell: str, decimal: str) -> bool:
+    if cell.casefold() in MISSING:
+        return True
+    if decimal == ",":
+        cell = cell.replace(".", "?").replace(",", ".")
+    try:
+        return not math.isnan(float(cell))
+    except ValueError:
+        return False
+
+
+def _bad_cell(source: str, line: int, cells: list[str], decimal: str = ".") -> RecordError:
+    cell = next((cell for cell in cells if not _is_number(cell)), cells[0])
+    mark = "comma" if decimal == "," else "point"
+    return RecordError(
+        f"{source}, line {line}: expected a number with a decimal {mark}, got {shown(cell)}. "
+        f"Leave a cell empty, or write nan, where a sample is missing."
+    )

@@ -1,0 +1,94 @@
+"""Writing a record to a file, in SI units, so that this package and others can read it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from inerter.errors import RecordError
+from inerter.records.optional import library
+from inerter.records.record import CHANNELS, Record
+
+_NOT_GIVEN = "nothing is known of where it came from"
+
+
+def write_record(record: Record, path: str | os.PathLike[str]) -> None:
+    """Writes the channels with their units; the suffix says how: .csv, .tsv, .txt, .tdms, .mf4 or .mat.
+
+    `read_record` gives the same numbers back. The source and notes go along for people; the range of the load cell
+    and the period are for the call that reads it.
+
+    Raises `RecordError` for another suffix, a folder that is not there, or a library that is not installed.
+    """
+    if not isinstance(record, Record):
+        raise RecordError(f"write_record takes a Record, got {type(record).__name__}.")
+    name = os.fsdecode(path)
+    suffix = Path(name).suffix.lower()
+    if suffix not in WRITERS:
+        raise RecordError(f"Records are written to {', '.join(WRITERS)}, got {name!r}. Name a file with such a suffix.")
+    try:
+        WRITERS[suffix](record, name)
+    except OSError as problem:
+        raise RecordError(f"{name!r} cannot be written: {problem.strerror or problem}.") from None
+
+
+def _comma(record: Record, name: str) -> None:
+    _table(record, name, ",")
+
+
+def _tab(record: Record, name: str) -> None:
+    _table(record, name, "\t")
+
+
+def _table(record: Record, name: str, delimiter: str) -> None:
+    import pandas as pd
+
+    headed = {f"{role} [{CHANNELS[role]}]": values for role, values in record.channels().items()}
+    with open(name, "w", encoding="utf-8", newline="") as file:
+        file.writelines(f"# {' '.join(line.split())}\n" for line in (record.source, *record.notes))
+        pd.DataFrame(headed, copy=False).to_csv(file, sep=delimiter, index=False, lineterminator="\n")
+
+
+def _tdms(record: Record, name: str) -> None:
+    nptdms = library("nptdms", "tdms", "TDMS files")
+    root = nptdms.RootObject({"source": record.source, "notes": "\n".join(record.notes)})
+    channels = [
+        nptdms.ChannelObject("record", role, values, {"unit_string": CHANNELS[role]})
+        for role, values in record.channels().items()
+    ]
+    with nptdms.TdmsWriter(name) as writer:
+        writer.write_segment([root, nptdms.GroupObject("record"), *channels])
+
+
+def _mdf(record: Record, name: str) -> None:
+    asammdf = library("asammdf", "mdf", "MDF files")
+    signals = [
+        asammdf.Signal(np.array(values), record.time, name=role, unit=CHANNELS[role])
+        for role, values in record.channels().items()
+        if role != "time"
+    ]
+    with asammdf.MDF(version="4.10") as file:
+        file.append(signals, comment="\n".join((record.source, *record.notes)))
+        file.save(name, overwrite=True, compression=1)
+
+
+def _mat(record: Record, name: str) -> None:
+    from scipy.io import savemat
+
+    channels = record.channels()
+    units = {role: CHANNELS[role] for role in channels}
+    text = {"source": record.source or _NOT_GIVEN, "notes": "\n".join(record.notes) or "none"}
+    savemat(name, {**channels, "units": units, **text}, do_compression=True, oned_as="column")
+
+
+WRITERS: dict[str, Callable[[Record, str], None]] = {
+    ".csv": _comma,
+    ".tsv": _tab,
+    ".txt": _tab,
+    ".tdms": _tdms,
+    ".mf4": _mdf,
+    ".mat": _mat,
+}

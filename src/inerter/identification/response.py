@@ -22,6 +22,7 @@ from inerter.simulation.simulate import simulate
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 _STEP = 2e-4  # [s] longest of the simulation
 _ABOVE = 1.25  # times the highest frequency told: where the displacement is cut off
 _HIGHEST = 0.8  # of half the rate: a cut-off above that is none
@@ -65,11 +66,14 @@ def model_response(
     else:
         cutoff = _ABOVE * measured.frequency[-1]
         answered = [_from_rest(rig, smoothed(record, cutoff), step) for record in chosen]
-    found = frequency_response([record for record, _ in answered], estimator=estimator, segment=segment)
-    found = found.lines(_among(found.omega, measured.omega))
-    if found.estimator == "periodic":
-        exact = {"averages": np.full(found.omega.size, np.inf), "band": np.array([found.gain, found.gain])}
-        found = replace(found, phase_band=np.array([found.phase, found.phase]), **exact)
+    answers = [record for record, _ in answered]
+    if not any(np.ptp(record.force) for record in answers):  # such as in the play of a gap
+        found = exact(measured.omega, np.zeros(measured.omega.size, dtype=complex), measured.amplitude)
+    else:
+        found = frequency_response(answers, estimator=estimator, segment=segment)
+        found = found.lines(_among(found.omega, measured.omega))
+        if found.estimator == "periodic":  # two periods that are the same have no scatter
+            found = exact(found.omega, found.value, found.amplitude)
     notes = [note for record, _ in answered for note in record.notes]
     status = next((status for _, status in answered if not status.ok), found.status)
     return replace(found, source="model", status=status, notes=tuple(dict.fromkeys(notes)))
@@ -88,22 +92,26 @@ def linear_response(model: Network | Rig, omega: ArrayLike) -> Response:
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies) & (frequencies > 0.0)):
         raise RecordError("A linear response needs a list of positive frequencies [rad/s].")
     value = np.asarray(1j * frequencies * device.admittance(1j * frequencies))
-    gain, phase = np.abs(value), turned(np.angle(value))
     left_out = linearise(device)
     notes = [f"Friction left out: {', '.join(left_out.frictions)}."] if left_out.frictions else []
     notes += [f"Gaps closed: {', '.join(left_out.gaps)}."] if left_out.gaps else []
+    return replace(exact(frequencies, value), source="linear model", notes=tuple(notes))
+
+
+def exact(omega: Matrix, value: Complex, amplitude: float = math.nan) -> Response:
+    """A response without scatter, from its complex values [N/m]."""
+    gain, phase = np.abs(value), turned(np.angle(value))
     return Response(
-        omega=frequencies,
+        omega=omega,
         gain=gain,
         phase=phase,
         coherence=np.ones(gain.size),
         band=np.array([gain, gain]),
         phase_band=np.array([phase, phase]),
         averages=np.full(gain.size, np.inf),
-        amplitude=math.nan,
+        amplitude=amplitude,
         estimator="exact",
-        source="linear model",
-        notes=tuple(notes),
+        source="model",
     )
 
 

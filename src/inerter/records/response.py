@@ -172,8 +172,7 @@ def frequency_response(
 
 def measured_response(records: Sequence[Record], estimator: Estimator = "H1", segment: float | None = None) -> Response:
     """`frequency_response` of records."""
-    for record in records:
-        _check(record)
+    _check(records)
     if estimator not in ESTIMATORS:
         raise RecordError(f"The estimator is one of {', '.join(ESTIMATORS)}, got {estimator!r}.")
     if segment is not None:
@@ -197,7 +196,7 @@ def averaged(records: Sequence[Record], spectra: Spectra, estimator: str) -> Res
             f"told. Excite more strongly, or record longer."
         )
     coherence = spectra.coherence
-    size = np.abs(spectra.fx)
+    size = np.maximum(np.abs(spectra.fx), 1e-300)
     factor = {"H1": 1.0 / spectra.xx, "H2": spectra.ff / size**2, "Hv": np.sqrt(spectra.ff / spectra.xx) / size}
     value = spectra.fx * factor[estimator]
     scatter = np.sqrt((1.0 - coherence) / np.maximum(coherence, 1e-300) / (spectra.count - 1.0))
@@ -378,15 +377,20 @@ def _alike(periods: Sequence[float]) -> list[list[float]]:
     return groups
 
 
-def _check(record: Record) -> None:
-    if not record.uniform:
-        raise RecordError(
-            f"The samples of {record.source!r} are not evenly spaced, which a frequency response needs: resample it."
-        )
-    for name in ("displacement", "force"):
-        values = getattr(record, name)
-        if np.ptp(values) <= 1e-12 * np.max(np.abs(values)):
-            raise RecordError(f"The {name} of {record.source!r} is constant: there is no response to tell.")
+def _check(records: Sequence[Record]) -> None:
+    for record in records:
+        if not record.uniform:
+            raise RecordError(
+                f"The samples of {record.source!r} are not evenly spaced, which spectra need: resample the record."
+            )
+        if _is_constant(record.displacement):
+            raise RecordError(f"The displacement of {record.source!r} is constant: there is no response to tell.")
+    if all(_is_constant(record.force) for record in records):
+        raise RecordError(f"The force of {_named(records)} is constant: there is no response to tell.")
+
+
+def _is_constant(values: Matrix) -> bool:
+    return bool(np.ptp(values) <= 1e-12 * np.max(np.abs(values)))
 
 
 def _named(records: Sequence[Record]) -> str:

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from inerter.errors import InerterError as InerterError
     from inerter.errors import Status as Status
     from inerter.errors import StatusKind as StatusKind
+    from inerter.identification.response import linear_response as linear_response
+    from inerter.identification.response import model_response as model_response
+    from inerter.identification.virtual_rig import VirtualRig as VirtualRig
     from inerter.indices.index import LoadCarrying as LoadCarrying
     from inerter.indices.index import RideComfort as RideComfort
     from inerter.indices.index import TyreLoad as TyreLoad
@@ -38,13 +41,14 @@ if TYPE_CHECKING:
     from inerter.networks.parser import network as network
     from inerter.norms.h2 import h2_norm as h2_norm
     from inerter.norms.hinf import hinf_norm as hinf_norm
-    from inerter.norms.response import frequency_response as frequency_response
     from inerter.optimisation.budget import Budget as Budget
     from inerter.optimisation.budget import budget as budget
     from inerter.optimisation.optimise import Optimum as Optimum
     from inerter.optimisation.optimise import optimise as optimise
     from inerter.records.readers import read_record as read_record
     from inerter.records.record import Record as Record
+    from inerter.records.response import Response as Response
+    from inerter.records.response import frequency_response as frequency_response
     from inerter.records.writers import write_record as write_record
     from inerter.signals.harmonics import cosine as cosine
     from inerter.signals.harmonics import flat_multisine as flat_multisine
@@ -105,6 +109,7 @@ __all__ = [
     "Optimum",
     "QuarterCar",
     "Record",
+    "Response",
     "RideComfort",
     "Rig",
     "Road",
@@ -118,6 +123,7 @@ __all__ = [
     "Trajectory",
     "Tyre",
     "TyreLoad",
+    "VirtualRig",
     "Weighted",
     "__version__",
     "assemble",
@@ -134,7 +140,9 @@ __all__ = [
     "h2_norm",
     "held_noise",
     "hinf_norm",
+    "linear_response",
     "load_study",
+    "model_response",
     "multisine",
     "network",
     "optimise",
@@ -202,12 +210,17 @@ _HOME = {
     "Strut": "vehicle.mechanism",
     "Tyre": "vehicle.mechanism",
     "TyreLoad": "indices.index",
+    "VirtualRig": "identification.virtual_rig",
     "Weighted": "vehicle.mechanism",
     "assemble": "systems.assemble",
     "evaluate": "methods.method",
     "evaluate_many": "methods.method",
     "free": "networks.elements",
-    "frequency_response": "norms.response",
+    "frequency_response": "records.response",
+    "Record": "records.record",
+    "Response": "records.response",
+    "linear_response": "identification.response",
+    "model_response": "identification.response",
     "h2_norm": "norms.h2",
     "hinf_norm": "norms.hinf",
     "network": "networks.parser",

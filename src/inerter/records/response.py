@@ -1,0 +1,404 @@
+"""`frequency_response`: from displacement to force, of measured records, with its confidence band."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from inerter.checks import check_positive
+from inerter.errors import OK, RecordError, Status, StatusKind
+from inerter.norms.response import frequency_response as linear_response
+from inerter.records.periods import common_periods, whole_periods
+from inerter.records.record import Record
+from inerter.records.spectra import Lines, Spectra, lines_of, welch
+from inerter.systems.linear import LinearSystem
+
+if TYPE_CHECKING:
+    import xarray
+
+Matrix = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Estimator = Literal["H1", "H2", "Hv"]
+ESTIMATORS = ("H1", "H2", "Hv")
+_ALIKE = 1e-4  # relative difference of periods that count as one
+_CONFIDENCE = 0.95
+_COLUMNS = {  # name: unit, long name
+    "gain": ("N/m", "force over displacement"),
+    "gain_low": ("N/m", "gain, lower end of the 95 % interval"),
+    "gain_high": ("N/m", "gain, upper end of the 95 % interval"),
+    "phase": ("rad", "phase of force over displacement"),
+    "phase_low": ("rad", "phase, lower end of the 95 % interval"),
+    "phase_high": ("rad", "phase, upper end of the 95 % interval"),
+    "coherence": ("1", "share of the force's mean square that goes with the displacement"),
+    "averages": ("1", "averages, as if they were independent"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Force over displacement at some frequencies, at the amplitude of the records.
+
+    There are only frequencies that the displacement has. The bands hold the true value in 95 of 100 cases each, as far
+    as scatter goes; a response without scatter, such as a model's, has infinite averages and bands of no width. A
+    phase of pi is that of an inerter, pi/2 that of a damper, 0 that of a spring.
+    """
+
+    omega: Matrix  # (n,) [rad/s], increasing
+    gain: Matrix  # (n,) [N/m]
+    phase: Matrix  # (n,) [rad] from -pi/2 to 3 pi/2
+    coherence: Matrix  # (n,) from 0 to 1
+    band: Matrix  # (2, n) [N/m] lower and upper end
+    phase_band: Matrix  # (2, n) [rad]
+    averages: Matrix  # (n,) as if they were independent
+    amplitude: float  # [m] r.m.s. displacement of the records, to which the response belongs
+    estimator: str  # "periodic", "H1", "H2", "Hv" or "exact"
+    source: str
+    status: Status = OK
+    notes: tuple[str, ...] = ()
+
+    @property
+    def value(self) -> Complex:
+        """The complex response [N/m]."""
+        return np.asarray(self.gain * np.exp(1j * self.phase))
+
+    @property
+    def frequency(self) -> Matrix:
+        """[Hz]."""
+        return np.asarray(self.omega / (2.0 * np.pi))
+
+    def lines(self, chosen: NDArray[np.bool_]) -> Response:
+        """The same response at some of its frequencies."""
+        parts = ("omega", "gain", "phase", "coherence", "band", "phase_band", "averages")
+        return replace(self, **{name: getattr(self, name)[..., chosen] for name in parts})
+
+    def columns(self) -> dict[str, Matrix]:
+        """All numbers by name, one for each frequency."""
+        ends = {"gain_low": self.band[0], "gain_high": self.band[1]}
+        ends |= {"phase_low": self.phase_band[0], "phase_high": self.phase_band[1]}
+        return {name: ends[name] if name in ends else getattr(self, name) for name in _COLUMNS}
+
+    def to_xarray(self) -> xarray.Dataset:
+        """A dataset over `omega`, with units and long names."""
+        import xarray
+
+        data = {
+            name: ("omega", values, {"units": _COLUMNS[name][0], "long_name": _COLUMNS[name][1]})
+            for name, values in self.columns().items()
+        }
+        coords = {
+            "omega": ("omega", self.omega, {"units": "rad/s", "long_name": "angular frequency"}),
+            "frequency": ("omega", self.frequency, {"units": "Hz", "long_name": "frequency"}),
+        }
+        about = {"source": self.source, "estimator": self.estimator, "amplitude": self.amplitude}
+        return xarray.Dataset(data, coords, {**about, "status": str(self.status), "notes": "\n".join(self.notes)})
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write a table with a header `name [unit]`; numbers read back to the last bit.
+
+        Raises `RecordError` if the file cannot be written.
+        """
+        columns = self.columns()
+        try:
+            with Path(path).open("w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file)
+                writer.writerow(["frequency [Hz]", *(f"{name} [{_COLUMNS[name][0]}]" for name in columns)])
+                rows = np.column_stack([self.frequency, *columns.values()]).tolist()
+                writer.writerows(map(repr, row) for row in rows)
+        except OSError as error:
+            raise RecordError(f"Cannot write {str(path)!r}: {error.strerror}.") from None
+
+
+@overload
+def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int | None = None) -> Complex: ...
+@overload
+def frequency_response(
+    system: Record | Sequence[Record], *, estimator: Estimator = "H1", segment: float | None = None
+) -> Response: ...
+def frequency_response(
+    system: LinearSystem | Record | Sequence[Record],
+    omega: ArrayLike | None = None,
+    pade_order: int | None = None,
+    *,
+    estimator: Estimator = "H1",
+    segment: float | None = None,
+) -> Complex | Response:
+    """The response of a linear system at given frequencies, or that of a rig from one or more of its records.
+
+    **A linear system**: G(j omega), shape (len(omega), outputs, sources), omega in rad/s. Inputs of one source are one
+    column, each arrival with its factor exp(-j omega delay), or with a Pade approximant for each delay between one
+    arrival and the next. Infinite where omega is a pole. Raises `LinearSystemError` unless omega holds finite numbers.
+
+    **Records**: force over displacement, a `Response`, at the frequencies that their displacement has.
+    Where the displacement repeats, with `record.period` or one that is found, amplitudes of the excited harmonics are
+    averaged over whole periods before they are divided, which leaves no bias of noise in either channel; the scatter
+    between periods gives the band (Pintelon and Schoukens, System Identification, 2nd ed. 2012, ch. 2). Of several
+    records of one period, the scatter between records does, which has in it what friction and backlash make of
+    different phases. Records of different periods, such as sines, tell one response together.
+    Where it does not repeat, spectra are averaged over Hann-windowed segments of `segment` seconds, by default a
+    sixteenth of all the time (Welch 1967), and the band follows from the coherence and the number of averages (Bendat
+    and Piersol, Random Data, 4th ed. 2010, sec. 9.2).
+
+    `estimator` is used where more than one record or segment is averaged. "H1", the default, bears noise in the force
+    without bias, for the load cell is the noisier channel and friction adds what does not follow the displacement;
+    noise in the displacement makes its gain too small. "H2" is the contrary; "Hv" is their geometric mean, for noise
+    alike in both.
+
+    Raises `RecordError` for records that are too short, not uniformly sampled, or do not move.
+
+    >>> import inerter as it, numpy as np
+    >>> t = np.arange(2000) * 1e-3
+    >>> moved = 1e-3 * np.sin(2 * np.pi * 5 * t)
+    >>> found = it.frequency_response(it.Record(t, moved, 2e4 * moved))
+    >>> found.frequency.round(9), found.gain.round(6)
+    (array([5.]), array([20000.]))
+    """
+    if isinstance(system, Record) or (
+        isinstance(system, Sequence) and system and all(isinstance(part, Record) for part in system)
+    ):
+        if omega is not None or pade_order is not None:
+            raise RecordError("The frequencies of a record are those that its displacement has: leave out omega.")
+        return measured_response([system] if isinstance(system, Record) else list(system), estimator, segment)
+    if estimator != "H1" or segment is not None:
+        raise RecordError("An estimator and a segment are for records; a linear system is known exactly.")
+    return linear_response(system, math.nan if omega is None else omega, pade_order)  # type: ignore[arg-type]
+
+
+def measured_response(records: Sequence[Record], estimator: Estimator = "H1", segment: float | None = None) -> Response:
+    """`frequency_response` of records."""
+    _check(records)
+    if estimator not in ESTIMATORS:
+        raise RecordError(f"The estimator is one of {', '.join(ESTIMATORS)}, got {estimator!r}.")
+    if segment is not None:
+        check_positive(RecordError, "The length of a segment", segment, "s")
+    periods = None if segment is not None else common_periods(records)
+    if periods is None:
+        found = averaged(records, welch(records, segment), estimator)
+        return replace(found, notes=(*found.notes, *_blurred(found)))
+    parts = [
+        _periodic([record for record, own in zip(records, periods, strict=True) if own in group], group, estimator)
+        for group in _alike(periods)
+    ]
+    return parts[0] if len(parts) == 1 else _joined(parts, records)
+
+
+def averaged(records: Sequence[Record], spectra: Spectra, estimator: str) -> Response:
+    """The response from averaged spectra."""
+    if not spectra.omega.size:
+        raise RecordError(
+            f"Force and displacement of {_named(records)} have no more in common than noise would: nothing can be "
+            f"told. Excite more strongly, or record longer."
+        )
+    coherence = spectra.coherence
+    size = np.maximum(np.abs(spectra.fx), 1e-300)
+    factor = {"H1": 1.0 / spectra.xx, "H2": spectra.ff / size**2, "Hv": np.sqrt(spectra.ff / spectra.xx) / size}
+    value = spectra.fx * factor[estimator]
+    scatter = np.sqrt((1.0 - coherence) / np.maximum(coherence, 1e-300) / (spectra.count - 1.0))
+    averages = np.full(value.size, spectra.count)
+    return respond(records, spectra.omega, value, coherence, scatter, averages, estimator, spectra.notes)
+
+
+def respond(
+    records: Sequence[Record],
+    omega: Matrix,
+    value: Complex,
+    coherence: Matrix,
+    scatter: Matrix,
+    averages: Matrix,
+    estimator: str,
+    notes: tuple[str, ...],
+    status: Status = OK,
+) -> Response:
+    """A response from complex values and their relative standard deviations.
+
+    Half of the variance of a complex value lies along it, and half across; Student's t has two degrees of freedom for
+    each average but the first.
+    """
+    gain, phase = np.abs(value), turned(np.angle(value))
+    reach = _student(averages) * scatter / math.sqrt(2.0)
+    turn = np.minimum(reach, np.pi)
+    return Response(
+        omega=omega,
+        gain=gain,
+        phase=phase,
+        coherence=coherence,
+        band=np.array([np.maximum(gain * (1.0 - reach), 0.0), gain * (1.0 + reach)]),
+        phase_band=np.array([phase - turn, phase + turn]),
+        averages=averages,
+        amplitude=math.sqrt(np.mean([np.var(record.displacement) for record in records])),
+        estimator=estimator,
+        source=_named(records),
+        status=status,
+        notes=notes,
+    )
+
+
+def turned(angle: Matrix) -> Matrix:
+    """Phases from -pi/2 to 3 pi/2: those of passive devices, 0 to pi, are in the middle and do not jump.
+
+    Adding up differences instead would carry one noisy line's slip of a turn to all that follow.
+
+    >>> turned(np.array([-3.1, 3.1]))  # an inerter
+    array([3.18318531, 3.1       ])
+    """
+    return np.asarray((angle + 0.5 * np.pi) % (2.0 * np.pi) - 0.5 * np.pi)
+
+
+def _periodic(records: Sequence[Record], group: Sequence[float], estimator: Estimator) -> Response:
+    """The response of records of one period."""
+    period = float(np.mean(group))
+    parts = [whole_periods(record, period) for record in records]
+    every = lines_of(parts)
+    chosen = every.chosen()
+    if not chosen.any():
+        raise RecordError(f"The displacement of {_named(records)} has no line that stands out of its noise.")
+    lines, left_out = every.at(chosen).settled()
+    counts = [x.shape[0] for x in lines.displacement]
+    if counts == [1]:
+        raise RecordError(
+            f"Too short: {_named(records)} has one whole period of {period:.6g} s. Record two or more, for their "
+            f"scatter tells how sure the response is."
+        )
+    many = f"{counts[0]} periods" if len(counts) == 1 else f"{len(counts)} records of {min(counts)} or more periods"
+    notes = [f"Periodic: {many} of {period:.6g} s, {chosen.sum()} of {chosen.size} harmonics excited."]
+    notes += [note for part in parts for note in part.notes]
+    notes += [f"Left out the first {n} periods: the force had not settled." for n in left_out if n]
+    if chosen.sum() == 1:
+        notes.append(_distortion(every, chosen))
+    status = _repeats(lines.displacement, records)
+    if len(parts) > 1:
+        x, force = (np.array([a.mean(axis=0) for a in of]) for of in (lines.displacement, lines.force))
+        found = averaged(records, _products(lines.omega, x, force), estimator)
+        return replace(found, notes=(*notes, *found.notes), status=status)
+    (x,), (force,) = lines.displacement, lines.force
+    value = force.mean(axis=0) / x.mean(axis=0)
+    strays = np.sum(np.abs(force - value * x) ** 2, axis=0) / (counts[0] - 1) / counts[0]
+    scatter = np.sqrt(strays) / np.maximum(np.abs(force.mean(axis=0)), 1e-300)
+    spectra = _products(lines.omega, x, force)
+    averages = np.full(value.size, float(counts[0]))
+    return respond(records, lines.omega, value, spectra.coherence, scatter, averages, "periodic", tuple(notes), status)
+
+
+def _products(omega: Matrix, x: Complex, force: Complex) -> Spectra:
+    return Spectra(
+        omega,
+        np.mean(np.abs(x) ** 2, axis=0),
+        np.mean(np.abs(force) ** 2, axis=0),
+        np.mean(force * x.conj(), axis=0),
+        float(x.shape[0]),
+    )
+
+
+def _distortion(lines: Lines, chosen: NDArray[np.bool_]) -> str:
+    """What a sine is besides its fundamental, in words."""
+    words = []
+    at = int(np.argmax(chosen))
+    for name, amplitudes in (("displacement", lines.displacement), ("force", lines.force)):
+        power = np.mean([np.abs(a.mean(axis=0)) ** 2 for a in amplitudes], axis=0)[at :: at + 1]
+        others = math.sqrt(power[1:].sum() / power[0]) if power[0] > 0.0 else math.inf
+        third = math.sqrt(power[2] / power[0]) if power.size > 2 and power[0] > 0.0 else 0.0
+        words.append(f"of the {name} {100.0 * others:.2g} % (the third alone {100.0 * third:.2g} %)")
+    return f"A sine: harmonics are, relative to the fundamental, {' and '.join(words)}; the response is of that alone."
+
+
+def _repeats(x: Sequence[Complex], records: Sequence[Record]) -> Status:
+    """Whether the displacement is the same in all periods of a record."""
+    for amplitudes, record in zip(x, records, strict=True):
+        mean = amplitudes.mean(axis=0)
+        change = math.sqrt(float(np.mean(np.abs(amplitudes - mean) ** 2)) / float(np.mean(np.abs(mean) ** 2)))
+        if change > 0.1:
+            return Status(
+                StatusKind.INACCURATE,
+                f"the displacement of {record.source!r} changes by {100.0 * change:.0f} % from period to period: is "
+                f"its period right?",
+            )
+    return OK
+
+
+def _blurred(found: Response) -> list[str]:
+    """A note where the response bends within the resolution by more than its band.
+
+    The Hann window averages the response over frequencies of variance (spacing)^2 / 3, which shifts it by a sixth of
+    its second difference.
+    """
+    value, spacing = found.value, np.diff(found.omega)
+    if spacing.size < 2:
+        return []
+    adjacent = spacing < 1.5 * spacing.min()
+    bias = np.abs(value[2:] - 2.0 * value[1:-1] + value[:-2]) / 6.0
+    wide = 0.5 * (found.band[1] - found.band[0])[1:-1]
+    count = int(np.sum(adjacent[1:] & adjacent[:-1] & (bias > wide)))
+    if not count:
+        return []
+    return [f"At {count} frequencies the segments are too short to resolve the response: its bias exceeds its band."]
+
+
+def _joined(parts: Sequence[Response], records: Sequence[Record]) -> Response:
+    """Responses at different frequencies as one; of one frequency, that with the most averages."""
+    omega = np.concatenate([part.omega for part in parts])
+    averages = np.concatenate([part.averages for part in parts])
+    order = np.lexsort((-averages, omega))
+    fresh = np.diff(omega[order], prepend=-1.0) > _ALIKE * omega[order]
+    chosen = order[fresh]
+
+    def all_of(name: str) -> Matrix:
+        return np.asarray(np.concatenate([getattr(part, name) for part in parts], axis=-1)[..., chosen])
+
+    return Response(
+        omega=omega[chosen],
+        gain=all_of("gain"),
+        phase=all_of("phase"),
+        coherence=all_of("coherence"),
+        band=all_of("band"),
+        phase_band=all_of("phase_band"),
+        averages=averages[chosen],
+        amplitude=math.sqrt(np.mean([part.amplitude**2 for part in parts])),
+        estimator="periodic",
+        source=_named(records),
+        status=next((part.status for part in parts if not part.status.ok), OK),
+        notes=tuple(f"{part.source}: {note}" for part in parts for note in part.notes),
+    )
+
+
+def _alike(periods: Sequence[float]) -> list[list[float]]:
+    """Periods in groups that count as one."""
+    groups: list[list[float]] = []
+    for period in sorted(set(periods)):
+        if groups and period <= groups[-1][0] * (1.0 + _ALIKE):
+            groups[-1].append(period)
+        else:
+            groups.append([period])
+    return groups
+
+
+def _check(records: Sequence[Record]) -> None:
+    for record in records:
+        if not record.uniform:
+            raise RecordError(
+                f"The samples of {record.source!r} are not evenly spaced, which spectra need: resample the record."
+            )
+        if _is_constant(record.displacement):
+            raise RecordError(f"The displacement of {record.source!r} is constant: there is no response to tell.")
+    if all(_is_constant(record.force) for record in records):
+        raise RecordError(f"The force of {_named(records)} is constant: there is no response to tell.")
+
+
+def _is_constant(values: Matrix) -> bool:
+    return bool(np.ptp(values) <= 1e-12 * np.max(np.abs(values)))
+
+
+def _named(records: Sequence[Record]) -> str:
+    return ", ".join(dict.fromkeys(record.source for record in records))
+
+
+def _student(averages: Matrix) -> Matrix:
+    """Quantile of Student's t for two degrees of freedom an average, but for the first."""
+    from scipy.stats import t
+
+    return np.asarray(t.isf(0.5 * (1.0 - _CONFIDENCE), 2.0 * (averages - 1.0)))

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from inerter.errors import StatusKind as StatusKind
     from inerter.identification.response import linear_response as linear_response
     from inerter.identification.response import model_response as model_response
+    from inerter.identification.fit import Fit as Fit
+    from inerter.identification.identify import identify as identify
     from inerter.identification.virtual_rig import VirtualRig as VirtualRig
     from inerter.indices.index import LoadCarrying as LoadCarrying
     from inerter.indices.index import RideComfort as RideComfort
@@ -93,6 +95,7 @@ __all__ = [
     "Damper",
     "Estimate",
     "ExpectedValue",
+    "Fit",
     "Force",
     "Friction",
     "Gap",
@@ -140,6 +143,7 @@ __all__ = [
     "h2_norm",
     "held_noise",
     "hinf_norm",
+    "identify",
     "linear_response",
     "load_study",
     "model_response",
@@ -210,6 +214,8 @@ _HOME = {
     "Strut": "vehicle.mechanism",
     "Tyre": "vehicle.mechanism",
     "TyreLoad": "indices.index",
+    "Fit": "identification.fit",
+    "identify": "identification.identify",
     "VirtualRig": "identification.virtual_rig",
     "Weighted": "vehicle.mechanism",
     "assemble": "systems.assemble",

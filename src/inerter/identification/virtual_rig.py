@@ -21,7 +21,6 @@ Matrix = NDArray[np.float64]
 GRAVITY = 9.80665  # [m/s^2] standard, for load cells that are rated in kg
 _FINEST = 1e-4  # [s] between the knots of the table's motion, at most
 _TABLE_DAMPING = 0.7
-_ORDER = {"table": 2, "force": 2}
 
 
 @dataclass(frozen=True)
@@ -96,13 +95,13 @@ class VirtualRig:
         if not run.status.ok:
             raise IdentificationError(f"The virtual rig cannot be simulated: {run.status}.")
         at = (first + np.arange(count)) * parts
-        sensed = _low_pass(run["device_force"], self.force_bandwidth, math.sqrt(0.5), step)[0]
+        sensed = low_pass(run["device_force"], self.force_bandwidth, math.sqrt(0.5), step)[0]
         delayed = np.interp(step * at - self.force_delay, table.time, sensed)
         return self._read(position[at], delayed, interval, command)
 
     def _moved(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:
         """Position and velocity of the table, which begins at rest."""
-        position, velocity = _low_pass(command - command[0], self.table_bandwidth, _TABLE_DAMPING, step)
+        position, velocity = low_pass(command - command[0], self.table_bandwidth, _TABLE_DAMPING, step)
         return command[0] + position, velocity
 
     def _read(self, displacement: Matrix, force: Matrix, interval: float, command: Signal) -> Record:
@@ -127,7 +126,7 @@ def _rounded(values: Matrix, resolution: float) -> Matrix:
     return np.asarray(values if resolution == 0.0 else resolution * np.rint(values / resolution))
 
 
-def _low_pass(signal: Matrix, bandwidth: float, damping: float, step: float) -> tuple[Matrix, Matrix]:
+def low_pass(signal: Matrix, bandwidth: float, damping: float, step: float) -> tuple[Matrix, Matrix]:
     """A signal after a low pass of second order, and its derivative; exact for a signal that is linear over a step.
 
     It starts as if the signal had always had its first value.

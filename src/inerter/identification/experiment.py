@@ -1,0 +1,170 @@
+"""A record made ready to be compared with a model: the motion that it is given, and the force that it should answer."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import IdentificationError, InerterError
+from inerter.identification.virtual_rig import low_pass
+from inerter.networks.elements import Damper, Gap, Spring
+from inerter.records.record import Record
+from inerter.records.smoothing import Motion, noise_of, smooth_displacement
+from inerter.signals.signal import Signal
+from inerter.simulation import event_driven
+from inerter.simulation.inputs import InputTable, tabulate
+from inerter.simulation.observe import trajectory_of
+from inerter.simulation.start import initial_state
+from inerter.simulation.trajectory import Trajectory
+from inerter.systems.piecewise import PiecewiseSystem
+
+Matrix = NDArray[np.float64]
+MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and tell nothing new
+_AT_REST = 0.02  # of the largest velocity
+_FORCE = "device_force"
+
+
+@dataclass(frozen=True, eq=False)
+class Experiment:
+    """One record with its smoothed motion. Samples that are not `kept` are simulated but not compared.
+
+    Times are counted from the first sample.
+    """
+
+    record: Record
+    motion: Motion
+    kept: NDArray[np.bool_]
+    table: InputTable  # of the motion, without delay
+    parts: int  # steps of the simulation in an interval
+    noise: float  # [N] r.m.s. of the noise of the force
+
+    @property
+    def size(self) -> int:
+        return int(self.record.time.size)
+
+    def delayed(self, delay: float) -> InputTable:
+        """The motion `delay` [s] later: what a force that arrives late answers to."""
+        if delay == 0.0:
+            return self.table
+        time = np.clip(self.table.time - delay, 0.0, self.table.time[-1])
+        signal = _signal(self.motion)
+        value, slope = (column[:, None] for column in signal.sample(time))
+        slope[self.table.time < delay] = 0.0
+        return replace(self.table, value=value, slope=slope, value_before=value, slope_before=slope)
+
+    def force(self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None) -> Matrix | None:
+        """The force that the load cell would read of this device at the first `samples` samples; None if it fails."""
+        run = self.run(system, delay, samples)
+        return None if run is None else self.sensed(run[_FORCE])
+
+    def run(
+        self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None, moving: bool = False
+    ) -> Trajectory | None:
+        """The motion of the device, from rest or (`moving`) carried along with the table; None if it fails."""
+        table = self.delayed(delay)
+        if samples is not None and samples < self.size:
+            table = _shortened(table, (samples - 1) * self.parts)
+        state = initial_state(system, table.value[0], "rest")
+        if moving:
+            state = _carried(system, state, table.slope[0])
+        integration = event_driven.start(system, table, state)
+        integration.advance(table.time.size - 1)
+        if not integration.status.ok:
+            return None
+        return trajectory_of(integration, None, self.record.source, state)
+
+    def sensed(self, force: Matrix) -> Matrix:
+        """A force at all steps after the load cell, at the samples."""
+        band = self.record.force_bandwidth
+        if band is not None:
+            force = low_pass(force, band, math.sqrt(0.5), self.table.step)[0]
+        return np.asarray(force[:: self.parts])
+
+
+def experiment_of(record: Record, bandwidth: float | None = None, lead: float | None = None) -> Experiment:
+    """Smooth the displacement, and leave out samples at which the load cell is saturated or the motion uncertain.
+
+    `lead` [s] at the start are not compared; by default none if the table starts from rest, else a tenth.
+
+    Raises `IdentificationError` for records that are too long, or `RecordError` for uneven ones.
+    """
+    if record.time.size > MOST_SAMPLES:
+        raise IdentificationError(
+            f"{record.source!r} has {record.time.size} samples; a fit takes up to {MOST_SAMPLES}. Trim or resample it."
+        )
+    if np.ptp(record.displacement) == 0.0:
+        raise IdentificationError(f"The displacement of {record.source!r} is constant: nothing can be told from it.")
+    if np.ptp(record.force) == 0.0:
+        raise IdentificationError(f"The force of {record.source!r} is constant: nothing can be told from it.")
+    motion = smooth_displacement(record, bandwidth)
+    interval, count = record.interval, record.time.size
+    parts = 1 if record.force_bandwidth is None else max(1, math.ceil(2.0 * interval * record.force_bandwidth))
+    step = interval / parts
+    try:
+        table = tabulate([_signal(motion)], [0.0], (count - 1) * interval, step)
+    except InerterError as error:
+        raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
+    kept = ~saturated(record)
+    at_rest = abs(motion.velocity[0]) <= _AT_REST * np.abs(motion.velocity).max()
+    wait = (0.0 if at_rest else 0.1 * record.duration) if lead is None else lead
+    if not 0.0 <= wait < record.duration:
+        raise IdentificationError(
+            f"What is left out at the start, {wait:g} s, must be shorter than {record.duration:g} s."
+        )
+    kept[: round(wait / interval)] = False
+    edge = min(round(1.0 / (motion.bandwidth * interval)), count // 10)
+    kept[count - edge :] = False
+    if not at_rest or wait > 0.0:
+        kept[:edge] = False
+    if kept.sum() < 50:
+        raise IdentificationError(
+            f"Of {record.source!r} only {kept.sum()} samples can be used; a fit needs 50 or more."
+        )
+    return Experiment(record, motion, kept, table, parts, max(noise_of(record.force, interval).rms, 1e-9))
+
+
+def saturated(record: Record) -> NDArray[np.bool_]:
+    """Samples at the end of the load cell's range, and one beside them; none if the range is not known."""
+    if record.force_range is None:
+        return np.zeros(record.time.size, dtype=bool)
+    at_end = np.abs(record.force) >= 0.999 * record.force_range
+    return np.asarray(np.convolve(at_end, np.ones(3), "same") > 0.0)
+
+
+def forgotten(experiment: Experiment, system: PiecewiseSystem, level: float) -> int:
+    """The sample from which on it no longer matters, beyond `level` [N], whether the device started at rest or not."""
+    runs = [experiment.run(system, moving=moving) for moving in (False, True)]
+    if runs[0] is None or runs[1] is None:
+        return 0
+    apart = np.abs(experiment.sensed(runs[0][_FORCE]) - experiment.sensed(runs[1][_FORCE])) > level
+    return int(np.flatnonzero(apart)[-1]) + 1 if apart.any() else 0
+
+
+def _signal(motion: Motion) -> Signal:
+    time = motion.time - motion.time[0]
+    return Signal.sampled(time, motion.displacement, derivative=motion.velocity, label="measured displacement")
+
+
+def _shortened(table: InputTable, segments: int) -> InputTable:
+    end = segments + 1
+    special = np.append(table.special[table.special < segments], end).astype(np.int64)
+    samples = int(np.sum(table.slot[:end] >= 0))
+    value, slope = table.value[:end], table.slope[:end]
+    return replace(
+        table, time=table.time[:end], value=value, slope=slope, value_before=value, slope_before=slope,
+        special=special, slot=table.slot[:end], sampled=table.sampled[:samples],
+    )  # fmt: skip
+
+
+def _carried(system: PiecewiseSystem, state: Matrix, velocity: Matrix) -> Matrix:
+    """The same state with velocities at which springs, dampers and gaps keep their length."""
+    E_a, E_w, E_z = system.rates
+    soft = [i for i, b in enumerate(system.graph.branches) if isinstance(b.element, Spring | Damper | Gap)]
+    rows = np.hstack([E_a, E_w])[soft]
+    solved = np.linalg.lstsq(rows, -E_z[soft] @ velocity, rcond=1e-10)[0]
+    moved = state.copy()
+    moved[: E_a.shape[1]] = solved[: E_a.shape[1]]
+    return moved

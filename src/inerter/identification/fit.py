@@ -1,0 +1,109 @@
+"""What an identification found: parameters with intervals, what cannot be told, and how well the model fits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import OK, Status
+from inerter.identification.experiment import Experiment
+from inerter.networks.elements import Network
+from inerter.records.record import Record
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Told:
+    """Whether the records tell a parameter, and a sentence for the reader. True where they do."""
+
+    told: bool
+    sentence: str
+
+    def __bool__(self) -> bool:
+        return self.told
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One identified value with its 95 % interval.
+
+    `value` is nan where the records cannot tell it: the interval then still holds, and says what is known, such as
+    an upper bound. `best` is the value of the best fit in any case, to go on computing with.
+    """
+
+    name: str
+    unit: str
+    value: float
+    interval: tuple[float, float]
+    best: float
+    standard_error: float  # from the curvature at the best fit
+    profile: tuple[tuple[float, float], ...] = ()  # (value, rise of the cost over its threshold)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """One record as used, what the model answers to it, and the tests of what is left."""
+
+    experiment: Experiment
+    model: Matrix  # (samples,) [N] force as the load cell would read it, with its offset
+    offset: float  # [N] of the load cell
+    fitted: NDArray[np.bool_]  # samples that were fitted
+    checked: NDArray[np.bool_]  # samples that were kept for the check
+    whitened: Matrix  # residuals after weighting and whitening, of the fitted samples
+    lead: float  # [s] at the start that were left out
+    whiteness: float  # p-value of Ljung and Box's test
+    openings: Mapping[str, int]  # how often each gap opened in the model
+
+    @property
+    def record(self) -> Record:
+        return self.experiment.record
+
+    @property
+    def residual(self) -> Matrix:
+        """Measured less model [N]."""
+        return self.record.force - self.model
+
+    def rms(self, check: bool = False) -> float:
+        """R.m.s. of the residual over the fitted, or the checked, samples [N]; nan if there are none."""
+        mask = self.checked if check else self.fitted
+        return float(np.sqrt(np.mean(self.residual[mask] ** 2))) if mask.any() else float("nan")
+
+    def explained(self, check: bool = False) -> float:
+        """Part of the variance of the force that the model explains."""
+        mask = self.checked if check else self.fitted
+        if not mask.any():
+            return float("nan")
+        total = float(np.var(self.record.force[mask]))
+        return 1.0 - float(np.mean(self.residual[mask] ** 2)) / max(total, 1e-300)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The result of `identify`."""
+
+    parameters: dict[str, Parameter]
+    identifiable: dict[str, Told]
+    correlation: Matrix  # (parameters, parameters)
+    covariance: Matrix  # the same shape, in units of the values
+    device: Network  # the model with the best values
+    comparisons: tuple[Comparison, ...]
+    criterion: float  # Bayesian information criterion, lower is better
+    costs: tuple[float, ...]  # of the best starts, sorted: equal ones found the same fit
+    simulations: int
+    status: Status = OK
+    notes: tuple[str, ...] = ()
+    next_experiment: tuple[str, ...] = ()
+    settings: dict[str, object] = field(default_factory=dict)
+
+    @property
+    def explained(self) -> float:
+        """Part of the variance of all fitted forces that the model explains."""
+        left = sum(float(np.sum(c.residual[c.fitted] ** 2)) for c in self.comparisons)
+        total = sum(
+            float(np.sum((c.record.force[c.fitted] - c.record.force[c.fitted].mean()) ** 2)) for c in self.comparisons
+        )
+        return 1.0 - left / max(total, 1e-300)

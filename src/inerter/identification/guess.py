@@ -1,0 +1,190 @@
+"""A first guess without simulation, for devices whose parts follow each other: all of them feel the measured force.
+
+In a chain of an elastic part (k | c), a gap and an inertia (b | f | c2) the displacement is the sum of what each does
+under the force F that was measured: x of the spring with k x + c x' = F, +-gap while in contact, and y of the
+inertia with b y'' + f sgn(y') + c2 y' = F. Two derivatives of the sum are linear in 1/b, f/b, 1/k and the gap once
+c/k and the signs are given. A filter s^2 / (s + w)^4 takes the derivatives, so that no noise is differentiated
+(state-variable filters, Young 1981); the signs follow from the estimates in a few rounds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+from scipy.signal import bilinear, lfilter
+
+from inerter.identification.experiment import Experiment
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Parallel, Series, Spring
+from inerter.records.filtering import low_pass
+
+Matrix = NDArray[np.float64]
+_ROUNDS = 4
+_TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 31)])  # [s] of c/k
+_FORCE_BAND = 200.0  # [Hz] in which contact is looked for
+_WELL, _POORLY = 0.04, 0.6  # relative half-widths of the ranges to look in
+
+
+@dataclass(frozen=True)
+class Chain:
+    """The elements of a chain; a part that is not there is None."""
+
+    spring: Element | None
+    damper: Element | None
+    gap: Element | None
+    inerter: Element
+    friction: Element | None
+    drag: Element | None  # a damper beside the inerter
+
+
+def chain_of(device: Network) -> Chain | None:
+    """The device as such a chain, or None if it is none."""
+    parts = device.parts if isinstance(device, Series) else (device,)
+    found: dict[str, Element] = {}
+    for part in parts:
+        elements = part.parts if isinstance(part, Parallel) else (part,)
+        inertial = any(isinstance(e, Inerter) for e in elements)
+        for e in elements:
+            role = _role(e, inertial)
+            if role is None or role in found:
+                return None
+            found[role] = e  # type: ignore[assignment]
+    if "inerter" not in found or ("damper" in found and "spring" not in found):
+        return None
+    names = ("spring", "damper", "gap", "inerter", "friction", "drag")
+    return Chain(*(found.get(name) for name in names))  # type: ignore[arg-type]
+
+
+def _role(element: object, inertial: bool) -> str | None:
+    match element:
+        case Inerter():
+            return "inerter"
+        case Friction():
+            return "friction" if inertial else None
+        case Damper():
+            return "drag" if inertial else "damper"
+        case Spring():
+            return None if inertial else "spring"
+        case Gap():
+            return None if inertial else "gap"
+    return None
+
+
+def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[float, float]]:
+    """Values of the free elements by name, each with the half-width of the range in which to look for it."""
+    best: dict[str, tuple[float, float]] = {}
+    for experiment in experiments:
+        values = _solved(chain, experiment)
+        for element, value, width in values:
+            if element is None or not isinstance(element.value, Free) or element.value.name is None:
+                continue
+            name = element.value.name
+            if name not in best or width / max(value, 1e-300) < best[name][1] / max(best[name][0], 1e-300):
+                best[name] = (value, width)
+    return best
+
+
+def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, list[str]]:
+    """The experiment with the force counted as tension, and what was done to that end.
+
+    A device takes energy from the table, whatever it is made of; where it takes hardly any, that of a chain has to
+    follow the acceleration.
+    """
+    force = experiment.record.force - np.median(experiment.record.force)
+    velocity, use = experiment.motion.velocity, experiment.kept
+    power = force[use] * velocity[use]
+    share = float(np.mean(power)) / max(float(np.std(force[use]) * np.std(velocity[use])), 1e-300)
+    follows = 0.0
+    if chain is not None:
+        acceleration = experiment.motion.acceleration[use]
+        follows = float(np.corrcoef(force[use], acceleration)[0, 1]) if np.ptp(acceleration) > 0.0 else 0.0
+    if (share + follows if abs(share) < 0.3 else share) >= 0.0:
+        return experiment, []
+    note = f"{experiment.record.source}: the force counted compression as positive; it was reversed."
+    record = experiment.record.noted("Force reversed: tension is positive.", force=-experiment.record.force)
+    return replace(experiment, record=record), [note]
+
+
+def _solved(chain: Chain, experiment: Experiment) -> list[tuple[Element | None, float, float]]:
+    h, motion = experiment.record.interval, experiment.motion
+    z, v, F = motion.displacement, motion.velocity, experiment.record.force
+    w = 2.0 * max(float(np.std(motion.acceleration) / max(np.std(v), 1e-30)), 1.2)
+    first = min(int(6.0 / (w * h)) + 1, z.size // 2)
+    use = experiment.kept.copy()
+    use[:first] = False
+
+    def filtered(x: Matrix, derivatives: int) -> Matrix:
+        numerator = np.zeros(derivatives + 1)
+        numerator[0] = w**4
+        b, a = bilinear(numerator, np.poly([-w] * 4), 1.0 / h)
+        return np.asarray(lfilter(b, a, x - x[0] if derivatives else x))[use]
+
+    left = filtered(z, 2)
+    contact = _contact(F, h, experiment.noise)
+    direction = np.sign(v)
+    solution: tuple[float, Matrix, float] = (np.inf, np.zeros(6), 0.0)
+    for _ in range(_ROUNDS):
+        fixed = [filtered(F, 0), filtered(np.ones_like(F), 0)]
+        if chain.friction is not None:
+            fixed.append(-filtered(direction, 0))
+        if chain.drag is not None:
+            fixed.append(-filtered(z, 1))
+        if chain.gap is not None:
+            fixed.append(filtered(contact, 2))
+        tried = []
+        for tau in _TIMES if chain.damper is not None else _TIMES[:1]:
+            columns = fixed if chain.spring is None else [*fixed, filtered(_relaxed(F, tau, h), 2)]
+            A = np.stack(columns, axis=1)
+            size = np.linalg.norm(A, axis=0)
+            size[size == 0.0] = 1.0
+            low = np.zeros(A.shape[1])
+            low[0], low[1] = 1e-12, -np.inf
+            solved = lsq_linear(A / size, left, bounds=(low, np.inf))
+            tried.append((float(solved.cost), solved.x / size, float(tau)))
+        solution = min(tried, key=lambda t: t[0])
+        direction = _direction(chain, solution[1], solution[2], z, F, contact, h, motion.bandwidth)
+    p, tau = list(solution[1]), solution[2]
+    b = 1.0 / p[0]
+    rest = p[2:]
+    f = b * rest.pop(0) if chain.friction is not None else 0.0
+    drag = b * rest.pop(0) if chain.drag is not None else 0.0
+    gap = rest.pop(0) if chain.gap is not None else 0.0
+    k = 1.0 / max(rest.pop(0), 1e-15) if chain.spring is not None else np.inf
+    return [
+        (chain.inerter, b, _WELL * b),
+        (chain.friction, f, _WELL * f + 3.0 * experiment.noise),
+        (chain.drag, drag, _POORLY * drag),
+        (chain.gap, gap, _POORLY * gap + 10.0 * motion.noise),
+    ] + ([(chain.spring, k, _POORLY * k)] if chain.gap is None else [])
+
+
+def _contact(force: Matrix, h: float, noise: float) -> Matrix:
+    """The side on which the gap touches, -1 or 1, and a straight line between where there is no force."""
+    calm = low_pass(force, h, min(_FORCE_BAND, 0.2 / h))
+    touching = np.abs(calm) > max(4.0 * noise, 0.01 * float(np.abs(calm).max()))
+    n = np.arange(force.size)
+    return np.interp(n, n[touching], np.sign(calm[touching]))
+
+
+def _relaxed(force: Matrix, tau: float, h: float) -> Matrix:
+    """Elongation of a spring of 1 N/m beside a damper of `tau` N s/m."""
+    if tau == 0.0:
+        return force
+    b, a = bilinear([1.0], [tau, 1.0], 1.0 / h)
+    return np.asarray(lfilter(b, a, force))
+
+
+def _direction(
+    chain: Chain, p: Matrix, tau: float, z: Matrix, force: Matrix, contact: Matrix, h: float, band: float
+) -> Matrix:
+    """The direction in which the inertia moves, nearly a sign."""
+    y = z.copy()
+    rest = list(p[2 + (chain.friction is not None) + (chain.drag is not None) :])
+    if chain.gap is not None:
+        y -= rest.pop(0) * contact
+    if chain.spring is not None:
+        y -= rest.pop(0) * _relaxed(force, tau, h)
+    v = np.gradient(low_pass(y, h, band), h)
+    return np.clip(v / (0.02 * max(float(np.std(v)), 1e-30)), -1.0, 1.0)

@@ -1,0 +1,180 @@
+"""Intervals by profile likelihood: how far a value can be moved, all others following, until the record objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import t as student
+
+from inerter.identification.problem import Problem
+from inerter.identification.search import improve
+
+Matrix = NDArray[np.float64]
+ROBUST = 3.0  # whitened residuals beyond this count less than their square
+_STEPS = (1e-6, 1e-2)  # of a coordinate, between which differences are taken
+_BLOCKS = 60
+_FOLLOWING, _SEARCHING = 3, 8
+LEVEL = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """The best fit and its neighbourhood, in coordinates."""
+
+    point: Matrix
+    cost: float  # half the robust sum of squares
+    residual: Matrix
+    jacobian: Matrix  # weighted as the robust cost asks
+    variance: float  # of a whitened residual
+    covariance: Matrix  # of the coordinates
+    widening: Matrix  # of the threshold of each profile, for residuals that still hang together
+    samples: int
+
+    @property
+    def errors(self) -> Matrix:
+        """Standard errors of the coordinates."""
+        return np.sqrt(np.diag(self.covariance) * self.widening)
+
+    @property
+    def threshold(self) -> Matrix:
+        """What each profile may rise by, for an interval of 95 %."""
+        quantile = float(student.ppf(0.5 + 0.5 * LEVEL, max(self.samples - self.point.size, 1)))
+        return 0.5 * quantile**2 * self.variance * self.widening
+
+
+def optimum_of(problem: Problem, start: Matrix, steps: Matrix | None = None, evaluations: int = 20) -> Optimum:
+    """The best fit near `start`, with differences as wide as the coordinates are uncertain."""
+    point, cost, residual, jacobian = improve(problem, start, evaluations, steps, ROBUST)
+    samples = sum(int((w.weight > 0.0).sum()) for w in problem.whitenings)
+    variance = 2.0 * cost / max(samples - point.size, 1)
+    information = jacobian.T @ jacobian
+    covariance = np.linalg.pinv(information, rcond=1e-14, hermitian=True) * variance
+    return Optimum(
+        point, cost, residual, jacobian, variance, covariance, _widening(jacobian, residual, variance), samples
+    )
+
+
+def steps_of(optimum: Optimum) -> Matrix:
+    """Half a standard error, within reason."""
+    return np.clip(0.5 * np.nan_to_num(optimum.errors, nan=_STEPS[1]), *_STEPS)
+
+
+def _widening(jacobian: Matrix, residual: Matrix, variance: float) -> Matrix:
+    """Variances over those of independent residuals, from sums over blocks of time; at least one.
+
+    Source: the sandwich estimator for dependent data, with blocks as clusters (Liang and Zeger 1986).
+    """
+    scores = jacobian * np.clip(residual, -ROBUST, ROBUST)[:, None]
+    blocks = np.array([part.sum(axis=0) for part in np.array_split(scores, _BLOCKS)])
+    inverse = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14, hermitian=True)
+    sandwich = np.diag(inverse @ (blocks.T @ blocks) @ inverse)
+    plain = np.maximum(np.diag(inverse) * variance, 1e-300)
+    return np.maximum(sandwich / plain, 1.0)
+
+
+@dataclass(frozen=True)
+class Side:
+    """One end of an interval, in coordinates; `told` if the record sets it and not the bound of the search."""
+
+    end: float
+    told: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Both ends, the points of the profile (coordinate, rise of the cost over its threshold), and what was met."""
+
+    lower: Side
+    upper: Side
+    points: tuple[tuple[float, float], ...]
+    better: tuple[float, Matrix] | None  # a cost below the optimum's, and where
+
+
+def profiles(problem: Problem, optimum: Optimum) -> list[Profile]:
+    """The profile of every coordinate."""
+    tasks = [(i, sign) for i in range(optimum.point.size) for sign in (-1, 1)]
+    found = list(problem.pool.map(lambda task: _walk(problem, optimum, *task), tasks))
+    result = []
+    for i in range(optimum.point.size):
+        (below, points, better), (above, more, other) = found[2 * i], found[2 * i + 1]
+        best = min((b for b in (better, other) if b is not None), key=lambda b: b[0], default=None)
+        result.append(Profile(below, above, tuple(sorted(points + [(float(optimum.point[i]), 0.0)] + more)), best))
+    return result
+
+
+def _walk(
+    problem: Problem, optimum: Optimum, i: int, sign: int
+) -> tuple[Side, list[tuple[float, float]], tuple[float, Matrix] | None]:
+    """Walk away from the optimum until the rise of the cost meets its threshold."""
+    bound = float(problem.space.bounds[1 if sign > 0 else 0][i])
+    start, threshold = float(optimum.point[i]), float(optimum.threshold[i])
+    points: list[tuple[float, float]] = []
+    better: tuple[float, Matrix] | None = None
+    room = sign * (bound - start)
+    if room <= 1e-9:
+        return Side(bound, False), points, None
+    inside, outside = (0.0, 0.0), (np.inf, np.inf)
+    reach = float(np.sqrt(2.0 * threshold / max(_stiffness(optimum, i), 1e-300)))
+    away = min(max(reach, 1e-9), room)
+    for _ in range(_SEARCHING):
+        cost, point = _follow(problem, optimum, i, start + sign * away)
+        root = float(np.sign(cost - optimum.cost) * np.sqrt(abs(cost - optimum.cost) / threshold))
+        points.append((start + sign * away, max(root, 0.0) ** 2))
+        if root < -0.3:
+            better = (cost, point)
+            break
+        if abs(root - 1.0) < 0.03:
+            return Side(start + sign * away, True), points, better
+        if root < 1.0:
+            inside = (away, max(root, 0.0))
+            if away >= room * (1.0 - 1e-12):
+                return Side(bound, False), points, better
+        else:
+            outside = (away, root)
+        if outside[0] == np.inf:
+            away = min(away * (3.0 if root < 0.3 else 1.2 / max(root, 0.4)), room)
+        else:
+            share = np.clip((1.0 - inside[1]) / (outside[1] - inside[1]), 0.1, 0.9)
+            away = inside[0] + float(share) * (outside[0] - inside[0])
+    return Side(start + sign * min(outside[0], room), np.isfinite(outside[0])), points, better
+
+
+def _stiffness(optimum: Optimum, i: int) -> float:
+    """Second derivative of the profile at the optimum."""
+    return float(optimum.variance / max(optimum.covariance[i, i], 1e-300))
+
+
+def _follow(problem: Problem, optimum: Optimum, i: int, value: float) -> tuple[float, Matrix]:
+    """The least cost with coordinate i at `value`, by Gauss-Newton steps with the derivatives of the optimum."""
+    lower, upper = problem.space.bounds
+    others = np.array([j for j in range(optimum.point.size) if j != i], dtype=int)
+    J = optimum.jacobian
+    point = optimum.point.copy()
+    point[i] = value
+    if others.size:
+        normal = np.linalg.pinv(J[:, others].T @ J[:, others], rcond=1e-12, hermitian=True)
+        point[others] -= normal @ (J[:, others].T @ J[:, i]) * (value - optimum.point[i])
+    point = np.clip(point, lower, upper)
+    best, at = np.inf, point
+    for _ in range(_FOLLOWING if others.size else 1):
+        residual = problem.residual(point)
+        cost = robust_cost(residual)
+        if cost >= best:
+            break
+        best, at = cost, point
+        if not others.size:
+            break
+        weight = (1.0 + (residual / ROBUST) ** 2) ** -0.5
+        point = at.copy()
+        point[others] -= normal @ (J[:, others].T @ (weight * residual))
+        point = np.clip(point, lower, upper)
+        if np.allclose(point, at, rtol=0.0, atol=1e-10):
+            break
+    return best, at
+
+
+def robust_cost(residual: Matrix) -> float:
+    """Half the sum of soft-l1 squares, as `improve` minimises it."""
+    return float(np.sum(ROBUST**2 * (np.sqrt(1.0 + (residual / ROBUST) ** 2) - 1.0)))

@@ -1,0 +1,105 @@
+"""The least-squares problem: whitened residuals of all records over the coordinates, and their derivatives."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import InerterError
+from inerter.identification.experiment import Experiment
+from inerter.identification.noise import Whitening
+from inerter.identification.space import DELAY, GAIN, Space
+from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.vehicle.cars import Rig
+
+Matrix = NDArray[np.float64]
+FAILED = 1e3  # whitened residual of a simulation that cannot go on
+
+
+@dataclass(eq=False)
+class Problem:
+    """A rig with unknowns and the records that they should explain. Counts how often it simulates."""
+
+    rig: Rig
+    space: Space
+    experiments: Sequence[Experiment]
+    whitenings: Sequence[Whitening]
+    offset: bool = True  # whether the load cell may have one, its own in each record
+    horizon: float = 1.0  # part of each record that is compared
+    simulations: int = 0
+    pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(os.cpu_count() or 1))
+
+    def system(self, coordinates: Matrix) -> PiecewiseSystem | None:
+        """The rig with these values; None where a device like that cannot be simulated."""
+        values = self.space.named(coordinates)
+        try:
+            return piecewise(self.rig.with_values({n: v for n, v in values.items() if n not in (GAIN, DELAY)}))
+        except InerterError:
+            return None
+
+    def forces(self, coordinates: Matrix) -> list[Matrix | None]:
+        """What the load cells would read, for each record as far as the horizon."""
+        self.simulations += len(self.experiments)
+        system, values = self.system(coordinates), self.space.named(coordinates)
+        if system is None:
+            return [None] * len(self.experiments)
+        gain, delay = values.get(GAIN, 1.0), values.get(DELAY, 0.0)
+        found = (e.force(system, delay, self.samples(e)) for e in self.experiments)
+        return [None if force is None else gain * force for force in found]
+
+    def samples(self, experiment: Experiment) -> int:
+        return max(4, round(self.horizon * experiment.size))
+
+    def residual(self, coordinates: Matrix) -> Matrix:
+        """Whitened residuals of all records, one after the other."""
+        parts = []
+        for e, w, force in zip(self.experiments, self.whitenings, self.forces(coordinates), strict=True):
+            size = self.samples(e)
+            if force is None:
+                parts.append(np.where(w.weight[:size] > 0.0, FAILED, 0.0))
+                continue
+            white = w(force - e.record.force[:size])
+            if self.offset:
+                column = w(np.ones(size))
+                white = white - column * (column @ white / max(float(column @ column), 1e-300))
+            parts.append(white)
+        return np.concatenate(parts)
+
+    def residuals(self, points: Sequence[Matrix]) -> list[Matrix]:
+        """The residuals at several points, over the cores."""
+        return list(self.pool.map(self.residual, points))
+
+    def jacobian(self, coordinates: Matrix, steps: Matrix) -> Matrix:
+        """Central differences of the residuals over these steps, one-sided at a bound.
+
+        Steps are as wide as the coordinates are uncertain: friction and backlash leave corners in the residuals, on
+        which a tiny step would stumble.
+        """
+        lower, upper = self.space.bounds
+        points, widths = [], []
+        for i, step in enumerate(steps):
+            ends = np.clip(coordinates[i] + np.array([-step, step]), lower[i], upper[i])
+            widths.append(float(ends[1] - ends[0]))
+            for end in ends:
+                point = coordinates.copy()
+                point[i] = end
+                points.append(point)
+        found = self.residuals(points)
+        return np.stack([(found[2 * i + 1] - found[2 * i]) / w for i, w in enumerate(widths)], axis=1)
+
+    def offsets(self, coordinates: Matrix) -> list[float]:
+        """The offset of the load cell [N] in each record."""
+        result = []
+        for e, w, force in zip(self.experiments, self.whitenings, self.forces(coordinates), strict=True):
+            if force is None or not self.offset:
+                result.append(0.0)
+                continue
+            size = self.samples(e)
+            column, white = w(np.ones(size)), w(e.record.force[:size] - force)
+            result.append(float(column @ white / max(float(column @ column), 1e-300)))
+        return result

@@ -1,0 +1,88 @@
+"""The unknowns of a fit: free values of the device and of the sensors, and the coordinates in which they are sought."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.networks.elements import Element, Free, Friction, Gap
+from inerter.vehicle.cars import Rig
+
+Matrix = NDArray[np.float64]
+GAIN, DELAY = "sensor gain", "sensor delay"
+GAINS = (0.5, 2.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """Names, units and bounds of the unknowns, in the order of every vector here.
+
+    Coordinates are logarithms where the lower bound is positive, else the value over its upper bound: sizes then
+    differ little, and stiffnesses of any order of magnitude are alike.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    lower: Matrix
+    upper: Matrix
+    kinds: tuple[type[Element] | None, ...]  # of the element; None for sensors
+
+    @property
+    def logarithmic(self) -> NDArray[np.bool_]:
+        return self.lower > 0.0
+
+    @property
+    def nonlinear(self) -> NDArray[np.bool_]:
+        """Which unknowns are frictions and gaps."""
+        return np.array([kind is not None and issubclass(kind, Friction | Gap) for kind in self.kinds])
+
+    @property
+    def bounds(self) -> tuple[Matrix, Matrix]:
+        """Bounds of the coordinates."""
+        return self.to_coordinates(self.lower), self.to_coordinates(self.upper)
+
+    def to_coordinates(self, values: Matrix) -> Matrix:
+        log = self.logarithmic
+        return np.where(log, np.log(np.where(log, values, 1.0)), values / self.upper)
+
+    def to_values(self, coordinates: Matrix) -> Matrix:
+        log = self.logarithmic
+        values = np.where(log, np.exp(np.where(log, coordinates, 0.0)), coordinates * self.upper)
+        return np.clip(values, self.lower, self.upper)
+
+    def named(self, coordinates: Matrix) -> dict[str, float]:
+        return dict(zip(self.names, map(float, self.to_values(coordinates)), strict=True))
+
+    def placed(self, values: Mapping[str, float]) -> Matrix:
+        """Coordinates of named values, moved within the bounds."""
+        array = np.array([values[name] for name in self.names])
+        return self.to_coordinates(np.clip(array, self.lower, self.upper))
+
+    def placed_one(self, index: int, value: float) -> float:
+        """Coordinate of one value, moved within its bounds."""
+        value = min(max(value, float(self.lower[index])), float(self.upper[index]))
+        return float(np.log(value) if self.lower[index] > 0.0 else value / self.upper[index])
+
+    def slopes(self, coordinates: Matrix) -> Matrix:
+        """Derivative of each value by its coordinate."""
+        return np.where(self.logarithmic, self.to_values(coordinates), self.upper)
+
+
+def space_of(rig: Rig, gain: bool, delay: float) -> Space:
+    """The free values of a device and, if they are wanted, the gain and the delay (up to `delay` [s]) of its sensors."""
+    elements: dict[str, Element] = {}
+    for element in rig.device.elements():
+        if isinstance(element.value, Free) and element.value.name is not None:
+            elements.setdefault(element.value.name, element)
+    rows: list[tuple[str, str, float, float, type[Element] | None]] = []
+    for name, free in rig.free_values().items():
+        rows.append((name, elements[name].unit, free.lower, free.upper, type(elements[name])))
+    if gain:
+        rows.append((GAIN, "", *GAINS, None))
+    if delay > 0.0:
+        rows.append((DELAY, "s", 0.0, delay, None))
+    names, units, lower, upper, kinds = zip(*rows, strict=True) if rows else ((), (), (), (), ())
+    return Space(tuple(names), tuple(units), np.array(lower), np.array(upper), tuple(kinds))

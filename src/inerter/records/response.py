@@ -271,6 +271,11 @@ def _periodic(records: Sequence[Record], group: Sequence[float], estimator: Esti
     notes += [f"Left out the first {n} periods: the force had not settled." for n in left_out if n]
     if chosen.sum() == 1:
         notes.append(_distortion(every, chosen))
+    elif len(parts) == 1:
+        notes.append(
+            "The band is of the scatter between periods: what friction and backlash make of other phases of the "
+            "excitation shows only between records."
+        )
     status = _repeats(lines.displacement, records)
     if len(parts) > 1:
         x, force = (np.array([a.mean(axis=0) for a in of]) for of in (lines.displacement, lines.force))

@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from inerter.optimisation.optimise import Optimum as Optimum
     from inerter.optimisation.optimise import optimise as optimise
     from inerter.records.record import Record as Record
-    from inerter.records.response import Response as Response
     from inerter.records.response import frequency_response as frequency_response
+    from inerter.records.result import Response as Response
     from inerter.signals.harmonics import cosine as cosine
     from inerter.signals.harmonics import flat_multisine as flat_multisine
     from inerter.signals.harmonics import multisine as multisine
@@ -208,7 +208,7 @@ _HOME = {
     "free": "networks.elements",
     "frequency_response": "records.response",
     "Record": "records.record",
-    "Response": "records.response",
+    "Response": "records.result",
     "linear_response": "identification.response",
     "model_response": "identification.response",
     "h2_norm": "norms.h2",

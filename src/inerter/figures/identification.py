@@ -17,7 +17,7 @@ from inerter.figures.curves import thinned
 from inerter.figures.labels import Scale, axis_label, scale
 from inerter.figures.style import add_legend, colour, log_axis, new_figure, save, styled
 from inerter.records.record import Record
-from inerter.records.response import Response
+from inerter.records.result import Response
 
 Matrix = NDArray[np.float64]
 
@@ -175,7 +175,7 @@ def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: M
             ax.plot(along * own.factor, force * up.factor, **{**_MEASURED, **thin}, label="measured")
             if model is not None:
                 ax.plot(along * own.factor, model * up.factor, **{**_MODEL, **thin}, label="model")
-            ax.xaxis.set_major_locator(MaxNLocator(4))
+            ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
             ax.set(xlabel=axis_label(name, own.unit), ylabel=axis_label("Force", up.unit))
         if model is not None:
             add_legend(figure, axes)

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from inerter.errors import InerterError as InerterError
     from inerter.errors import Status as Status
     from inerter.errors import StatusKind as StatusKind
-    from inerter.identification.response import linear_response as linear_response
-    from inerter.identification.response import model_response as model_response
     from inerter.identification.fit import Fit as Fit
     from inerter.identification.identify import identify as identify
+    from inerter.identification.response import linear_response as linear_response
+    from inerter.identification.response import model_response as model_response
     from inerter.identification.virtual_rig import VirtualRig as VirtualRig
     from inerter.indices.index import LoadCarrying as LoadCarrying
     from inerter.indices.index import RideComfort as RideComfort
@@ -49,8 +49,8 @@ if TYPE_CHECKING:
     from inerter.optimisation.optimise import optimise as optimise
     from inerter.records.readers import read_record as read_record
     from inerter.records.record import Record as Record
-    from inerter.records.response import Response as Response
     from inerter.records.response import frequency_response as frequency_response
+    from inerter.records.result import Response as Response
     from inerter.records.writers import write_record as write_record
     from inerter.signals.harmonics import cosine as cosine
     from inerter.signals.harmonics import flat_multisine as flat_multisine
@@ -223,8 +223,7 @@ _HOME = {
     "evaluate_many": "methods.method",
     "free": "networks.elements",
     "frequency_response": "records.response",
-    "Record": "records.record",
-    "Response": "records.response",
+    "Response": "records.result",
     "linear_response": "identification.response",
     "model_response": "identification.response",
     "h2_norm": "norms.h2",

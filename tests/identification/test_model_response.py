@@ -46,7 +46,7 @@ def test_the_response_to_a_sine_is_that_of_the_describing_function():
             flywheel = abs(shaft / (shaft + held)) * amplitude
         expected = shaft * held / (shaft + held)
         assert found.omega == pytest.approx([omega], rel=1e-5)
-        assert np.abs(found.value / expected - 1.0) < 0.015
+        assert np.abs(found.value / expected - 1.0) < 0.02
         strays.append(float(np.abs(found.value / it.linear_response(BALL_SCREW, omega).value - 1.0)[0]))
     assert strays == sorted(strays, reverse=True)
     assert strays[-1] < 0.07

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import fill
@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from inerter.errors import StudyError
+from inerter.figures.curves import thinned
 from inerter.figures.labels import axis_label, capital, scale
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, styled
 from inerter.study.simulation_run import Nonlinear, SimulationResult
@@ -24,7 +25,6 @@ Window = tuple[float, float]
 NAME = "simulation"
 _HEIGHT = 1.35  # of a panel [inch], which its title must fit
 _LONGEST_TITLE = 20
-_MOST_POINTS = 4000  # of a curve; more are drawn as the range that they cover
 _MOST_SWINGS, _MOST_BANDS = 160, 60  # in a window that can be read
 _SHADED = {"friction": ("stick", "{} sticks"), "gap": ("open", "{} is open")}
 _SHADES: dict[str, Any] = {
@@ -140,7 +140,7 @@ def draw_panel(result: SimulationResult, panel: Panel, inside: NDArray[np.bool_]
     values = [run[curve.output][inside] * curve.weight for curve in panel.curves]
     unit = scale([max(float(np.abs(v).max(initial=0.0)) for v in values)], panel.unit)
     for curve, value in zip(panel.curves, values, strict=True):
-        ax.plot(*_thinned(time, value * unit.factor), **_style(curve))
+        ax.plot(*thinned(time, value * unit.factor), **_style(curve))
     _shade(result, panel.shaded, (float(time[0]), float(time[-1])), ax)
     ax.set_ylabel(fill(axis_label(capital(panel.title), unit.unit), _LONGEST_TITLE, break_long_words=False))
     return ax
@@ -209,21 +209,3 @@ def _swings(values: Matrix, time: Matrix) -> Matrix:
     """Times at which a curve crosses its mean."""
     above = values > np.mean(values)
     return np.asarray(time[1:][above[1:] != above[:-1]])
-
-
-def _thinned(time: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
-    """The same curve to the eye with at most `_MOST_POINTS` points: of each piece the lowest and the highest."""
-    size = -(-2 * time.size // _MOST_POINTS)
-    if size < 3:
-        return time, values
-    at = np.array([i for piece in _pieces(time.size, size) for i in _extremes(values, piece)])
-    return time[at], values[at]
-
-
-def _pieces(count: int, size: int) -> Iterator[slice]:
-    yield from (slice(i, min(i + size, count)) for i in range(0, count, size))
-
-
-def _extremes(values: Matrix, piece: slice) -> list[int]:
-    part = values[piece]
-    return sorted({piece.start + int(np.argmin(part)), piece.start + int(np.argmax(part))})

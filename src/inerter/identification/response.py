@@ -14,7 +14,8 @@ from inerter.networks.elements import Network
 from inerter.networks.transform import linearise
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
-from inerter.records.response import Estimator, Response, frequency_response, turned
+from inerter.records.response import Estimator, frequency_response
+from inerter.records.result import Response, exact
 from inerter.records.spectra import lines_of
 from inerter.signals.harmonics import Harmonics
 from inerter.signals.signal import Signal
@@ -26,7 +27,6 @@ Complex = NDArray[np.complex128]
 _STEP = 2e-4  # [s] longest of the simulation
 _ABOVE = 1.25  # times the highest frequency told: where the displacement is cut off
 _HIGHEST = 0.8  # of half the rate: a cut-off above that is none
-_LEVEL = 0.01  # probability that any harmonic of nothing but noise counts as motion
 _ORDER = 4  # of the Butterworth filter, which goes forward and backward
 
 
@@ -98,23 +98,6 @@ def linear_response(model: Network | Rig, omega: ArrayLike) -> Response:
     return replace(exact(frequencies, value), source="linear model", notes=tuple(notes))
 
 
-def exact(omega: Matrix, value: Complex, amplitude: float = math.nan) -> Response:
-    """A response without scatter, from its complex values [N/m]."""
-    gain, phase = np.abs(value), turned(np.angle(value))
-    return Response(
-        omega=omega,
-        gain=gain,
-        phase=phase,
-        coherence=np.ones(gain.size),
-        band=np.array([gain, gain]),
-        phase_band=np.array([phase, phase]),
-        averages=np.full(gain.size, np.inf),
-        amplitude=amplitude,
-        estimator="exact",
-        source="model",
-    )
-
-
 def smoothed(record: Record, cutoff: float) -> Record:
     """A record whose displacement has nothing above `cutoff` [Hz]: Butterworth, of fourth order, forward and backward.
 
@@ -141,7 +124,7 @@ def _mean_period(record: Record, period: float) -> Harmonics:
     """The mean period of a displacement, of the harmonics that stand out of its scatter."""
     part = whole_periods(record, period)
     lines = lines_of([part])
-    told = lines.chosen() | lines.told(_LEVEL / lines.omega.size)
+    told = lines.chosen() | lines.told()
     amplitudes = np.where(told, lines.displacement[0].mean(axis=0), 0.0)
     last = 1 + int(np.max(np.flatnonzero(amplitudes), initial=0))
     return Harmonics(

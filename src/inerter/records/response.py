@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Literal, overload
+from dataclasses import replace
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,102 +15,15 @@ from inerter.errors import OK, RecordError, Status, StatusKind
 from inerter.norms.response import frequency_response as linear_response
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
+from inerter.records.result import Response, named, respond
 from inerter.records.spectra import Lines, Spectra, lines_of, welch
 from inerter.systems.linear import LinearSystem
-
-if TYPE_CHECKING:
-    import xarray
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Estimator = Literal["H1", "H2", "Hv"]
 ESTIMATORS = ("H1", "H2", "Hv")
 _ALIKE = 1e-4  # relative difference of periods that count as one
-_CONFIDENCE = 0.95
-_COLUMNS = {  # name: unit, long name
-    "gain": ("N/m", "force over displacement"),
-    "gain_low": ("N/m", "gain, lower end of the 95 % interval"),
-    "gain_high": ("N/m", "gain, upper end of the 95 % interval"),
-    "phase": ("rad", "phase of force over displacement"),
-    "phase_low": ("rad", "phase, lower end of the 95 % interval"),
-    "phase_high": ("rad", "phase, upper end of the 95 % interval"),
-    "coherence": ("1", "share of the force's mean square that goes with the displacement"),
-    "averages": ("1", "averages, as if they were independent"),
-}
-
-
-@dataclass(frozen=True, eq=False)
-class Response:
-    """Force over displacement at some frequencies, at the amplitude of the records.
-
-    There are only frequencies that the displacement has. The bands hold the true value in 95 of 100 cases each, as far
-    as scatter goes; a response without scatter, such as a model's, has infinite averages and bands of no width. A
-    phase of pi is that of an inerter, pi/2 that of a damper, 0 that of a spring.
-    """
-
-    omega: Matrix  # (n,) [rad/s], increasing
-    gain: Matrix  # (n,) [N/m]
-    phase: Matrix  # (n,) [rad] from -pi/2 to 3 pi/2
-    coherence: Matrix  # (n,) from 0 to 1
-    band: Matrix  # (2, n) [N/m] lower and upper end
-    phase_band: Matrix  # (2, n) [rad]
-    averages: Matrix  # (n,) as if they were independent
-    amplitude: float  # [m] r.m.s. displacement of the records, to which the response belongs
-    estimator: str  # "periodic", "H1", "H2", "Hv" or "exact"
-    source: str
-    status: Status = OK
-    notes: tuple[str, ...] = ()
-
-    @property
-    def value(self) -> Complex:
-        """The complex response [N/m]."""
-        return np.asarray(self.gain * np.exp(1j * self.phase))
-
-    @property
-    def frequency(self) -> Matrix:
-        """[Hz]."""
-        return np.asarray(self.omega / (2.0 * np.pi))
-
-    def lines(self, chosen: NDArray[np.bool_]) -> Response:
-        """The same response at some of its frequencies."""
-        parts = ("omega", "gain", "phase", "coherence", "band", "phase_band", "averages")
-        return replace(self, **{name: getattr(self, name)[..., chosen] for name in parts})
-
-    def columns(self) -> dict[str, Matrix]:
-        """All numbers by name, one for each frequency."""
-        ends = {"gain_low": self.band[0], "gain_high": self.band[1]}
-        ends |= {"phase_low": self.phase_band[0], "phase_high": self.phase_band[1]}
-        return {name: ends[name] if name in ends else getattr(self, name) for name in _COLUMNS}
-
-    def to_xarray(self) -> xarray.Dataset:
-        """A dataset over `omega`, with units and long names."""
-        import xarray
-
-        data = {
-            name: ("omega", values, {"units": _COLUMNS[name][0], "long_name": _COLUMNS[name][1]})
-            for name, values in self.columns().items()
-        }
-        coords = {
-            "omega": ("omega", self.omega, {"units": "rad/s", "long_name": "angular frequency"}),
-            "frequency": ("omega", self.frequency, {"units": "Hz", "long_name": "frequency"}),
-        }
-        about = {"source": self.source, "estimator": self.estimator, "amplitude": self.amplitude}
-        return xarray.Dataset(data, coords, {**about, "status": str(self.status), "notes": "\n".join(self.notes)})
-
-    def to_csv(self, path: str | Path) -> None:
-        """Write a table with a header `name [unit]`; numbers read back to the last bit.
-
-        Raises `RecordError` if the file cannot be written.
-        """
-        columns = self.columns()
-        try:
-            with Path(path).open("w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file)
-                writer.writerow(["frequency [Hz]", *(f"{name} [{_COLUMNS[name][0]}]" for name in columns)])
-                rows = np.column_stack([self.frequency, *columns.values()]).tolist()
-                writer.writerows(map(repr, row) for row in rows)
-        except OSError as error:
-            raise RecordError(f"Cannot write {str(path)!r}: {error.strerror}.") from None
 
 
 @overload
@@ -192,7 +103,7 @@ def averaged(records: Sequence[Record], spectra: Spectra, estimator: str) -> Res
     """The response from averaged spectra."""
     if not spectra.omega.size:
         raise RecordError(
-            f"Force and displacement of {_named(records)} have no more in common than noise would: nothing can be "
+            f"Force and displacement of {named(records)} have no more in common than noise would: nothing can be "
             f"told. Excite more strongly, or record longer."
         )
     coherence = spectra.coherence
@@ -204,52 +115,6 @@ def averaged(records: Sequence[Record], spectra: Spectra, estimator: str) -> Res
     return respond(records, spectra.omega, value, coherence, scatter, averages, estimator, spectra.notes)
 
 
-def respond(
-    records: Sequence[Record],
-    omega: Matrix,
-    value: Complex,
-    coherence: Matrix,
-    scatter: Matrix,
-    averages: Matrix,
-    estimator: str,
-    notes: tuple[str, ...],
-    status: Status = OK,
-) -> Response:
-    """A response from complex values and their relative standard deviations.
-
-    Half of the variance of a complex value lies along it, and half across; Student's t has two degrees of freedom for
-    each average but the first.
-    """
-    gain, phase = np.abs(value), turned(np.angle(value))
-    reach = _student(averages) * scatter / math.sqrt(2.0)
-    turn = np.minimum(reach, np.pi)
-    return Response(
-        omega=omega,
-        gain=gain,
-        phase=phase,
-        coherence=coherence,
-        band=np.array([np.maximum(gain * (1.0 - reach), 0.0), gain * (1.0 + reach)]),
-        phase_band=np.array([phase - turn, phase + turn]),
-        averages=averages,
-        amplitude=math.sqrt(np.mean([np.var(record.displacement) for record in records])),
-        estimator=estimator,
-        source=_named(records),
-        status=status,
-        notes=notes,
-    )
-
-
-def turned(angle: Matrix) -> Matrix:
-    """Phases from -pi/2 to 3 pi/2: those of passive devices, 0 to pi, are in the middle and do not jump.
-
-    Adding up differences instead would carry one noisy line's slip of a turn to all that follow.
-
-    >>> turned(np.array([-3.1, 3.1]))  # an inerter
-    array([3.18318531, 3.1       ])
-    """
-    return np.asarray((angle + 0.5 * np.pi) % (2.0 * np.pi) - 0.5 * np.pi)
-
-
 def _periodic(records: Sequence[Record], group: Sequence[float], estimator: Estimator) -> Response:
     """The response of records of one period."""
     period = float(np.mean(group))
@@ -257,20 +122,29 @@ def _periodic(records: Sequence[Record], group: Sequence[float], estimator: Esti
     every = lines_of(parts)
     chosen = every.chosen()
     if not chosen.any():
-        raise RecordError(f"The displacement of {_named(records)} has no line that stands out of its noise.")
+        raise RecordError(
+            f"In the displacement of {named(records)} no harmonic of {period:.6g} s stands out of its scatter: is that "
+            f"the period?"
+        )
     lines, left_out = every.at(chosen).settled()
     counts = [x.shape[0] for x in lines.displacement]
     if counts == [1]:
         raise RecordError(
-            f"Too short: {_named(records)} has one whole period of {period:.6g} s. Record two or more, for their "
+            f"Too short: {named(records)} has one whole period of {period:.6g} s. Record two or more, for their "
             f"scatter tells how sure the response is."
         )
     many = f"{counts[0]} periods" if len(counts) == 1 else f"{len(counts)} records of {min(counts)} or more periods"
     notes = [f"Periodic: {many} of {period:.6g} s, {chosen.sum()} of {chosen.size} harmonics excited."]
     notes += [note for part in parts for note in part.notes]
-    notes += [f"Left out the first {n} periods: the force had not settled." for n in left_out if n]
+    left = ("period" if n == 1 else f"{n} periods" for n in left_out if n)
+    notes += [f"Left out the first {some}: the force had not settled." for some in left]
     if chosen.sum() == 1:
         notes.append(_distortion(every, chosen))
+    elif len(parts) == 1:
+        notes.append(
+            "The band is of the scatter between periods: what friction and backlash make of other phases of the "
+            "excitation shows only between records."
+        )
     status = _repeats(lines.displacement, records)
     if len(parts) > 1:
         x, force = (np.array([a.mean(axis=0) for a in of]) for of in (lines.displacement, lines.force))
@@ -360,7 +234,7 @@ def _joined(parts: Sequence[Response], records: Sequence[Record]) -> Response:
         averages=averages[chosen],
         amplitude=math.sqrt(np.mean([part.amplitude**2 for part in parts])),
         estimator="periodic",
-        source=_named(records),
+        source=named(records),
         status=next((part.status for part in parts if not part.status.ok), OK),
         notes=tuple(f"{part.source}: {note}" for part in parts for note in part.notes),
     )
@@ -386,19 +260,8 @@ def _check(records: Sequence[Record]) -> None:
         if _is_constant(record.displacement):
             raise RecordError(f"The displacement of {record.source!r} is constant: there is no response to tell.")
     if all(_is_constant(record.force) for record in records):
-        raise RecordError(f"The force of {_named(records)} is constant: there is no response to tell.")
+        raise RecordError(f"The force of {named(records)} is constant: there is no response to tell.")
 
 
 def _is_constant(values: Matrix) -> bool:
     return bool(np.ptp(values) <= 1e-12 * np.max(np.abs(values)))
-
-
-def _named(records: Sequence[Record]) -> str:
-    return ", ".join(dict.fromkeys(record.source for record in records))
-
-
-def _student(averages: Matrix) -> Matrix:
-    """Quantile of Student's t for two degrees of freedom an average, but for the first."""
-    from scipy.stats import t
-
-    return np.asarray(t.isf(0.5 * (1.0 - _CONFIDENCE), 2.0 * (averages - 1.0)))

@@ -18,7 +18,8 @@ Chosen = NDArray[np.bool_]
 
 _FAINT = 1e-3  # of the largest amplitude of velocity: what is below is no part of the excitation
 _BESIDE = 0.05  # the same for the amplitudes within a decade, for lines: what is below is distortion
-_LEVEL = 1e-3  # probability that a line of nothing but noise counts as one of the excitation
+_LEVEL = 1e-3  # probability that nothing but noise counts as something
+_NEIGHBOURS = 21  # harmonics whose scatter is looked at together
 _ABOVE_STEPS = 20.0  # times what the steps of the encoder leave, for the power of a random displacement
 _CHANCE = 0.05  # probability that a frequency with nothing in common is told
 _DECAYED = 3.0  # a period has settled if its force strays from the last ones at most so many times as they do
@@ -94,24 +95,30 @@ class Lines:
         )
         return Lines(self.omega, x, force, self.least), first
 
-    def told(self, level: float = _LEVEL) -> Chosen:
+    def told(self) -> Chosen:
         """The harmonics that stand out of the scatter of the displacement and of the steps of its encoder.
 
-        `level` is the probability with which one does that is nothing but noise.
+        Their power exceeds their own scatter (an F test), and that of their neighbours by so much that none of all
+        harmonics would if it were nothing but noise.
         """
+        from scipy.ndimage import median_filter
+        from scipy.stats import chi2
         from scipy.stats import f as fisher
 
         means = np.array([amplitudes.mean(axis=0) for amplitudes in self.displacement])
-        power = np.mean(np.abs(means) ** 2, axis=0)
-        noise, freedom = np.zeros(power.size), 0
-        for amplitudes, mean in zip(self.displacement, means, strict=True):
-            count = amplitudes.shape[0]
-            if count > 1:
-                noise += np.sum(np.abs(amplitudes - mean) ** 2, axis=0) / (count - 1) / count / len(means)
-                freedom += 2 * (count - 1)
-        needed = float(fisher.isf(level, 2 * len(means), freedom)) if freedom else 1.0
-        floor = float(fisher.isf(level, 2 * len(means), 1e6)) * self.least
-        return np.asarray((power > needed * noise) & (power > floor) & (power > 0.0))
+        power, squares = np.mean(np.abs(means) ** 2, axis=0), 2 * len(means)
+        many = float(fisher.isf(_LEVEL / power.size, squares, 1e6))
+        least = np.full(power.size, max(many * self.least, np.finfo(float).tiny))
+        freedom = 2 * sum(amplitudes.shape[0] - 1 for amplitudes in self.displacement)
+        if freedom:
+            noise = np.zeros(power.size)
+            for amplitudes, mean in zip(self.displacement, means, strict=True):
+                count = amplitudes.shape[0]
+                if count > 1:
+                    noise += np.sum(np.abs(amplitudes - mean) ** 2, axis=0) / (count - 1) / count / len(means)
+            usual = median_filter(noise, _NEIGHBOURS, mode="nearest") * (freedom / chi2.median(freedom))
+            least = np.maximum(least, np.maximum(float(fisher.isf(_LEVEL, squares, freedom)) * noise, many * usual))
+        return np.asarray(power > least)
 
 
 def lines_of(parts: Sequence[Periods]) -> Lines:

@@ -167,9 +167,21 @@ def test_only_the_lines_of_the_excitation_are_told():
     assert found.frequency == pytest.approx(order / 2.0, rel=1e-6)
 
 
-def test_a_wrong_period_is_told():
-    record = multisine(0).noted(period=1.37)
-    assert it.frequency_response(record).status.kind is it.StatusKind.INACCURATE
+@pytest.mark.parametrize("periods", [2, 5, 20])
+def test_noise_far_above_the_excitation_is_none_of_it(periods):
+    for seed in range(10):
+        record = noisy(multisine(seed, periods=periods, slope=0.0), seed, 1.0, 3e-5)
+        assert it.frequency_response(record.noted(period=2.0)).frequency == pytest.approx(np.arange(1, 41) / 2.0)
+
+
+def test_a_displacement_that_changes_is_told():
+    record = multisine(0, periods=12)
+    swell = 1.0 + 0.5 * np.sin(0.3 * record.time)
+    found = it.frequency_response(
+        record.noted(displacement=swell * record.displacement, force=swell * record.force, period=2.0)
+    )
+    assert found.status.kind is it.StatusKind.INACCURATE
+    assert "is its period right?" in found.status.message
 
 
 @given(st.floats(0.2, 3.0), st.integers(0, 2**32 - 1))
@@ -332,6 +344,7 @@ REFUSED = {
     "four samples": (lambda: it.frequency_response(of(TIME[:4] ** 2, SINE[:4], TIME[:4])), "Too short"),
     "less than a period": (lambda: it.frequency_response(of(period=3.0)), "too few for one period of 3 s"),
     "one period": (lambda: it.frequency_response(of(period=1.5)), "Record two or more"),
+    "a wrong period": (lambda: it.frequency_response(multisine(0).noted(period=1.37)), "is that the period"),
     "an estimator that is none": (lambda: it.frequency_response(of(), estimator="H3"), "H1, H2, Hv, got 'H3'"),
     "no length": (lambda: it.frequency_response(of(), segment=0.0), "positive number of s"),
     "too long": (lambda: it.frequency_response(of(), segment=5.0), "Too short"),

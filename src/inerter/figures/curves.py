@@ -1,0 +1,29 @@
+"""Curves of many samples, drawn as few points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.float64]
+_MOST_POINTS = 4000  # of a curve; more are drawn as the range that they cover
+
+
+def thinned(time: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
+    """The same curve to the eye with at most 4000 points: of each piece the lowest and the highest."""
+    size = -(-2 * time.size // _MOST_POINTS)
+    if size < 3:
+        return time, values
+    at = np.array([i for piece in _pieces(time.size, size) for i in _extremes(values, piece)])
+    return time[at], values[at]
+
+
+def _pieces(count: int, size: int) -> Iterator[slice]:
+    yield from (slice(i, min(i + size, count)) for i in range(0, count, size))
+
+
+def _extremes(values: Matrix, piece: slice) -> list[int]:
+    part = values[piece]
+    return sorted({piece.start + int(np.argmin(part)), piece.start + int(np.argmax(part))})

@@ -1,0 +1,247 @@
+"""Figures of a rig: its records, a fit beside the measurement, and frequency responses with their bands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+from numpy.typing import NDArray
+
+from inerter.figures.curves import thinned
+from inerter.figures.labels import Scale, axis_label, scale
+from inerter.figures.style import add_legend, colour, log_axis, new_figure, save, styled
+from inerter.records.record import Record
+from inerter.records.result import Response
+
+Matrix = NDArray[np.float64]
+
+_HEIGHT = 1.75  # of a panel over time [inch]
+_MEASURED: dict[str, Any] = {"color": colour(0), "linewidth": 1.1}
+_MODEL: dict[str, Any] = {"color": colour(1), "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
+_LINEAR: dict[str, Any] = {"color": "black", "linewidth": 0.9, "linestyle": (0, (1, 1.5))}
+_RECEIVED: dict[str, Any] = {"color": "#9A9A9A", "linewidth": 1.1}
+_FEW = 60  # frequencies that are drawn as points with bars, not as a curve with a band
+_WIDEST = 3.0  # spacings between two frequencies that a curve joins
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What one curve shows: its name in the legend, and some channels in SI units."""
+
+    label: str
+    time: Matrix  # [s]
+    displacement: Matrix  # [m]
+    force: Matrix  # [N]
+
+
+def draw(figure: Figure, folder: Path, name: str) -> list[Path]:
+    """Write a figure into `folder` as SVG, PDF and PNG; returns the files."""
+    with styled():
+        return save(figure, folder, name, pdf=True)
+
+
+def response_figure(measured: Response, model: Response | None = None, linear: Response | None = None) -> Figure:
+    """Gain, phase and coherence over frequency, measured with its band, beside a model; as in Figure 10 of the paper.
+
+    `model` is the model's response at the same amplitude, `linear` the linear one as a baseline, both if there are any.
+    """
+    with styled():
+        figure, (first,) = new_figure(height=4.9)
+        first.remove()
+        grid = figure.add_gridspec(3, 1, height_ratios=(2.3, 1.7, 0.95))
+        axes = [figure.add_subplot(grid[i]) for i in range(3)]
+        own = scale([np.exp(np.mean(np.log(measured.gain)))], "N/m")
+        curves = [(measured, "measured, with 95 % band", _MEASURED)]
+        curves += [] if model is None else [(model, "model at the same amplitude", _MODEL)]
+        for response, label, style in curves:
+            draw_gain(axes[0], response, own, label, style)
+            draw_phase(axes[1], response, style)
+            draw_coherence(axes[2], response, style)
+        if linear is not None:
+            label = "linear model (no friction, gaps closed)"
+            axes[0].plot(linear.frequency, linear.gain * own.factor, label=label, zorder=1.5, **_LINEAR)
+            axes[1].plot(linear.frequency, np.degrees(linear.phase), zorder=1.5, **_LINEAR)
+        log_axis(axes[0], "y")
+        axes[0].set_ylabel(axis_label("Gain", own.unit))
+        axes[1].set_ylabel(axis_label("Phase", "deg"))
+        axes[1].yaxis.set_major_locator(MultipleLocator(_phase_step(*axes[1].get_ylim())))
+        axes[2].set(ylabel="Coherence", ylim=(0.0, 1.05), yticks=(0.0, 0.5, 1.0))
+        span = [r.frequency for r in (measured, model, linear) if r is not None and r.omega.size]
+        low, high = min(f.min() for f in span), max(f.max() for f in span)
+        for ax in axes:
+            ax.set_xlim(low / 1.05, high * 1.05)
+            log_axis(ax, "x", least_ratio=4.0)
+            ax.tick_params(axis="x", which="both", labelbottom=ax is axes[-1])
+        axes[-1].set_xlabel(axis_label("Frequency", "Hz"))
+        figure.align_ylabels(axes)
+        add_legend(figure, axes)
+    return figure
+
+
+def draw_gain(ax: Axes, response: Response, own: Scale, label: str, style: dict[str, Any]) -> Axes:
+    """The gain in a unit of its own, and what is measured with its band."""
+    return _with_band(ax, response, response.gain * own.factor, response.band * own.factor, style, label)
+
+
+def draw_phase(ax: Axes, response: Response, style: dict[str, Any]) -> Axes:
+    """The phase in degrees, and what is measured with its band."""
+    return _with_band(ax, response, np.degrees(response.phase), np.degrees(response.phase_band), style)
+
+
+def draw_coherence(ax: Axes, response: Response, style: dict[str, Any]) -> Axes:
+    """The coherence, where there is scatter to tell it."""
+    if np.any(np.isfinite(response.averages)):
+        marks = _marks(response, style)
+        ax.plot(*_with_gaps(response, response.coherence), **marks)
+    return ax
+
+
+def time_figure(measured: Motion, model: Motion | None = None, window: tuple[float, float] | None = None) -> Figure:
+    """Displacement and force over time: Figure 8 of the paper, and with a model Figure 9."""
+    with styled():
+        figure, axes = new_figure(2, height=_HEIGHT)
+        curves = [(measured, _MEASURED)] + ([] if model is None else [(model, _MODEL)])
+        for ax, name, unit, letter in zip(axes, ("displacement", "force"), ("m", "N"), "ab", strict=True):
+            moved = curves if name == "force" else curves[:1]
+            own = _over_time(ax, [(m.time, getattr(m, name), m.label, style) for m, style in moved], unit)
+            ax.set_ylabel(axis_label(name.capitalize(), own.unit))
+            ax.set_title(f"({letter}) {name.capitalize()}", loc="left")
+        _share_time(axes, measured.time, window)
+        if model is not None:
+            add_legend(figure, axes[1:])
+        figure.align_ylabels(axes)
+    return figure
+
+
+def record_figure(received: Record, used: Record) -> Figure:
+    """The channels of a record as they came, in grey, and as they were used."""
+    with styled():
+        figure, axes = new_figure(2, height=_HEIGHT)
+        for ax, name, unit in zip(axes, ("displacement", "force"), ("m", "N"), strict=True):
+            curves = [
+                (received.time, getattr(received, name), "as received", _RECEIVED),
+                (used.time, getattr(used, name), "as used", {**_MEASURED, "linewidth": 0.8}),
+            ]
+            ax.set_ylabel(axis_label(name.capitalize(), _over_time(ax, curves, unit).unit))
+        if received.force_range is not None:
+            _range_lines(axes[1], received, scale([np.abs(received.force).max()], "N"))
+        _share_time(axes, received.time, None)
+        add_legend(figure, axes)
+        figure.align_ylabels(axes)
+    return figure
+
+
+def residual_figure(time: Matrix, residual: Matrix, lags: Matrix, correlation: Matrix, bound: float) -> Figure:
+    """What a fit leaves of the force [N] over time [s], and its autocorrelation over lags [s].
+
+    `bound` is what the autocorrelation of white noise stays within in 95 of 100 cases.
+    """
+    with styled():
+        figure, (first,) = new_figure(height=1.9)
+        first.remove()
+        grid = figure.add_gridspec(1, 2, width_ratios=(1.7, 1.0))
+        left, right = (figure.add_subplot(grid[i]) for i in range(2))
+        own = _over_time(left, [(time, residual, "", {**_MEASURED, "linewidth": 0.7})], "N")
+        left.set_ylabel(axis_label("Residual force", own.unit))
+        left.set_xlabel(axis_label("Time", "s"))
+        left.set_xlim(float(time[0]), float(time[-1]))
+        spread = scale([np.abs(lags).max()], "s")
+        right.axhspan(-bound, bound, color="#BBBBBB", linewidth=0.0, label="95 % of white noise")
+        right.axhline(0.0, color="black", linewidth=0.6)
+        right.plot(lags * spread.factor, correlation, **{**_MEASURED, "linewidth": 0.9})
+        right.set(xlabel=axis_label("Lag", spread.unit), ylabel="Autocorrelation")
+        right.set_xlim(float(lags.min() * spread.factor), float(lags.max() * spread.factor))
+        right.set_ylim(min(-0.3, 1.1 * float(correlation.min())), 1.08)
+        add_legend(figure, [right])
+    return figure
+
+
+def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: Matrix | None = None) -> Figure:
+    """Force [N] over displacement [m] and over velocity [m/s], measured and, where it is given, of a model."""
+    with styled():
+        figure, axes = new_figure(2, 2, height=2.6)
+        up = scale([np.abs(force).max()], "N")
+        for ax, along, name, unit in zip(
+            axes, (displacement, velocity), ("Displacement", "Velocity"), ("m", "m/s"), strict=True
+        ):
+            own = scale([np.abs(along).max()], unit)
+            thin: dict[str, Any] = {"linewidth": 0.7}
+            ax.plot(along * own.factor, force * up.factor, **{**_MEASURED, **thin}, label="measured")
+            if model is not None:
+                ax.plot(along * own.factor, model * up.factor, **{**_MODEL, **thin}, label="model")
+            ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+            ax.set(xlabel=axis_label(name, own.unit), ylabel=axis_label("Force", up.unit))
+        if model is not None:
+            add_legend(figure, axes)
+    return figure
+
+
+def _with_band(
+    ax: Axes, response: Response, values: Matrix, band: Matrix, style: dict[str, Any], label: str = ""
+) -> Axes:
+    marks = _marks(response, style)
+    frequency, curve = _with_gaps(response, values)
+    named: dict[str, Any] = {"label": label} if label else {}
+    (line,) = ax.plot(frequency, curve, **marks, **named)
+    if style is not _MEASURED:
+        return ax
+    if response.omega.size <= _FEW:
+        bars: dict[str, Any] = {"fmt": "none", "elinewidth": 0.8, "capsize": 1.5, "zorder": 2.4}
+        ax.errorbar(response.frequency, values, np.abs(band - values), ecolor=line.get_color(), **bars)
+    else:
+        low, high = (_with_gaps(response, end)[1] for end in band)
+        ax.fill_between(frequency, low, high, color=line.get_color(), alpha=0.25, linewidth=0.0)
+    return ax
+
+
+def _marks(response: Response, style: dict[str, Any]) -> dict[str, Any]:
+    """A curve where there are many frequencies, points where there are few."""
+    if response.omega.size > _FEW:
+        return {**style, "linewidth": 0.8}
+    hollow = style is not _MEASURED
+    size = {"markersize": 4.0 if hollow else 3.0, "markeredgewidth": 0.9, "zorder": 3.0 if hollow else 2.5}
+    face = {"markerfacecolor": "none"} if hollow else {}
+    return {"color": style["color"], "linestyle": "", "marker": "s" if hollow else "o", **size, **face}
+
+
+def _with_gaps(response: Response, values: Matrix) -> tuple[Matrix, Matrix]:
+    """Frequencies and values with breaks where frequencies are left out, so that no line tells what is not known."""
+    frequency = response.frequency
+    if frequency.size < 3:
+        return frequency, values
+    apart = np.flatnonzero(np.diff(frequency) > _WIDEST * np.median(np.diff(frequency))) + 1
+    return np.insert(frequency, apart, frequency[apart]), np.insert(values, apart, np.nan)
+
+
+def _over_time(ax: Axes, curves: Sequence[tuple[Matrix, Matrix, str, dict[str, Any]]], unit: str) -> Scale:
+    """Curves in the unit that suits the largest value of the first; returns that unit."""
+    own = scale([np.abs(curves[0][1]).max()], unit)
+    for time, values, label, style in curves:
+        named: dict[str, Any] = {"label": label} if label else {}
+        ax.plot(*thinned(time, values * own.factor), **style, **named)
+    return own
+
+
+def _share_time(axes: Sequence[Axes], time: Matrix, window: tuple[float, float] | None) -> None:
+    for ax in axes:
+        ax.set_xlim(*(window or (float(time[0]), float(time[-1]))))
+        ax.tick_params(labelbottom=ax is axes[-1])
+    axes[-1].set_xlabel(axis_label("Time", "s"))
+
+
+def _range_lines(ax: Axes, received: Record, own: Scale) -> None:
+    """The limits of the load cell, where the force comes near them."""
+    limit = (received.force_range or np.inf) * own.factor
+    if np.abs(received.force).max() * own.factor > 0.8 * limit:
+        for sign in (-1.0, 1.0):
+            ax.axhline(sign * limit, color=colour(1), linewidth=0.8, linestyle="--", label="limit of the load cell")
+
+
+def _phase_step(low: float, high: float) -> float:
+    return next((step for step in (15.0, 30.0, 45.0, 90.0) if high - low <= 5.0 * step), 90.0)

@@ -23,6 +23,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and tell nothing new
+_STEPS = 12.0  # of the simulation in a period of the load cell's bandwidth: its filter takes lines between steps
 _AT_REST = 0.02  # of the largest velocity
 _FORCE = "device_force"
 
@@ -101,7 +102,7 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         raise IdentificationError(f"The force of {record.source!r} is constant: nothing can be told from it.")
     motion = smooth_displacement(record, bandwidth)
     interval, count = record.interval, record.time.size
-    parts = 1 if record.force_bandwidth is None else max(1, math.ceil(2.0 * interval * record.force_bandwidth))
+    parts = 1 if record.force_bandwidth is None else max(1, math.ceil(_STEPS * interval * record.force_bandwidth))
     step = interval / parts
     try:
         table = tabulate([_signal(motion)], [0.0], (count - 1) * interval, step)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import binary_dilation, find_objects, label
 
 from inerter.checks import is_number
@@ -52,13 +52,13 @@ def runs(mask: Mask) -> list[tuple[int, int]]:
 
 
 def fill(time: Vector, values: Vector, missing: Mask) -> Vector:
-    """The values with those that are missing interpolated by a cubic that does not overshoot (PCHIP).
+    """The values with those that are missing interpolated by a cubic spline through their neighbours.
 
     Needs two values that are not missing on either side of the first gap and the last.
     """
-    near = binary_dilation(missing, iterations=4) & ~missing  # the interpolation is local: nothing further off counts
+    near = binary_dilation(missing, iterations=6) & ~missing  # what is further off counts for nothing
     result = values.copy()
-    result[missing] = PchipInterpolator(time[near], values[near])(time[missing])
+    result[missing] = CubicSpline(time[near], values[near])(time[missing])
     return result
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, BinaryIO
 
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.optional import library, translated
@@ -19,9 +20,9 @@ def opened(path: str, source: str) -> Iterator[Contents]:
     Raises `RecordError` if the file is damaged, or asammdf is missing.
     """
     asammdf = library("asammdf", "mdf", "MDF files")
-    with open(path, "rb") as stream:  # asammdf closes badly what it could not open by its path
+    with open(path, "rb") as stream:
         with translated(source, _WHAT, "asammdf"):
-            file = asammdf.MDF(stream)
+            file = _open(asammdf, stream)
         with file:
             with translated(source, _WHAT, "asammdf"):
                 channels = tuple(_channels(file))
@@ -31,6 +32,20 @@ def opened(path: str, source: str) -> Iterator[Contents]:
                     return [_samples(file, c, (at + 1) / len(chosen), progress) for at, c in enumerate(chosen)]
 
             yield Contents(channels, read, meta={"version": str(file.version)})
+
+
+def _open(asammdf: Any, stream: BinaryIO) -> Any:
+    """The open file. One that cannot be opened is left closed: asammdf's own closing fails on it, and says so."""
+    try:
+        return asammdf.MDF(stream)
+    except Exception as problem:
+        for frame, _ in traceback.walk_tb(problem.__traceback__):
+            half_open: Any = frame.f_locals.get("self")
+            if getattr(half_open, "_tempfile", None) is not None:
+                half_open._tempfile.close()
+            if hasattr(half_open, "_closed"):
+                half_open._closed = True
+        raise
 
 
 def _channels(file: Any) -> Iterator[Channel]:

@@ -27,7 +27,8 @@ def library(module: str, extra: str, what: str) -> Any:
 @contextmanager
 def translated(source: str, what: str, *loggers: str) -> Iterator[None]:
     """Turns whatever a library raises into one sentence, and keeps its own log off the screen."""
-    quiet = [logging.getLogger(name) for name in loggers]
+    known = [name for name in logging.root.manager.loggerDict if name.split(".")[0] in loggers]
+    quiet = [logging.getLogger(name) for name in known]
     levels = [logger.level for logger in quiet]
     for logger in quiet:
         logger.setLevel(logging.CRITICAL + 1)

@@ -187,6 +187,10 @@ def _timed(
 ) -> tuple[dict[str, Samples], list[str]]:
     """All channels over the same times, which are a channel of their own, from here on."""
     notes = []
+    if cut:
+        shortest = min(samples.values.size for samples in channels.values())
+        notes.append(f"The file is cut short; the first {shortest} samples are complete and were kept.")
+        channels = {role: _first(samples, shortest) for role, samples in channels.items()}
     rasters = {role: samples.time for role, samples in channels.items()}
     timed = "time" not in channels and interval is None
     if timed and any(time is None for time in rasters.values()):
@@ -197,11 +201,7 @@ def _timed(
     if timed and not alike([time for time in rasters.values() if time is not None]):
         return onto_force(source, channels)
     sizes = {role: samples.values.size for role, samples in channels.items()}
-    if cut:
-        shortest = min(sizes.values())
-        notes.append(f"The file is cut short; the first {shortest} samples are complete and were kept.")
-        channels = {role: Samples(s.values[:shortest], s.time) for role, s in channels.items()}
-    elif len(set(sizes.values())) > 1:
+    if len(set(sizes.values())) > 1:
         counts = ", ".join(f"{chosen[role].name!r} {size}" for role, size in sizes.items())
         raise RecordError(
             f"{source}: the channels have different numbers of samples ({counts}), so they are not over the same "
@@ -213,5 +213,9 @@ def _timed(
         notes.append(f"The samples were taken to be {interval:g} s apart, as the call says.")
     elif timed:
         time = rasters["force"]
-        channels = {"time": Samples(np.array(time[:size])), **channels} if time is not None else channels
+        channels = {"time": Samples(np.array(time)), **channels} if time is not None else channels
     return channels, notes
+
+
+def _first(samples: Samples, count: int) -> Samples:
+    return Samples(samples.values[:count], None if samples.time is None else samples.time[:count])

@@ -102,7 +102,7 @@ def _problem(role: str, channel: Channel, unit: str, given: str | None) -> str:
 
 
 def _note(role: str, channel: Channel, unit: str, given: str | None, value: float) -> str | None:
-    if given is None or given == channel.unit:
+    if given is None or (given == channel.unit and given.strip() not in _WEIGHTS):
         return None
     said = f"where the file says {channel.unit}" if channel.unit else "as the call says"
     what = unit if re.match(r"\s*[+-]?[\d.]", unit) else f"1 {unit} = {value:.6g} {CHANNELS[role]}"

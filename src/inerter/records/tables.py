@@ -23,7 +23,7 @@ HEAD = 1 << 18  # bytes within which the numbers must begin
 BLOCK = 1 << 23  # bytes that are parsed at a time
 MISSING = frozenset({"", "nan", "-nan", "+nan", "na", "n/a", "null", "none", "inf", "-inf", "+inf", "-"})
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
-_HEADING = re.compile(r"\s*(.*?)\s*[\[(]([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)[\])]\s*")
+_HEADING = re.compile(r"\s*(\S.*?)\s*[\[(]([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)[\])]\s*")
 _DELIMITERS = ("\t", ";", ",", None)  # None: any white space
 
 

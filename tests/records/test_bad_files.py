@@ -1,0 +1,186 @@
+"""Files that are wrong in all the ways there are: one sentence each, of what arrived and what to try."""
+
+from __future__ import annotations
+
+import os
+import re
+
+import numpy as np
+import pytest
+from bench import bench, write_csv, write_mat, write_mat73, write_mdf, write_tdms
+
+import inerter as it
+from inerter.errors import RecordError
+
+BENCH = bench(60)
+T, X, F = BENCH.time, BENCH.displacement, BENCH.force
+HEADER = "time [s],x [m],F [N]\n"
+ROWS = [f"{t!r},{x!r},{f!r}\n" for t, x, f in zip(T.tolist(), X.tolist(), F.tolist(), strict=True)]
+
+
+def text(content, name="a.csv", encoding="utf-8"):
+    def write(folder):
+        path = folder / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode(encoding))
+        return path
+
+    return write
+
+
+def changed(row, new):
+    return text(HEADER + "".join([*ROWS[:row], new, *ROWS[row + 1 :]]))
+
+
+def columns(*named):
+    return lambda folder: write_csv(folder / "a.csv", [[name for name, _ in named]], [values for _, values in named])
+
+
+def cut(write, keep):
+    def written(folder):
+        path = write(folder)
+        content = path.read_bytes()
+        path.write_bytes(content[: int(keep * len(content))])
+        return path
+
+    return written
+
+
+def renamed(write, name):
+    return lambda folder: write(folder).rename(folder / name)
+
+
+def holed(*samples):
+    values = X.copy()
+    values[list(samples)] = np.nan
+    return values
+
+
+def tdms(folder, **extra):
+    properties = {"x": {"unit_string": "m"}, "F": {"unit_string": "N"}, "time": {"unit_string": "s"}}
+    return write_tdms(folder / "a.tdms", {"time": T, "x": X, "F": F, **extra}, **properties)
+
+
+def mdf(folder):
+    return write_mdf(folder / "a.mf4", [("x", T, X, "m"), ("F", T, F, "N")])
+
+
+def mat(folder):
+    return write_mat(folder / "a.mat", time=T, x=X, F=F, units={"time": "s", "x": "m", "F": "N"})
+
+
+def mat73(folder):
+    return write_mat73(folder / "a.mat", time=T, x=X, F=F, units={"time": "s", "x": "m", "F": "N"})
+
+
+def unreadable(folder):
+    path = text(HEADER + "".join(ROWS))(folder)
+    path.chmod(0)
+    return path
+
+
+good = text(HEADER + "".join(ROWS))
+time, x, force = ("time [s]", T), ("x [m]", X), ("F [N]", F)
+BAD = {
+    "no path": (lambda _: 7, {}, "read from the path of a file, got 7"),
+    "no file": (lambda folder: folder / "b.csv", {}, "There is no file"),
+    "a folder": (lambda folder: folder, {}, "is a folder"),
+    "a file without a suffix": (text("", "bench"), {}, "not from a file without one"),
+    "a wrong suffix": (text("", "a.xlsx"), {}, "read from .csv, .tsv"),
+    "an empty text": (text(""), {}, "is empty; expected a header"),
+    "blank lines": (text("\n \n\n"), {}, "is empty"),
+    "an empty TDMS": (text("", "a.tdms"), {}, "should hold TDMS by its suffix, but by its first bytes is empty"),
+    "an empty MDF": (text("", "a.mf4"), {}, "is empty"),
+    "an empty MAT": (text("", "a.mat"), {}, "is empty"),
+    "text called TDMS": (renamed(good, "a.tdms"), {}, "by its first bytes is something else"),
+    "TDMS called text": (renamed(tdms, "a.csv"), {}, "is TDMS. Rename it to end in .tdms"),
+    "MDF called MAT": (renamed(mdf, "b.mat"), {}, "is MDF. Rename it"),
+    "MAT called text": (renamed(mat, "a.txt"), {}, "is MAT. Rename it"),
+    "a workbook called text": (text(b"PK\x03\x04" + b"\0" * 99), {}, "Export the sheet as CSV"),
+    "bytes called text": (text(bytes(range(256)) * 20), {}, "is not text"),
+    "UTF-16": (text(HEADER + "".join(ROWS), encoding="utf-16"), {}, "Save it as UTF-8"),
+    "an essay": (text("It was a dark\nand stormy night.\n"), {}, "no rows of numbers"),
+    "a giant header": (text("x" * 1_000_000), {}, "no rows of numbers"),
+    "a header and no rows": (text(HEADER), {}, "no rows of numbers"),
+    "one column": (text("x [m]\n" + "1.5\n" * 9), {}, "no rows of numbers in two or more columns"),
+    "a TDMS file cut in its heading": (cut(tdms, 0.02), {}, "no channel has an obvious name|damaged or cut short"),
+    "a TDMS file cut before its numbers": (cut(tdms, 0.25), {}, "at least 4 samples|cut short"),
+    "an MDF file cut short": (cut(mdf, 0.5), {}, "cannot be read as an MDF file: it is damaged or cut short"),
+    "an MDF file cut in its header": (cut(mdf, 0.01), {}, "damaged or cut short"),
+    "an MDF file cut a little": (cut(mdf, 0.98), {}, "damaged or cut short"),
+    "a MAT file cut short": (cut(mat, 0.5), {}, "cannot be read as a MAT file: it is damaged or cut short"),
+    "a MAT file of version 7.3 cut short": (cut(mat73, 0.5), {}, "cannot be read as a MAT file: it is damaged"),
+    "MAT in name only": (text(b"MATLAB 5.0 MAT-file" + b" " * 200, "a.mat"), {}, "cannot be read as a MAT file"),
+    "HDF5 in name only": (text(b"\x89HDF\r\n\x1a\n" + b" " * 200, "a.mat"), {}, "cannot be read as a MAT file"),
+    "a missing channel": (good, {"force": "Lode"}, r"no channel 'Lode' for the force; there are time \[s\], x"),
+    "a name that is nearly right": (columns(time, x, ("Load_1 [N]", F)), {"force": "load1"}, "mean 'Load_1'"),
+    "a number that is too large": (good, {"force": 3}, "force=3 is not among its 3 channels, which are counted from 0"),
+    "no obvious displacement": (columns(time, ("s1 [m]", X), force), {}, "no channel has an obvious name for the disp"),
+    "no obvious time": (columns(("s0 [s]", T), x, force), {}, "or give interval=1e-3"),
+    "a channel that is no name": (good, {"force": 1.5}, "the name or the number of a channel, got 1.5"),
+    "one channel for two": (good, {"force": "x"}, "'x' cannot be both the displacement and the force"),
+    "two channels of one name": (columns(time, x, force, force), {}, "by number: force=2"),
+    "an unknown unit": (columns(time, x, ("F [flup]", F)), {}, "the unit 'flup' of 'F' is not known as a unit of f"),
+    "a unit of another kind": (columns(time, x, ("F [mm]", F)), {}, "the unit 'mm' of 'F' is not known as a unit of f"),
+    "volts": (columns(time, x, ("F [V]", F)), {}, "what one count or volt of the file is worth"),
+    "kilograms": (columns(time, x, ("F [kg]", F)), {}, "is a mass, not a force"),
+    "no unit": (columns(time, x, ("F", F)), {}, "'F' has no unit. Name the unit of the force, such as units={'force'"),
+    "a unit that was misspelt": (good, {"units": {"force": "Newtn"}}, "the unit 'Newtn' that was named is not known"),
+    "a unit of nothing": (good, {"units": {"Load": "N"}}, "units has 'Load', which is none of time, displacement"),
+    "units that are no table": (good, {"units": "N"}, "units must be a table"),
+    "a unit that is no text": (good, {"units": {"force": 3}}, "must be a text such as 'N', got 3"),
+    "a unit of zero": (good, {"units": {"force": "0 N"}}, "not known as a unit of force"),
+    "both interval and time": (good, {"interval": 1e-3, "time": "time"}, "not both"),
+    "an interval of nothing": (good, {"interval": 0.0}, "must be a positive number of s, got 0.0"),
+    "NaN bursts": (columns(time, ("x [m]", holed(5, 6, 7, 30)), force), {}, "4 samples that are missing .* up to 3"),
+    "NaN bursts that are too long": (
+        columns(time, ("x [m]", holed(*range(9, 40))), force), {"gaps": "fill"}, "misses 31 samples in a row"),
+    "nothing but NaN": (columns(time, ("x [m]", T * np.nan), force), {"gaps": "fill"}, "fewer than 4 samples have"),
+    "no stretch without NaN": (columns(time, ("x [m]", T * np.nan), force), {"gaps": "longest"}, "at least 4 samples"),
+    "times that are missing": (columns(("time [s]", holed(3)), x, force), {}, "1 times are missing"),
+    "a wish for gaps that is not known": (good, {"gaps": "ignore"}, "must be 'refuse', 'fill', 'longest' or a number"),
+    "infinite force": (columns(time, x, ("F [N]", np.where(BENCH.time == T[9], np.inf, F))), {}, "first at sample 9"),
+    "three samples": (text(HEADER + "".join(ROWS[:3])), {}, "needs at least 4 samples, 'a.csv' has 3"),
+    "times that repeat": (columns(("time [s]", np.round(T, 2)), x, force), {}, "must increase, but do not at sample"),
+    "times that run backwards": (columns(("time [s]", -T), x, force), {}, "read it with interval= instead"),
+    "a short row": (changed(30, "0.06,0.001\n"), {}, "line 32: expected 3 cells, got 2"),
+    "a long row": (changed(30, "0.06,0.001,2.0,3.0\n"), {}, "line 32: expected 3 cells, got 4"),
+    "a last row cut short": (changed(59, "0.118,0.0\n"), {}, "line 61: expected 3 cells, got 2"),
+    "text among the numbers": (changed(30, "0.06,0.001,oops\n"), {}, 'line 32: expected a number .*, got "oops"'),
+    "text in the first row": (changed(0, "0.0,0.001,oops\n"), {}, "line 2: expected a number with a decimal point"),
+    "a decimal comma among points": (changed(30, '0.06,0.001,"2,5"\n'), {}, 'line 32: .* decimal point, got "2,5"'),
+    "decimal commas between commas": (
+        text(HEADER + "".join(f"0,{i:03d},0,5,1,25\n" for i in range(9))), {}, "needs another delimiter"),
+    "complex numbers": (lambda folder: write_mat(folder / "a.mat", time=T, x=X, F=F * 1j), {"units": {
+        "time": "s", "displacement": "m", "force": "N"}}, "'F' holds complex numbers"),
+    "a matrix": (lambda folder: write_mat(folder / "a.mat", time=T, x=X, F=np.c_[F, F]), {}, r"F\[0\] \(no unit\)"),
+    "channels of two lengths": (lambda folder: tdms(folder, F=F[:50]), {}, "different numbers of samples"),
+    "only texts": (lambda folder: write_mat(folder / "a.mat", name="bench"), {}, "there are no channels of numbers"),
+    "rasters that do not overlap": (
+        lambda f: write_mdf(f / "a.mf4", [("x", T, X, "m")], [("F", T + 9, F, "N")]), {}, "do not overlap in time"),
+    "a range that is none": (good, {"force_range": -1.0}, "The force_range of a record must be a positive number"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_one_clear_sentence(tmp_path, name):
+    write, call, said = BAD[name]
+    given = write(tmp_path)
+    with pytest.raises(RecordError) as caught:
+        it.read_record(given, **call)
+    message = str(caught.value)
+    assert re.search(said, message), message
+    assert "\n" not in message
+    assert 20 < len(message) < 500
+    assert message.endswith((".", "?")), message
+    assert caught.value.__cause__ is None
+    assert caught.value.__suppress_context__ or caught.value.__context__ is None
+
+
+def test_there_are_forty_of_them():
+    assert len(BAD) >= 40
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_a_file_that_may_not_be_read(tmp_path):
+    with pytest.raises(RecordError, match=r"a\.csv cannot be opened: Permission denied\."):
+        it.read_record(unreadable(tmp_path))

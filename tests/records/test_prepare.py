@@ -87,7 +87,7 @@ def test_gaps_in_the_times_are_filled():
     done = prepare.fill_gaps(record, 0.01)
     assert done.time == pytest.approx(T)
     assert done.displacement == pytest.approx(SMOOTH.displacement, abs=1e-9)
-    assert done.notes[-1] == "4 samples that the times leave out, up to 3 in a row, were interpolated."
+    assert done.notes[-1] == "Samples that the times leave out and were interpolated: 4, up to 3 in a row."
     with pytest.raises(RecordError, match=r"gap of 0\.004 s after 0\.699 s, longer than the 0\.003 s"):
         prepare.fill_gaps(record, 0.003)
     assert prepare.fill_gaps(SMOOTH, 0.01).notes[-1].startswith("There were no gaps")

@@ -87,7 +87,7 @@ def _sampling(record: Record) -> list[Finding]:
 def _filled(record: Record) -> list[Finding]:
     result = []
     for role, (count, longest) in record.meta.get("filled", {}).items():
-        said = f"{count} samples of the {role} were missing and interpolated, up to {longest} in a row."
+        said = f"Samples of the {role} that were missing and interpolated: {count}, up to {longest} in a row."
         result.append(Finding("filled", "warning", said, {"samples": float(count), "longest": float(longest)}))
     if record.meta.get("cut"):
         result.append(Finding("cut", "warning", "The file was cut short; its last samples are missing."))

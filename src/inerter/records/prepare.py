@@ -132,9 +132,8 @@ def fill_gaps(record: Record, longest: float) -> Record:
     time = np.append(np.concatenate(parts), record.time[-1])
     new = ~np.isin(time, record.time)
     changes = {role: _filled(time, values, new) for role, values in _measured(record).items()}
-    note = (
-        f"{int(new.sum())} samples that the times leave out, up to {int(left_out.max())} in a row, were interpolated."
-    )
+    count, most = int(new.sum()), int(left_out.max())
+    note = f"Samples that the times leave out and were interpolated: {count}, up to {most} in a row."
     return record.noted(note, time=time, **changes)
 
 

@@ -123,6 +123,8 @@ BAD = {
     "a unit of another kind": (columns(time, x, ("F [mm]", F)), {}, "the unit 'mm' of 'F' is not known as a unit of f"),
     "volts": (columns(time, x, ("F [V]", F)), {}, "what one count or volt of the file is worth"),
     "kilograms": (columns(time, x, ("F [kg]", F)), {}, "is a mass, not a force"),
+    "capital kilograms": (columns(time, x, ("F [KG]", F)), {}, "is a mass, not a force"),
+    "dashes for units": (text("t,x,F\n-,-,-\n" + "".join(ROWS)), {}, "'t' has no unit"),
     "no unit": (columns(time, x, ("F", F)), {}, "'F' has no unit. Name the unit of the force, such as units={'force'"),
     "a unit that was misspelt": (good, {"units": {"force": "Newtn"}}, "the unit 'Newtn' that was named is not known"),
     "a unit of nothing": (good, {"units": {"Load": "N"}}, "units has 'Load', which is none of time, displacement"),

@@ -185,11 +185,19 @@ def test_gaps_are_filled_or_cut_away(tmp_path):
     filled = it.read_record(path, gaps="fill")
     assert filled.time == pytest.approx(T[1:])
     assert filled.displacement == pytest.approx(smooth[1:], abs=1e-9)
-    assert filled.notes[0] == "4 missing samples of the displacement, up to 3 in a row, were interpolated."
+    assert filled.notes[0] == "Missing samples of the displacement that were interpolated: 4, up to 3 in a row."
     assert filled.meta["filled"] == {"displacement": (4, 3)}
     longest = it.read_record(path, gaps="longest")
     assert longest.time == pytest.approx(T[301:])
     assert it.read_record(path, gaps=0.01).time.size == T.size - 1
+
+
+def test_gaps_in_the_first_rows_and_a_blank_end(tmp_path):
+    rows = "0.0,,\n0.1,1.0,\n0.2,,-3\n" + "".join(f"{0.1 * i:.1f},{i},{-i}\n" for i in range(3, 20)) + ",,\n,,\n"
+    (tmp_path / "a.csv").write_text("time [s],x [mm],F [N]\n" + rows)
+    record = it.read_record(tmp_path / "a.csv", gaps="longest")
+    assert record.force == pytest.approx(-np.arange(3.0, 20.0))
+    assert record.notes[0] == "Samples at the end that no channel has, cut off: 2."
 
 
 def test_what_was_decided_is_noted(tmp_path):

@@ -109,6 +109,14 @@ def test_records_too_short_to_tell():
     assert four.velocity == pytest.approx(np.ones(4), abs=0.05)
 
 
+def test_blocks_make_no_difference(monkeypatch):
+    record, _ = motion([(3.0, 1e-3)], 1000.0, 2.0, 1e-6)
+    whole = smooth_displacement(record)
+    monkeypatch.setattr("inerter.records.smoothing._BLOCK", 333)
+    parts = smooth_displacement(record)
+    assert parts.acceleration == pytest.approx(whole.acceleration, abs=1e-12)
+
+
 def test_what_cannot_be_smoothed():
     record, _ = motion([(3.0, 1e-3)], 100.0, 1.0)
     uneven = Record(record.time**1.1, record.displacement, record.force)

@@ -103,9 +103,8 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
     motion = smooth_displacement(record, bandwidth)
     interval, count = record.interval, record.time.size
     parts = 1 if record.force_bandwidth is None else max(1, math.ceil(_STEPS * interval * record.force_bandwidth))
-    step = interval / parts
     try:
-        table = tabulate([_signal(motion)], [0.0], (count - 1) * interval, step)
+        table = _table(motion, interval, parts)
     except InerterError as error:
         raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
     kept = ~saturated(record)
@@ -127,6 +126,14 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
     return Experiment(record, motion, kept, table, parts, max(noise_of(record.force, interval).rms, 1e-9))
 
 
+def disturbed(experiment: Experiment, noise: Matrix) -> Experiment:
+    """The same experiment had the encoder's noise been larger by `noise` (samples,) [m]."""
+    record = replace(experiment.record, displacement=experiment.record.displacement + noise)
+    motion = smooth_displacement(record, experiment.motion.bandwidth)
+    table = _table(motion, record.interval, experiment.parts)
+    return replace(experiment, motion=motion, table=table)
+
+
 def saturated(record: Record) -> NDArray[np.bool_]:
     """Samples at the end of the load cell's range, and one beside them; none if the range is not known."""
     if record.force_range is None:
@@ -142,6 +149,10 @@ def forgotten(experiment: Experiment, system: PiecewiseSystem, level: float) -> 
         return 0
     apart = np.abs(experiment.sensed(runs[0][_FORCE]) - experiment.sensed(runs[1][_FORCE])) > level
     return int(np.flatnonzero(apart)[-1]) + 1 if apart.any() else 0
+
+
+def _table(motion: Motion, interval: float, parts: int) -> InputTable:
+    return tabulate([_signal(motion)], [0.0], (motion.time.size - 1) * interval, interval / parts)
 
 
 def _signal(motion: Motion) -> Signal:

@@ -12,6 +12,7 @@ from scipy.stats import chi2
 
 from inerter.checks import is_number
 from inerter.errors import OK, IdentificationError, Status, StatusKind
+from inerter.identification.encoder import lean
 from inerter.identification.experiment import Experiment, experiment_of, forgotten, saturated
 from inerter.identification.fit import Comparison, Fit, Parameter, Told
 from inerter.identification.guess import chain_of, guess_of, sign_of
@@ -91,6 +92,7 @@ def identify(
         if progress is not None:
             progress(0.7)
         optimum, found = _profiled(problem, optimum)
+        optimum, found = _straightened(problem, optimum, found, seed)
         if progress is not None:
             progress(1.0)
         return _fit(problem, optimum, found, experiments, leads, tuple(costs), tuple(notes), seed)
@@ -179,6 +181,16 @@ def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile
     return optimum, found
 
 
+def _straightened(
+    problem: Problem, optimum: Optimum, found: Sequence[Profile], seed: int
+) -> tuple[Optimum, list[Profile]]:
+    """The best fit and its profiles without the lean that the encoder's noise gave them."""
+    lower, upper = problem.space.bounds
+    point = np.clip(optimum.point - lean(problem, optimum, seed), lower, upper)
+    by = point - optimum.point
+    return replace(optimum, point=point), [p.moved(float(d)) for p, d in zip(found, by, strict=True)]
+
+
 def _fit(
     problem: Problem,
     optimum: Optimum,
@@ -237,6 +249,7 @@ def _comparisons(
     problem: Problem, optimum: Optimum, whole: Sequence[Experiment], leads: Sequence[float]
 ) -> tuple[Comparison, ...]:
     result, system, first = [], problem.system(optimum.point), 0
+    residuals = problem.residual(optimum.point)
     values = problem.space.named(optimum.point)
     assert system is not None
     for e, all_kept, w, lead, offset in zip(
@@ -245,7 +258,7 @@ def _comparisons(
         run = e.run(system, values.get(DELAY, 0.0))
         assert run is not None
         model = values.get(GAIN, 1.0) * e.sensed(run["device_force"]) + offset
-        white = optimum.residual[first : first + e.size][w.weight > 0.0]
+        white = residuals[first : first + e.size][w.weight > 0.0]
         first += e.size
         checked = all_kept.kept & ~e.kept
         checked[: round(lead / e.record.interval)] = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +90,11 @@ class Profile:
     upper: Side
     points: tuple[tuple[float, float], ...]
     better: tuple[float, Matrix] | None  # a cost below the optimum's, and where
+
+    def moved(self, by: float) -> Profile:
+        """The same profile elsewhere; ends at the bounds of the search stay there."""
+        ends = (replace(side, end=side.end + by) if side.told else side for side in (self.lower, self.upper))
+        return Profile(*ends, tuple((x + by, rise) for x, rise in self.points), self.better)
 
 
 def profiles(problem: Problem, optimum: Optimum) -> list[Profile]:

@@ -26,10 +26,11 @@ def mend(
     """
     if not (gaps in ("refuse", "fill", "longest") or (is_number(gaps) and gaps > 0.0)):
         raise RecordError(f"gaps must be 'refuse', 'fill', 'longest' or a number of s to fill, got {gaps!r}.")
+    channels, notes = _without_blank_end(channels)
     missing = {role: ~np.isfinite(samples.values) for role, samples in channels.items()}
     bad = {role: mask for role, mask in missing.items() if mask.any()}
     if not bad:
-        return channels, [], {}
+        return channels, notes, {}
     if "time" in bad:
         raise RecordError(
             f"{source}: {int(bad['time'].sum())} times are missing or no finite numbers, the first at sample "
@@ -37,9 +38,20 @@ def mend(
         )
     if gaps == "refuse":
         raise _refusal(source, bad)
-    if gaps == "longest":
-        return _longest(channels, bad)
-    return _filled(source, channels, bad, gaps)
+    result, more, filled = _longest(channels, bad) if gaps == "longest" else _filled(source, channels, bad, gaps)
+    return result, notes + more, filled
+
+
+def _without_blank_end(channels: dict[str, Samples]) -> tuple[dict[str, Samples], list[str]]:
+    """Without the samples at the end that no channel has, as spreadsheets and counters leave them."""
+    size = channels["force"].values.size
+    kept = size
+    while kept and not any(np.isfinite(samples.values[kept - 1]) for samples in channels.values()):
+        kept -= 1
+    if kept == size:
+        return channels, []
+    cut = {role: Samples(samples.values[:kept]) for role, samples in channels.items()}
+    return cut, [f"Samples at the end that no channel has, cut off: {size - kept}."]
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:
@@ -169,7 +181,7 @@ def _filled(
         cut[role] = fill(time, cut[role], mask[first:last])
         count, longest = int(mask[first:last].sum()), max(b - a for a, b in found)
         filled[role] = (count, longest)
-        notes.append(f"{count} missing samples of the {role}, up to {longest} in a row, were interpolated.")
+        notes.append(f"Missing samples of the {role} that were interpolated: {count}, up to {longest} in a row.")
     if last - first < every.size:
-        notes.append(f"{every.size - last + first} samples at the ends, where a channel is missing, were cut off.")
+        notes.append(f"Samples at the ends that some channel misses, cut off: {every.size - last + first}.")
     return {role: Samples(values) for role, values in cut.items()}, notes, filled

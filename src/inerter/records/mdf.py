@@ -40,7 +40,9 @@ def _open(asammdf: Any, stream: BinaryIO) -> Any:
         return asammdf.MDF(stream)
     except Exception as problem:
         for frame, _ in traceback.walk_tb(problem.__traceback__):
-            half_open = frame.f_locals.get("self")
+            half_open: Any = frame.f_locals.get("self")
+            if getattr(half_open, "_tempfile", None) is not None:
+                half_open._tempfile.close()
             if hasattr(half_open, "_closed"):
                 half_open._closed = True
         raise

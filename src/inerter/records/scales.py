@@ -88,8 +88,8 @@ def _value(role: str, unit: str) -> float | None:
 
 def _problem(role: str, channel: Channel, unit: str, given: str | None) -> str:
     whose = f"the unit {unit!r} of {channel.name!r}" if given is None else f"the unit {unit!r} that was named"
-    if role == "force" and unit.strip() in _WEIGHTS:
-        force = _WEIGHTS[unit.strip()]
+    if role == "force" and unit.strip().lower() in _WEIGHTS:
+        force = _WEIGHTS[unit.strip().lower()]
         return (
             f"{whose} is a mass, not a force. If the load cell shows the weight of that mass, say so with "
             f"units={{'force': {force!r}}} (1 {force} = {parse_quantity('1 ' + force, 'N'):.6g} N)."
@@ -105,8 +105,10 @@ def _note(role: str, channel: Channel, unit: str, given: str | None, value: floa
     if given is None or (given == channel.unit and given.strip() not in _WEIGHTS):
         return None
     said = f"where the file says {channel.unit}" if channel.unit else "as the call says"
-    what = unit if re.match(r"\s*[+-]?[\d.]", unit) else f"1 {unit} = {value:.6g} {CHANNELS[role]}"
-    return f"The {role} {channel.name!r} was taken in {unit} ({what}), {said}."
+    if re.match(r"\s*[+-]?[\d.]", unit):
+        return f"One unit of the {role} {channel.name!r} was taken as {unit}, {said}."
+    worth = "" if value == 1.0 else f" (1 {unit} = {value:.6g} {CHANNELS[role]})"
+    return f"The {role} {channel.name!r} was taken in {unit}{worth}, {said}."
 
 
 def _first(role: str) -> str:

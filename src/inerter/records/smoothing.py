@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import trapezoid
 from scipy.interpolate import CubicSpline
 from scipy.signal import detrend, periodogram, welch
 
@@ -22,6 +23,7 @@ from inerter.records.record import Record
 Vector = NDArray[np.float64]
 MARGIN = 4.0  # the bandwidth over the highest frequency in the displacement
 ABOVE = 5.0  # times the noise floor, that a band has to hold to count as motion
+_BLOCK = 1 << 18  # samples of one spline
 _BANDS = 6  # an octave
 _FEWEST = 64  # samples that a spectrum needs to tell noise from motion
 _LEVELS = 1 << 17  # values in which a step is looked for
@@ -69,8 +71,8 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
     limit = HIGHEST / interval
     chosen = min(MARGIN * noise.highest, limit) if bandwidth is None else float(bandwidth)
     displacement = low_pass(record.displacement, interval, chosen)
-    velocity = CubicSpline(record.time, displacement)(record.time, 1)
-    acceleration = CubicSpline(record.time, velocity)(record.time, 1)
+    velocity = _slope(record.time, displacement)
+    acceleration = _slope(record.time, velocity)
     attenuation = 1.0 - float(gain(np.array([noise.highest]), interval, chosen)[0])
     noises = _noises(noise.density, interval, chosen)
     return Motion(
@@ -139,6 +141,16 @@ def resolution(values: Vector) -> float:
     return float(np.sum(steps) / np.sum(np.round(multiples)))
 
 
+def _slope(time: Vector, values: Vector) -> Vector:
+    """The slope of the cubic spline through the values, block by block: what is 64 samples off counts for nothing."""
+    result = np.empty(values.size)
+    for start in range(0, values.size, _BLOCK):
+        near = slice(max(start - 64, 0), start + _BLOCK + 64)
+        here = slice(start, start + _BLOCK)
+        result[here] = CubicSpline(time[near], values[near])(time[here], 1)
+    return result
+
+
 def _spectrum(values: Vector, interval: float) -> tuple[Vector, Vector]:
     straight = detrend(values)
     if values.size <= _LONGEST:
@@ -174,7 +186,7 @@ def _noises(floor: float, interval: float, bandwidth: float) -> tuple[float, flo
     theta = 2.0 * np.pi * frequency * interval
     slope = 3.0 * np.sin(theta) / (2.0 + np.cos(theta)) / interval
     passed = np.sqrt(floor) * gain(frequency, interval, bandwidth)
-    squares = (np.trapezoid((passed * slope**n) ** 2, frequency) for n in (1, 2))
+    squares = (trapezoid((passed * slope**n) ** 2, frequency) for n in (1, 2))
     velocity, acceleration = (float(np.sqrt(square)) for square in squares)
     return velocity, acceleration
 

@@ -107,9 +107,14 @@ def _is_number(cell: str) -> bool:
 
 
 def _is_data(lines: list[str], delimiter: str | None, columns: int) -> bool:
-    """Whether these lines look like rows of numbers: as many cells each, and at least two numbers."""
+    """Whether these lines look like rows of numbers: as many cells, two numbers or one and the rest missing."""
     rows = [cells for line in lines if (cells := _cells(line, delimiter))]
-    return all(len(cells) == columns and sum(map(_is_number, cells)) >= 2 for cells in rows)
+    return all(len(cells) == columns and _is_row(cells) for cells in rows)
+
+
+def _is_row(cells: list[str]) -> bool:
+    numbers = sum(map(_is_number, cells))
+    return numbers >= 2 or (numbers == 1 and all(_is_number(cell) or cell.casefold() in MISSING for cell in cells))
 
 
 def _described(source: str, lines: list[str], at: int, delimiter: str | None, offset: int, encoding: str) -> Layout:
@@ -162,7 +167,7 @@ def _names(header: list[list[str]], columns: int) -> tuple[tuple[str, ...], tupl
     found = [_HEADING.fullmatch(cell) for cell in header[0]]
     names = tuple(match[1] if match else cell for match, cell in zip(found, header[0], strict=True))
     beside = [match[2].strip() if match else "" for match in found]
-    below = [cell.strip("[]() ") for cell in header[1]] if len(header) == 2 else [""] * columns
+    below = [cell.strip("[]() -") for cell in header[1]] if len(header) == 2 else [""] * columns
     return names, tuple(a or b for a, b in zip(beside, below, strict=True))
 
 

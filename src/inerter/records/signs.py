@@ -1,0 +1,142 @@
+"""Whether the force has the sign of these conventions, and how late it was recorded."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.records.finding import Finding
+from inerter.records.record import Record
+from inerter.records.smoothing import Motion, smooth_displacement
+from inerter.records.spectra import Lines, force_over_acceleration, lines
+
+Vector = NDArray[np.float64]
+CLEAR = 0.3  # least correlation that says anything
+STIFF = 0.3  # of the mass: more than that is elasticity near its resonance
+WIDE = 3.0  # highest over lowest frequency of an excitation that can tell a delay from a damper
+
+
+def sign(record: Record, motion: Motion) -> list[Finding]:
+    """Whether the force follows the acceleration, as inertia does, or the velocity, as all losses do.
+
+    A passive device takes in work. So a force against both is reversed; a force against the acceleration alone is
+    that of a spring (below a resonance), or late.
+    """
+    force = record.force - np.mean(record.force)
+    inertia = _correlation(force, motion.acceleration if record.acceleration is None else record.acceleration)
+    loss = _correlation(force, motion.velocity if record.velocity is None else record.velocity)
+    numbers = {"with_acceleration": inertia, "with_velocity": loss}
+    said = f"correlation {inertia:+.2f} with the acceleration, {loss:+.2f} with the velocity"
+    if max(abs(inertia), abs(loss)) < CLEAR:
+        return [Finding("sign", "info", f"The force follows neither motion nor its rates clearly ({said}).", numbers)]
+    reversed_ = (inertia < -CLEAR and loss < 0.05) or (loss < -CLEAR and inertia < CLEAR)
+    if reversed_:
+        return [
+            Finding(
+                "force-reversed",
+                "warning",
+                f"The force is reversed: it goes against the motion, and the device gives out work ({said}). Force is "
+                f"positive in tension, displacement when the device grows longer. Use reverse_force(record).",
+                numbers,
+            )
+        ]
+    if inertia < -CLEAR:
+        return [
+            Finding(
+                "sign",
+                "info",
+                f"The force goes against the acceleration but takes in work ({said}), as that of a spring does.",
+                numbers,
+            )
+        ]
+    return [Finding("sign", "info", f"The force has the sign of inertia and losses ({said}).", numbers)]
+
+
+def delay(record: Record, motion: Motion) -> list[Finding]:
+    """How much later the force was recorded than the motion.
+
+    With a measured acceleration it is compared with that from the displacement, which says how the displacement lies
+    against the other channels, whatever the device is. Without, the device has a phase of its own; what is
+    assumed then is that it grows as 1/omega (dampers, friction) and omega^3 (elasticity below its resonance), and
+    what grows as omega is the delay. That takes an excitation over a factor of 3 in frequency.
+    """
+    if record.acceleration is not None:
+        found = lines(motion.acceleration, record.acceleration, record.interval, highest=motion.highest)
+        if not found.omega.size:
+            return [_unknown("the measured acceleration does not follow that of the displacement")]
+        late, error = _late(found, (1,))
+        what = "The measured acceleration is {late} than the displacement, so presumably is the force"
+        return [_reported(record, late, error, what)]
+    found = _inertial(force_over_acceleration(record, motion))
+    if found.omega.size < 6 or found.spread < WIDE:
+        return [_unknown("it is not excited over a wide enough band below the resonance of the device")]
+    late, error = _cautious(found)
+    what = "The force is {late} than the displacement, if the device is inertia, losses and elasticity below resonance"
+    return [_reported(record, late, error, what)]
+
+
+def estimate_delay(record: Record) -> tuple[float, float]:
+    """How much later the force was recorded than the motion, and the standard error [s]; nan where none can be told."""
+    found = delay(record, smooth_displacement(record))[0].numbers
+    return found.get("delay", np.nan), found.get("standard_error", np.nan)
+
+
+def _inertial(found: Lines) -> Lines:
+    """The lines at which the real part is that of a mass, the same for most, within `STIFF`."""
+    if not found.omega.size:
+        return found
+    mass = found.ratio.real
+    usual = float(np.median(mass))
+    kept = np.abs(mass - usual) <= STIFF * max(usual, 0.0)
+    return Lines(found.omega[kept], found.ratio[kept], found.phase_error[kept])
+
+
+def _cautious(found: Lines) -> tuple[float, float]:
+    """The delay beside the device's own phase; its error includes how far other choices of lines and terms lead."""
+    late, error = _late(found, (1, -1, 3))
+    half = slice(found.omega.size // 2, None)
+    upper = Lines(found.omega[half], found.ratio[half], found.phase_error[half])
+    others = (_late(found, (1, -1))[0], _late(upper, (1, -1))[0])
+    return late, math.hypot(error, *(late - other for other in others))
+
+
+def _late(found: Lines, powers: tuple[int, ...]) -> tuple[float, float]:
+    """The delay in Im(ratio) = - mass delay omega + ... by weighted least squares, and its standard error.
+
+    The error is scaled by the scatter that is left, where that is more than the lines promise.
+    """
+    scale = float(np.median(found.omega))
+    mass = float(np.median(found.ratio.real))
+    weight = 1.0 / (np.abs(found.ratio) * np.maximum(found.phase_error, 1e-5))
+    design = np.stack([(found.omega / scale) ** power for power in powers], axis=1) * weight[:, None]
+    solution, *_ = np.linalg.lstsq(design, found.ratio.imag * weight, rcond=None)
+    left = found.ratio.imag * weight - design @ solution
+    scatter = float(left @ left) / max(left.size - len(powers), 1)
+    covariance = np.linalg.pinv(design.T @ design) * max(scatter, 1.0)
+    return -float(solution[0]) / (mass * scale), float(np.sqrt(covariance[0, 0])) / abs(mass * scale)
+
+
+def _reported(record: Record, late: float, error: float, what: str) -> Finding:
+    numbers = {"delay": late, "standard_error": error}
+    said = what.format(late=f"{1e3 * abs(late):.3g} ms {'later' if late >= 0.0 else 'earlier'}")
+    margin = f"(standard error {1e3 * error:.2g} ms)"
+    if abs(late) < 3.0 * error or abs(late) < 0.05 * record.interval:
+        return Finding("delay", "info", f"No delay between force and motion is seen {margin}.", numbers)
+    return Finding("delay", "warning", f"{said} {margin}. shift_force(record, {late:.3g}) removes it.", numbers)
+
+
+def _unknown(why: str) -> Finding:
+    return Finding(
+        "delay",
+        "info",
+        f"A delay between force and displacement cannot be told from this record alone: {why}. Record a sweep or "
+        f"multisine, or an acceleration, or leave the delay free when the model is fitted.",
+    )
+
+
+def _correlation(a: Vector, b: Vector) -> float:
+    a, b = a - np.mean(a), b - np.mean(b)
+    size = float(np.sqrt((a @ a) * (b @ b)))
+    return float(a @ b) / size if size > 0.0 else 0.0

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from inerter.checks import is_number
 from inerter.errors import OK, IdentificationError, Status, StatusKind
-from inerter.identification.encoder import lean
+from inerter.identification.encoder import lean, scattered
 from inerter.identification.experiment import Experiment, experiment_of, forgotten, saturated
 from inerter.identification.fit import Comparison, Fit, Parameter, Told
 from inerter.identification.guess import chain_of, guess_of, sign_of
@@ -88,7 +88,7 @@ def identify(
         guess = {} if chain is None else guess_of(chain, list(problem.experiments))
         point, costs = search(problem, guess, seed, starts, _part(progress, 0.0, 0.6))
         problem.experiments, leads = _leads(problem, point, lead)
-        optimum = _refined(problem, point)
+        optimum = scattered(problem, _refined(problem, point), seed)
         if progress is not None:
             progress(0.7)
         optimum, found = _profiled(problem, optimum)
@@ -176,7 +176,9 @@ def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile
         better = min((p.better for p in found if p.better is not None), key=lambda b: b[0], default=None)
         if better is None:
             break
+        widening = optimum.widening
         optimum = optimum_of(problem, better[1], steps_of(optimum))
+        optimum = replace(optimum, widening=np.maximum(optimum.widening, widening))
         found = profiles(problem, optimum)
     return optimum, found
 

@@ -14,7 +14,7 @@ from inerter.identification.search import improve
 Matrix = NDArray[np.float64]
 ROBUST = 3.0  # whitened residuals beyond this count less than their square
 _STEPS = (1e-6, 1e-2)  # of a coordinate, between which differences are taken
-_BLOCKS = 60
+_BLOCKS = 40
 _FOLLOWING, _SEARCHING = 3, 8
 LEVEL = 0.95
 

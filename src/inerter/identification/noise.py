@@ -6,13 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_toeplitz
-from scipy.signal import lfilter
+from scipy.fft import next_fast_len
 
 Matrix = NDArray[np.float64]
-ORDER = 25  # of the autoregression
 _MAD = 1.4826  # standard deviations in a median absolute deviation
-_FEWEST = 20 * ORDER
+_BANDS, _LINES = 6, 10  # of the spectrum of residuals: in an octave, and the fewest lines in each
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,56 +18,58 @@ class Whitening:
     """Makes residuals of a record independent and of size one, as far as the record tells.
 
     An instant at which the model's force jumps is known only as well as the displacement: there the residual of a
-    sample is `timing` times the change of the force between samples, on top of `level` [N]. What is left is an
-    autoregression, because the smoothed noise of the encoder passes through the device.
+    sample is `timing` times the change of the force between samples, on top of `level` [N]. What is left has a
+    spectrum of its own, because the smoothed noise of the encoder passes through the device; it is divided away.
     """
 
     weight: Matrix  # (samples,) 1/N, zero where samples are not compared
-    filter: Matrix  # (ORDER + 1,)
+    centre: Matrix  # (bands,) frequencies in cycles a sample, and ...
+    density: Matrix  # ... the spectrum of the weighted residuals there, 1 if they were white and of size one
 
     def __call__(self, residual: Matrix) -> Matrix:
         """Whitened residuals (samples,) or (samples, columns), zero where samples are not compared."""
         size = residual.shape[0]
         weight = self.weight[:size] if residual.ndim == 1 else self.weight[:size, None]
-        white = lfilter(self.filter, [1.0], weight * residual, axis=0)
+        white = weight * residual
+        if self.centre.size:
+            padded = next_fast_len(size + size // 8, real=True)
+            spectrum = np.exp(0.5 * np.interp(np.fft.rfftfreq(padded), self.centre, np.log(self.density)))
+            divided = np.fft.rfft(white, padded, axis=0)
+            divided /= spectrum if residual.ndim == 1 else spectrum[:, None]
+            white = np.fft.irfft(divided, padded, axis=0)[:size]
         return np.asarray(np.where(weight > 0.0, white, 0.0))
 
 
 def plain(kept: NDArray[np.bool_], level: float) -> Whitening:
     """Every sample with the same error `level` [N], independent of the others."""
-    return Whitening(kept / level, np.array([1.0]))
+    return Whitening(kept / level, np.zeros(0), np.zeros(0))
 
 
 def whitening_of(residual: Matrix, force: Matrix, kept: NDArray[np.bool_], floor: float) -> Whitening:
     """The whitening that the residuals of a model with this `force` ask for; `floor` [N] is the least error."""
     change = np.abs(np.diff(force, prepend=force[0], append=force[-1]))
     change = np.maximum(change[1:], change[:-1])
-    r, d = residual[kept] - np.median(residual[kept]), change[kept]
-    quiet = d <= np.median(d)
-    level = max(_MAD * float(np.median(np.abs(r[quiet]))), floor)
+    middle = float(np.median(residual[kept]))
+    r, d = np.abs(residual[kept] - middle), change[kept]
+    level = max(_MAD * float(np.median(r[d <= np.median(d)])), floor)
     steep = d >= np.quantile(d, 0.95)
-    excess = np.median(np.abs(r[steep])) * _MAD
-    timing = max(float(excess) ** 2 - level**2, 0.0) / max(float(np.median(d[steep])) ** 2, 1e-300)
+    excess = (_MAD * float(np.median(r[steep]))) ** 2 - level**2
+    timing = max(excess, 0.0) / max(float(np.median(d[steep])) ** 2, 1e-300)
     weight = np.where(kept, 1.0 / np.sqrt(level**2 + timing * change**2), 0.0)
-    scaled = np.clip(weight * (residual - np.median(residual[kept])), -5.0, 5.0)
-    coefficients = _autoregression(scaled, min(ORDER, int(kept.sum()) // 20))
-    white = lfilter(coefficients, [1.0], scaled)[kept]
-    return Whitening(weight / max(_MAD * float(np.median(np.abs(white))), 0.05), coefficients)
+    scaled = np.clip(weight * (residual - middle), -5.0, 5.0)
+    return Whitening(weight, *_spectrum(scaled, float(np.mean(kept))))
 
 
-def _autoregression(values: Matrix, order: int) -> Matrix:
-    """Coefficients that leave the least of `values`, by Yule and Walker, of the order that Akaike's criterion asks."""
-    size = values.size
-    if size < _FEWEST or order < 1:
-        return np.array([1.0])
-    spectrum = np.abs(np.fft.rfft(values, 2 * size)) ** 2
-    lags = np.fft.irfft(spectrum)[: order + 1] / size
-    lags[0] *= 1.0 + 1e-9
-    best, chosen = size * np.log(lags[0]), np.array([1.0])
-    for p in range(1, order + 1):
-        a = solve_toeplitz(lags[:p], lags[1 : p + 1])
-        left = lags[0] - float(a @ lags[1 : p + 1])
-        score = size * np.log(max(left, 1e-12 * lags[0])) + 2.0 * p
-        if score < best - 2.0:
-            best, chosen = score, np.concatenate([[1.0], -a])
-    return chosen
+def _spectrum(values: Matrix, share: float) -> tuple[Matrix, Matrix]:
+    """Frequencies and densities of bands, each with enough lines to be told; `share` of the values are not zero."""
+    density = np.abs(np.fft.rfft(values)) ** 2 / (share * values.size)
+    edges = [1]
+    while edges[-1] < density.size:
+        edges.append(max(edges[-1] + _LINES, int(edges[-1] * 2.0 ** (1.0 / _BANDS))))
+    edges = [edge for edge in edges if edge <= density.size - _LINES]
+    if len(edges) < 3:
+        return np.zeros(0), np.zeros(0)
+    lines = np.diff([*edges, density.size])
+    means = np.add.reduceat(density, edges) / lines
+    centre = (np.array(edges) + 0.5 * lines) / values.size
+    return centre, np.maximum(means, 1e-4 * float(means.max()))

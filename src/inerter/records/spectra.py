@@ -1,58 +1,238 @@
-"""Force over acceleration, frequency by frequency: what tells a reversed sign and a delay."""
+"""Spectra of records at the frequencies that their displacement has: periodic lines, and Welch's averages."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import csd, welch
 
+from inerter.errors import RecordError
+from inerter.records.periods import Periods, resolution
 from inerter.records.record import Record
-from inerter.records.smoothing import Motion
 
-Vector = NDArray[np.float64]
-COHERENT = 0.8  # least squared coherence of a line that counts
-_SEGMENTS = 6  # of the record, half of each in the next
+Matrix = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Chosen = NDArray[np.bool_]
+
+_FAINT = 1e-3  # of the largest amplitude of velocity: what is below is no part of the excitation
+_BESIDE = 0.05  # the same for the amplitudes within a decade, for lines: what is below is distortion
+_LEVEL = 1e-3  # probability that nothing but noise counts as something
+_NEIGHBOURS = 21  # harmonics whose scatter is looked at together
+_ABOVE_STEPS = 20.0  # times what the steps of the encoder leave, for the power of a random displacement
+_CHANCE = 0.05  # probability that a frequency with nothing in common is told
+_DECAYED = 3.0  # a period has settled if its force strays from the last ones at most so many times as they do
+_STEADY = 5e-3  # of the size of the force: strays that never count as a transient
+_SEGMENTS = 16.0  # shares of the time of all records in a segment, unless it is given
+_LEAST_SAMPLES, _LEAST_BIN = 16, 3  # in a segment; the mean that is taken off reaches into the bins below
+
+
+@dataclass(frozen=True, eq=False)
+class Spectra:
+    """Mean squares and products of displacement and force at some frequencies, and over how many averages."""
+
+    omega: Matrix  # (lines,) [rad/s]
+    xx: Matrix  # (lines,) of the displacement
+    ff: Matrix  # (lines,) of the force
+    fx: Complex  # (lines,) of force times conjugate displacement
+    count: float  # averages, as if they were independent
+    notes: tuple[str, ...] = ()
+
+    @property
+    def coherence(self) -> Matrix:
+        """Share of the force's mean square that goes with the displacement."""
+        size = self.xx * self.ff
+        return np.asarray(np.divide(np.abs(self.fx) ** 2, size, out=np.zeros_like(size), where=size > 0.0).clip(0, 1))
+
+    def at(self, chosen: Chosen) -> Spectra:
+        """Some of the lines."""
+        return Spectra(self.omega[chosen], self.xx[chosen], self.ff[chosen], self.fx[chosen], self.count, self.notes)
 
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """The ratio of two channels at the frequencies where the first is excited and the other follows it."""
+    """Complex amplitudes of every period at every harmonic, for each record of one period."""
 
-    omega: Vector  # (m,) [rad/s]
-    ratio: NDArray[np.complex128]  # (m,) second over first
-    phase_error: Vector  # (m,) [rad] standard error of its phase
+    omega: Matrix  # (harmonics,) [rad/s]
+    displacement: tuple[Complex, ...]  # of each record (periods, harmonics) [m]
+    force: tuple[Complex, ...]  # [N]
+    least: float  # [m^2] squared amplitude that the steps of the encoder leave at a harmonic
 
-    @property
-    def spread(self) -> float:
-        """The highest frequency over the lowest, 1 where there are none."""
-        return float(self.omega[-1] / self.omega[0]) if self.omega.size else 1.0
+    def chosen(self) -> Chosen:
+        """The harmonics of the excitation.
+
+        A harmonic counts if it stands out of the scatter between periods (an F test), its velocity is no less than a
+        thousandth of the largest and a twentieth of the largest within a decade around it. So does the strongest
+        alone if it has nearly all of the velocity: a sine, whose other harmonics are distortion.
+        """
+        means = np.array([amplitudes.mean(axis=0) for amplitudes in self.displacement])
+        power = np.mean(np.abs(means) ** 2, axis=0)
+        velocity = self.omega**2 * power
+        strongest = int(np.argmax(velocity))
+        if velocity[strongest] >= 0.95 * velocity.sum():
+            return np.asarray(np.arange(power.size) == strongest)
+        strong = np.maximum(_FAINT**2 * velocity.max(), _BESIDE**2 * _largest(velocity))
+        return np.asarray(self.told() & (velocity >= strong))
+
+    def at(self, chosen: Chosen) -> Lines:
+        """Some of the harmonics."""
+        return Lines(
+            self.omega[chosen],
+            tuple(x[:, chosen] for x in self.displacement),
+            tuple(force[:, chosen] for force in self.force),
+            self.least,
+        )
+
+    def settled(self) -> tuple[Lines, list[int]]:
+        """Without the periods at the start of each record in which the force has not settled, and how many these are.
+
+        The force of a period is compared with what the last half of the periods makes of its displacement.
+        """
+        first = [_unsettled(x, force) for x, force in zip(self.displacement, self.force, strict=True)]
+        x, force = (
+            tuple(values[n:] for values, n in zip(of, first, strict=True)) for of in (self.displacement, self.force)
+        )
+        return Lines(self.omega, x, force, self.least), first
+
+    def told(self) -> Chosen:
+        """The harmonics that stand out of the scatter of the displacement and of the steps of its encoder.
+
+        Their power exceeds their own scatter (an F test), and that of their neighbours by so much that none of all
+        harmonics would if it were nothing but noise.
+        """
+        from scipy.ndimage import median_filter
+        from scipy.stats import chi2
+        from scipy.stats import f as fisher
+
+        means = np.array([amplitudes.mean(axis=0) for amplitudes in self.displacement])
+        power, squares = np.mean(np.abs(means) ** 2, axis=0), 2 * len(means)
+        many = float(fisher.isf(_LEVEL / power.size, squares, 1e6))
+        least = np.full(power.size, max(many * self.least, np.finfo(float).tiny))
+        freedom = 2 * sum(amplitudes.shape[0] - 1 for amplitudes in self.displacement)
+        if freedom:
+            noise = np.zeros(power.size)
+            for amplitudes, mean in zip(self.displacement, means, strict=True):
+                count = amplitudes.shape[0]
+                if count > 1:
+                    noise += np.sum(np.abs(amplitudes - mean) ** 2, axis=0) / (count - 1) / count / len(means)
+            usual = median_filter(noise, _NEIGHBOURS, mode="nearest") * (freedom / chi2.median(freedom))
+            least = np.maximum(least, np.maximum(float(fisher.isf(_LEVEL, squares, freedom)) * noise, many * usual))
+        return np.asarray(power > least)
 
 
-def lines(first: Vector, second: Vector, interval: float, lowest: float = 0.0, highest: float = np.inf) -> Lines:
-    """The ratio second/first between these frequencies [Hz], from averaged spectra.
+def lines_of(parts: Sequence[Periods]) -> Lines:
+    """Amplitudes at the harmonics that all records have, below half the lowest rate."""
+    period = float(np.mean([part.period for part in parts]))
+    harmonics = min((part.displacement.shape[1] - 1) // 2 for part in parts)
+    steps = [resolution(part.displacement.ravel()) ** 2 / part.displacement.shape[1] for part in parts]
+    amplitudes = [
+        tuple(
+            np.fft.rfft(values, axis=1)[:, 1 : harmonics + 1] * (2.0 / values.shape[1])
+            for values in (getattr(part, name) for part in parts)
+        )
+        for name in ("displacement", "force")
+    ]
+    omega = 2.0 * np.pi / period * np.arange(1.0, harmonics + 1.0)
+    return Lines(omega, amplitudes[0], amplitudes[1], 4.0 / 12.0 * max(steps))
 
-    A line counts if the first channel has at least 1e-4 of its largest density there, and the squared coherence is at
-    least 0.8. The error of the phase is that of the averages: sqrt((1 - C) / (2 C k)) for k segments.
+
+def welch(records: Sequence[Record], segment: float | None) -> Spectra:
+    """Averages over Hann-windowed segments [s], half overlapping, of all records (Welch 1967).
+
+    Overlapping segments count for less than independent ones by the correlation of their windows (Welch 1967).
+    Frequencies below the third of a segment are left out: the mean that is taken off each reaches into them.
+
+    Raises `RecordError` if the rates differ, or the records are too short for two segments.
     """
-    size = min(max(first.size * 2 // (_SEGMENTS + 1), 8), 1 << 18, first.size)
-    first, second = first - np.mean(first), second - np.mean(second)
-    frequency, power = welch(first, 1.0 / interval, nperseg=size)
-    _, other = welch(second, 1.0 / interval, nperseg=size)
-    _, cross = csd(first, second, 1.0 / interval, nperseg=size)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        coherence = np.nan_to_num(np.abs(cross) ** 2 / (power * other))
-    found = (power >= 1e-4 * np.max(power)) & (coherence >= COHERENT) & (frequency >= lowest) & (frequency <= highest)
-    found[:2] = False
-    segments = max((2 * first.size // size - 1) * 0.75, 1.0)  # neighbours share half of their samples
-    kept = np.clip(coherence[found], 0.0, 1.0 - 1e-12)
-    return Lines(
-        2.0 * np.pi * frequency[found], cross[found] / power[found], np.sqrt((1.0 - kept) / (2.0 * kept * segments))
-    )
+    from scipy import signal
+
+    interval = records[0].interval
+    if any(abs(record.interval - interval) > 1e-6 * interval for record in records):
+        rates = ", ".join(f"{1.0 / record.interval:g}" for record in records)
+        raise RecordError(f"The records have different rates ({rates} Hz): resample them to one.")
+    sizes = [record.time.size for record in records]
+    length = min(round(sum(sizes) / _SEGMENTS), *sizes) if segment is None else round(segment / interval)
+    step = max(length - length // 2, 1)
+    counts = np.array([max((size - length) // step + 1, 0) for size in sizes])
+    if length < _LEAST_SAMPLES or counts.min() < 1 or counts.sum() < 2:
+        raise RecordError(
+            f"Too short: {' and '.join(f'{r.source!r} of {r.duration:g} s' for r in records)} cannot be cut into two "
+            f"or more segments of {length * interval:g} s and at least {_LEAST_SAMPLES} samples."
+        )
+    window = signal.windows.hann(length, sym=False)
+    sums = [np.zeros(length // 2 + 1, dtype=complex) for _ in range(3)]
+    for record, count in zip(records, counts, strict=True):
+        x, force = record.displacement, record.force
+        for total, (one, other) in zip(sums, ((x, x), (force, force), (x, force)), strict=True):
+            total += (
+                count
+                / counts.sum()
+                * signal.csd(
+                    one, other, 1.0 / interval, "hann", nperseg=length, noverlap=length - step, detrend="constant"
+                )[1]
+            )
+    frequency = np.fft.rfftfreq(length, interval)
+    xx, ff = sums[0].real, sums[1].real
+    count = float(sum(_effective(window, step, int(n)) for n in counts))
+    floor = max(resolution(record.displacement) for record in records) ** 2 / 12.0 * 2.0 * interval
+    velocity = frequency**2 * xx
+    inside = slice(_LEAST_BIN, (length - 1) // 2 + 1)
+    velocity, told = velocity[inside], (xx > _ABOVE_STEPS * floor)[inside]
+    chosen = told & (velocity >= _FAINT**2 * velocity.max())
+    averages = Spectra(np.asarray(2.0 * np.pi * frequency[inside]), xx[inside], ff[inside], sums[2][inside], count)
+    related = _related(averages.coherence, chosen, count)
+    notes = [
+        f"Welch: {counts.sum()} Hann segments of {length * interval:g} s, overlapping by half, "
+        f"as good as {count:.1f} independent ones."
+    ]
+    if np.any(~chosen):
+        notes.append(f"Nothing is told at {np.sum(~chosen)} frequencies, where the displacement has no content.")
+    if np.any(chosen & ~related):
+        notes.append(
+            f"Nothing is told at {np.sum(chosen & ~related)} frequencies, where force and displacement have nothing "
+            f"in common that noise could not have by chance (5 %)."
+        )
+    found = averages.at(chosen & related)
+    return Spectra(found.omega, found.xx, found.ff, found.fx, count, tuple(notes))
 
 
-def force_over_acceleration(record: Record, motion: Motion) -> Lines:
-    """The apparent mass of the device, where the displacement stands out of its noise."""
-    acceleration = motion.acceleration if record.acceleration is None else record.acceleration
-    return lines(acceleration, record.force, record.interval, highest=motion.highest)
+def _related(coherence: Matrix, chosen: Chosen, count: float) -> Chosen:
+    """Where force and displacement have more in common than noise would at 5 of 100 frequencies.
+
+    Nowhere, if there are no more such frequencies than noise would have, and none that sticks out of all of them.
+    """
+    from scipy.stats import binom
+
+    chance = np.power(np.maximum(1.0 - coherence, 0.0), max(count - 1.0, 1e-9))  # of so high a one by noise
+    related = chosen & (chance < _CHANCE)
+    some = related.sum() > binom.isf(_LEVEL, chosen.sum(), _CHANCE)
+    return np.asarray(related & (some or np.min(chance[related], initial=1.0) < _LEVEL / max(chosen.sum(), 1)))
+
+
+def _largest(power: Matrix) -> Matrix:
+    """The largest of the values within a decade around each harmonic, from a tenth of its frequency to ten times."""
+    from scipy.ndimage import maximum_filter1d
+
+    tenth = np.floor(10.0 * np.log10(np.arange(1, power.size + 1))).astype(int)
+    peaks = np.zeros(tenth[-1] + 1)
+    np.maximum.at(peaks, tenth, power)
+    return np.asarray(maximum_filter1d(peaks, 21, mode="nearest")[tenth])
+
+
+def _unsettled(x: Complex, force: Complex) -> int:
+    """How many periods at the start stray more than the later half; of fewer than four, none can be told."""
+    count = x.shape[0]
+    half = count // 2
+    strays = force - force[half:].mean(axis=0) / x[half:].mean(axis=0) * x
+    size = np.sqrt(np.sum(np.abs(strays) ** 2, axis=1))
+    usual = max(_DECAYED * float(np.median(size[half:])), _STEADY * float(np.linalg.norm(force[half:].mean(axis=0))))
+    return int(np.argmax(np.append(size[:half] <= usual, True))) if count >= 4 else 0
+
+
+def _effective(window: Matrix, step: int, count: int) -> float:
+    """As how many independent segments some overlapping ones count."""
+    energy = float(window @ window)
+    shifts = [j for j in range(1, count) if j * step < window.size]
+    shared = [(float(window[j * step :] @ window[: -j * step]) / energy) ** 2 for j in shifts]
+    return count / (1.0 + 2.0 * sum((1.0 - j / count) * c for j, c in zip(shifts, shared, strict=True)))

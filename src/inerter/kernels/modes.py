@@ -437,36 +437,59 @@ def exponential(X: Array) -> Array:
     while norm > 0.5:
         norm *= 0.5
         squarings += 1
-    scaled, term, total_term = block(X, 0, n, 0, n), unit(n), unit(n)
+    scaled = block(X, 0, n, 0, n)
     for i in range(n):
         for j in range(n):
             scaled[i, j] = np.ldexp(X[i, j], -squarings)
-    for k in range(1, 15):  # 0.5^15 / 15! is below rounding
-        term = product(term, scaled)
+    second = product(scaled, scaled)
+    third, fourth = product(second, scaled), product(second, second)
+    factorial = 20922789888000.0  # 16!, and 0.5^17 / 17! is below rounding
+    total = np.zeros((n, n))
+    add(total, 0, 0, fourth, 1.0 / factorial)
+    for k in range(12, -1, -4):  # Horner's rule in powers of four: six products, not sixteen
+        if k < 12:
+            total = product(fourth, total)
+        low = factorial / ((k + 4.0) * (k + 3.0) * (k + 2.0) * (k + 1.0))
+        factorial = low
         for i in range(n):
+            total[i, i] += 1.0 / low
             for j in range(n):
-                term[i, j] /= k
-        add(total_term, 0, 0, term, 1.0)
+                at_two = scaled[i, j] + second[i, j] / (k + 2.0) + third[i, j] / ((k + 2.0) * (k + 3.0))
+                total[i, j] += at_two / (low * (k + 1.0))
     for _ in range(squarings):
-        total_term = product(total_term, total_term)
-    return total_term
+        total = product(total, total)
+    return total
 
 
-@part("void(float64[:,::1], int64, int64, int64, float64, float64[:,::1])", apart=True)
-def over_chains(maps: Array, first: int, n: int, nr: int, h: float, out: Array) -> None:
-    """Rows of maps, from `first` on, over the state, the chains of integrators, and 1."""
-    last, size = maps.shape[1] - 1, out.shape[1]
+@part("void(float64[:,::1], int64, int64, int64, int64[::1], float64, float64[:,::1])", apart=True)
+def over_chains(maps: Array, first: int, n: int, nr: int, channels: Array, h: float, out: Array) -> None:
+    """Rows of maps, from `first` on, over the state, the chains of integrators of some channels, and 1."""
     for i in range(out.shape[0]):
         row = maps[first + i]
         for j in range(n):
             out[i, j] = row[j]
-        for c in range(nr):
-            out[i, n + 4 * c] = row[n + c]
-            out[i, n + 4 * c + 1] = row[n + nr + c] / h
-            out[i, n + 4 * c + 2] = row[n + 2 * nr + c] / (h * h)
-        for c in range(last - n - 3 * nr):
-            out[i, n + 4 * (nr + c)] = row[n + 3 * nr + c]
-        out[i, size - 1] = row[last]
+        for at in range(channels.shape[0]):
+            c = channels[at]
+            if c < nr:
+                out[i, n + 4 * at] = row[n + c]
+                out[i, n + 4 * at + 1] = row[n + nr + c] / h
+                out[i, n + 4 * at + 2] = row[n + 2 * nr + c] / (h * h)
+            else:
+                out[i, n + 4 * at] = row[n + 2 * nr + c]
+        out[i, out.shape[1] - 1] = row[maps.shape[1] - 1]
+
+
+@part("Tuple((int64[::1], int64[::1]))(int64[::1])", apart=True)
+def moving_channels(used: Array) -> Any:
+    """Numbers of the channels of which a knot number is used, in order, and the used numbers among theirs alone."""
+    channels, among = np.zeros(used.shape[0], np.int64), np.zeros(used.shape[0], np.int64)
+    count = 0
+    for i in range(used.shape[0]):
+        if count == 0 or channels[count - 1] != used[i] // 4:
+            channels[count] = used[i] // 4
+            count += 1
+        among[i] = 4 * (count - 1) + used[i] % 4
+    return channels[:count].copy(), among
 
 
 @part("void(float64[:,::1], int64, int64[::1], float64[:,::1], int64)", apart=True)
@@ -538,20 +561,20 @@ def growth(maps: Array, n: int) -> float:
 def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -> float:
     """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
 
-    The input over the step is a cubic: a chain of four integrators for every road and force stands for it. Returns
-    how far a Taylor series of the flow serves [s].
+    The input over the step is a cubic: a chain of four integrators for every road and force that moves stands for it.
+    Returns how far a Taylor series of the flow serves [s].
     """
     n, nr, k = sizes[N], sizes[NR], sizes[K]
-    channels = nr + maps.shape[1] - 1 - n - 3 * nr
-    size = n + 4 * channels + 1
+    channels, used = moving_channels(used)
+    size = n + 4 * channels.shape[0] + 1
     rate, guards = np.zeros((n, size)), np.zeros((k, size))
     outputs = np.zeros((sizes[OUTPUTS], size))
-    over_chains(maps, 0, n, nr, h, rate)
-    over_chains(maps, sizes[GUARD], n, nr, h, guards)
-    over_chains(maps, sizes[OUTPUT], n, nr, h, outputs)
+    over_chains(maps, 0, n, nr, channels, h, rate)
+    over_chains(maps, sizes[GUARD], n, nr, channels, h, guards)
+    over_chains(maps, sizes[OUTPUT], n, nr, channels, h, outputs)
     chain = np.zeros((size, size))
     add(chain, 0, 0, rate, h)
-    for c in range(channels):
+    for c in range(channels.shape[0]):
         for j in range(3):
             chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
     exact = exponential(chain)

@@ -236,14 +236,25 @@ def test_what_is_far_faster_than_the_step_is_told_and_not_waited_for():
 
 def test_a_changed_kernel_is_compiled_again(tmp_path):
     """A copy of the package whose flow kernel is changed must not run what the cache holds of the original."""
+    probe = textwrap.dedent(
+        """
+        from inerter.kernels import typed
+        from inerter.kernels.flow import first_root, value_at
+
+        @typed("UniTuple(float64, 2)(float64[::1], float64[::1], float64[::1])")
+        def probe(line, falling, ends):
+            return value_at(line, 2, 2.0), first_root(falling, 2, ends)
+        """
+    )
     program = textwrap.dedent(
         """
         import numpy as np
-        from inerter.kernels.flow import first_root, value_at
-        print(value_at(np.array([2.0, 3.0]), 2, 2.0), first_root(np.array([1.0, -2.0]), 2, np.zeros(64)))
+        from inerter.kernels.probe import probe
+        print(*probe(np.array([2.0, 3.0]), np.array([1.0, -2.0]), np.zeros(64)))
         """
     )
     shutil.copytree(Path(it.__file__).parent, tmp_path / "inerter", ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "inerter" / "kernels" / "probe.py").write_text(probe)
     environment = {"PYTHONPATH": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / "cache"), "HOME": str(tmp_path)}
 
     def said() -> tuple[float, float]:
@@ -259,6 +270,10 @@ def test_a_changed_kernel_is_compiled_again(tmp_path):
     assert changed != text
     flow.write_text(changed)
     assert said()[0] == 6.0
+
+
+def test_a_part_of_compiled_code_is_plain_python_elsewhere():
+    assert first_root(np.array([1.0, -2.0]), 2, np.zeros(64)) == pytest.approx(0.5)
 
 
 def test_threads_that_compile_at_once_do_not_see_each_others_settings(monkeypatch):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from inerter.checks import is_number
 from inerter.errors import OK, IdentificationError, Status, StatusKind
 from inerter.identification.encoder import lean, scattered
 from inerter.identification.experiment import Experiment, experiment_of, forgotten, saturated
-from inerter.identification.fit import Comparison, Fit, Parameter, Told
+from inerter.identification.fit import Comparison, Fit, Parameter
 from inerter.identification.guess import chain_of, guess_of, sign_of
 from inerter.identification.intervals import Optimum, Profile, optimum_of, profiles, steps_of
 from inerter.identification.noise import plain, whitening_of

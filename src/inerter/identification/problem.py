@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,9 @@ from inerter.errors import InerterError
 from inerter.identification.experiment import Experiment
 from inerter.identification.noise import Whitening
 from inerter.identification.space import DELAY, GAIN, Space
-from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.networks.elements import Element, Free, Network
+from inerter.networks.transform import map_elements
+from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
@@ -32,15 +34,23 @@ class Problem:
     offset: bool = True  # whether the load cell may have one, its own in each record
     horizon: float = 1.0  # part of each record that is compared
     simulations: int = 0
+    systems: dict[tuple[bool, ...], PiecewiseSystem] = field(default_factory=dict)  # by which values are zero
     pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(os.cpu_count() or 1))
 
     def system(self, coordinates: Matrix) -> PiecewiseSystem | None:
         """The rig with these values; None where a device like that cannot be simulated."""
-        values = self.space.named(coordinates)
+        values = {n: v for n, v in self.space.named(coordinates).items() if n not in (GAIN, DELAY)}
+        zero = tuple(value == 0.0 for value in values.values())
         try:
-            return piecewise(self.rig.with_values({n: v for n, v in values.items() if n not in (GAIN, DELAY)}))
+            known = self.systems.get(zero)
+            if known is not None:
+                return revalued(known, {n: v for n, v in values.items() if v != 0.0})
+            system = piecewise(_labelled(self.rig).with_values(values))
         except InerterError:
             return None
+        if set(values) <= {b.label for b in system.graph.branches} and not system.kinematics.weighs:
+            self.systems[zero] = system
+        return system
 
     def forces(self, coordinates: Matrix) -> list[Matrix | None]:
         """What the load cells would read, for each record as far as the horizon."""
@@ -103,3 +113,12 @@ class Problem:
             column, white = w(np.ones(size)), w(e.record.force[:size] - force)
             result.append(float(column @ white / max(float(column @ column), 1e-300)))
         return result
+
+
+def _labelled(rig: Rig) -> Rig:
+    """The same rig with every free element named as its value is."""
+
+    def label(element: Element) -> Network:
+        return replace(element, name=element.value.name) if isinstance(element.value, Free) else element
+
+    return Rig(map_elements(rig.device, label))

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled
+from inerter.kernels import part
 from inerter.kernels.linalg import factor, solve, solve_transposed
 
 Array = Any
 
 
-@compiled
+@part()
 def contract(p: Array, stack: Array, out: Array) -> None:
     """Sum up a stack: out = stack[0] + sum p[i] stack[1 + i]."""
     for i in range(out.shape[0]):
@@ -26,7 +26,7 @@ def contract(p: Array, stack: Array, out: Array) -> None:
             out[i, j] = total
 
 
-@compiled
+@part()
 def even_out(S: Array, T: Array, size: Array) -> None:
     """Divide each equation by its largest coefficient: inertia, damping and stiffness differ by their units."""
     for i in range(S.shape[0]):
@@ -41,7 +41,7 @@ def even_out(S: Array, T: Array, size: Array) -> None:
                 T[i, j] /= largest
 
 
-@compiled
+@part()
 def closing_space(descriptor: Array) -> Any:
     """Room for `close_in`: allocation would cost as much as the arithmetic."""
     S, R, F, _, _, _, _, Y_x, _ = descriptor
@@ -51,7 +51,7 @@ def closing_space(descriptor: Array) -> Any:
     return A, B, C, D, T, (LU, pivots, size), np.empty((o, e)), np.empty(e)
 
 
-@compiled
+@part()
 def close(p: Array, descriptor: Array) -> Any:
     """A, B, C, D, the solution T = S^-1 [R F], the factors of S, and whether all went well."""
     space = closing_space(descriptor)
@@ -60,7 +60,7 @@ def close(p: Array, descriptor: Array) -> Any:
     return A, B, C, D, T, factors, good
 
 
-@compiled
+@part()
 def close_in(space: Array, p: Array, descriptor: Array) -> bool:
     """Fill `space` with what `close` returns; False if S is singular."""
     S, R, F, X_eta, X_x, X_u, Y_eta, Y_x, Y_u = descriptor
@@ -101,7 +101,7 @@ def close_in(space: Array, p: Array, descriptor: Array) -> bool:
     return True
 
 
-@compiled
+@part()
 def pull_back(
     p: Array, descriptor: Array, T: Array, factors: Array, G_A: Array, G_B: Array, G_C: Array, G_D: Array
 ) -> Array:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import float64, int64, types
 
-from inerter.kernels import borrowing, compiled, compiling_beside, typed
+from inerter.kernels import compiled, compiling_beside, part, typed
 from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
 from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at
 from inerter.kernels.march import SIGNATURE
@@ -67,7 +67,7 @@ class Record(NamedTuple):
     gauss: Array  # (2, points) nodes and weights on [0, 1]
 
 
-@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)", borrowing=True)
+@part("float64(float64[::1], float64[::1], float64[::1], int64, int64)", borrowing=True)
 def over_columns(row: Array, x: Array, u: Array, n: int, nu: int) -> float:
     """A row over a mode's columns times (state, inputs, 1)."""
     total = row[n + nu]
@@ -78,7 +78,7 @@ def over_columns(row: Array, x: Array, u: Array, n: int, nu: int) -> float:
     return float(total)
 
 
-@typed("int64(int64[::1], int64[::1])", borrowing=True)
+@part("int64(int64[::1], int64[::1])", borrowing=True)
 def mode_number(number: Array, trial: Array) -> int:
     """Number of the mode in which the elements are in these states, or -1."""
     code = 0
@@ -158,7 +158,7 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
     return DONE
 
 
-@typed("void(float64[:,::1], int64[::1], int64, int64, float64[:,::1], int64)", borrowing=True)
+@part("void(float64[:,::1], int64[::1], int64, int64, float64[:,::1], int64)", borrowing=True)
 def _sample(states: Array, visited: Array, slot: int, mode: int, work: Array, n: int) -> None:
     if slot >= 0 and slot < states.shape[0]:
         visited[slot] = mode
@@ -180,7 +180,7 @@ def evaluate(rows: Array, visited: Array, states: Array, inputs: Array, out: Arr
         out[i] = total
 
 
-@borrowing
+@part(borrowing=True)
 def cross(now: Work, events: Array, begun: Array, branch_road: Array, gauss: Array, start: float, length: float) -> int:
     """Go to the end of one segment piece by piece, and through every event on the way.
 
@@ -230,7 +230,7 @@ def cross(now: Work, events: Array, begun: Array, branch_road: Array, gauss: Arr
     return DONE
 
 
-@typed("float64(float64[:,::1], int64, int64, float64)", borrowing=True)
+@part("float64(float64[:,::1], int64, int64, float64)", borrowing=True)
 def _polynomial(state: Array, count: int, i: int, s: float) -> float:
     total = state[count - 1, i]
     for j in range(count - 2, -1, -1):
@@ -238,7 +238,7 @@ def _polynomial(state: Array, count: int, i: int, s: float) -> float:
     return float(total)
 
 
-@typed("float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1])", borrowing=True)
+@part("float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1])", borrowing=True)
 def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array) -> float:
     """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
 
@@ -276,7 +276,7 @@ def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, 
     return best
 
 
-@typed("int64(int64[:,::1])", borrowing=True)
+@part("int64(int64[:,::1])", borrowing=True)
 def _unknown(flags: Array) -> int:
     """Leave to have a mode built; what has been found out about modes on trial must not stay."""
     for e in range(flags.shape[1]):
@@ -284,7 +284,7 @@ def _unknown(flags: Array) -> int:
     return MODE_UNKNOWN
 
 
-@borrowing
+@part(borrowing=True)
 def switch(now: Work, events: Array, start: float, length: float, who: int) -> int:
     """Find the mode that goes on from here, after the guard of element `who` (or nothing, -1) was met.
 
@@ -346,7 +346,7 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
     return DONE
 
 
-@borrowing
+@part(borrowing=True)
 def _drop_drift(now: Work, m: int, length: float) -> None:
     """Take away the rounding that has gathered in what locks and the springs' balance of mode m keep at zero.
 
@@ -371,7 +371,7 @@ def _drop_drift(now: Work, m: int, length: float) -> None:
         first = last
 
 
-@borrowing
+@part(borrowing=True)
 def judge(now: Work, m: int, length: float, who: int) -> int:
     """Whether mode m can go on from here: ACCEPTED, STRUCK, STRANDED, or the element whose state must change.
 
@@ -444,7 +444,7 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     return ACCEPTED
 
 
-@typed("float64(float64[:,::1], int64, float64[::1], int64, int64)", borrowing=True)
+@part("float64(float64[:,::1], int64, float64[::1], int64, int64)", borrowing=True)
 def _asked(reaction: Array, row: int, residual: Array, first: int, last: int) -> float:
     total = 0.0
     for i in range(first, last):
@@ -452,7 +452,7 @@ def _asked(reaction: Array, row: int, residual: Array, first: int, last: int) ->
     return total
 
 
-@typed("float64(float64[::1], float64[::1], float64[::1], int64, int64)", borrowing=True)
+@part("float64(float64[::1], float64[::1], float64[::1], int64, int64)", borrowing=True)
 def _size(row: Array, size: Array, u: Array, n: int, nu: int) -> float:
     """Sum of the sizes of what a row adds up: its rounding is a small multiple of this."""
     total = 0.0
@@ -463,7 +463,7 @@ def _size(row: Array, size: Array, u: Array, n: int, nu: int) -> float:
     return total
 
 
-@typed("void(float64[:,::1], float64[:,::1], int64, int64, int64, float64)", borrowing=True)
+@part("void(float64[:,::1], float64[:,::1], int64, int64, int64, float64)", borrowing=True)
 def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) -> None:
     """The k-th coefficient of the flow from GUESS, and the sizes of what it was added up from."""
     for i in range(n):
@@ -483,7 +483,7 @@ def _coefficient(maps: Array, work: Array, k: int, n: int, nu: int, d: float) ->
         work[SIZE + k, i] = size * d / k
 
 
-@typed(
+@part(
     "int64(float64[:,::1], float64[::1], float64[::1], int64[:,::1], int64[::1], float64[:,::1], "
     "int64, int64, int64, float64, boolean)",
     borrowing=True,
@@ -533,7 +533,7 @@ def _violated(
     return 0
 
 
-@borrowing
+@part(borrowing=True)
 def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int) -> bool:
     """Where a held road moves at once, positions follow and the mean force does the work. Whether an input breaks."""
     n, nr, branches = sizes[N], sizes[NR], record.branch_road.shape[0]
@@ -562,7 +562,7 @@ def _jump(maps: Array, sizes: Array, work: Array, record: Record, place: Array, 
     return True
 
 
-@borrowing
+@part(borrowing=True)
 def _renew(
     maps: Array, sizes: Array, work: Array, record: Record, place: Array, k: int, nu: int, length: float
 ) -> None:
@@ -579,7 +579,7 @@ def _renew(
         record.sums[0, o] += square - record.sums[1, o]
 
 
-@borrowing
+@part(borrowing=True)
 def _account(
     maps: Array, sizes: Array, work: Array, branch_road: Array, gauss: Array, nu: int, count: int, s: float, d: float
 ) -> None:

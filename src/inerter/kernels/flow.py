@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels import typed
+from inerter.kernels import part
 
 Array = Any
 CLOSE = 1e-15  # of the time since the piece began: a force that frees a friction must be met to rounding
 
 
-@typed(
+@part(
     "void(float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], int64, float64, float64[::1])", borrowing=True
 )
 def knot_numbers(
@@ -25,7 +25,7 @@ def knot_numbers(
         out[4 * c + 3] = length * slope_before[knot + 1, c]
 
 
-@typed("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])", borrowing=True)
+@part("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])", borrowing=True)
 def inputs_from(numbers: Array, nr: int, nu: int, length: float, start: float, d: float, U: Array) -> None:
     """Coefficients (4, inputs) of roads' z, z', z'' and of forces in powers of (t - start) / d."""
     channels = nu - 2 * nr
@@ -46,7 +46,7 @@ def inputs_from(numbers: Array, nr: int, nu: int, length: float, start: float, d
             U[0, i], U[1, i], U[2, i], U[3, i] = 2.0 * c2 / (d * d), 6.0 * c3 / (d * d), 0.0, 0.0
 
 
-@typed("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])", borrowing=True)
+@part("void(float64[::1], int64, int64, float64, float64, float64, float64[:,::1])", borrowing=True)
 def input_sizes(numbers: Array, nr: int, nu: int, length: float, start: float, d: float, U: Array) -> None:
     """Sums of absolute values of what `inputs_from` adds up: where a velocity passes zero, its rounding does not."""
     s, r = start / length, d / length
@@ -66,7 +66,7 @@ def input_sizes(numbers: Array, nr: int, nu: int, length: float, start: float, d
             U[0, i], U[1, i] = 2.0 * c2 / (d * d), 6.0 * c3 / (d * d)
 
 
-@typed("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])", borrowing=True)
+@part("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])", borrowing=True)
 def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array) -> int:
     """Coefficients X[k] of the flow from x in powers of t / d, until they are below rounding; returns their number.
 
@@ -101,7 +101,7 @@ def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array)
     return int(last)
 
 
-@typed("float64(float64[::1], int64, float64)", borrowing=True)
+@part("float64(float64[::1], int64, float64)", borrowing=True)
 def value_at(c: Array, count: int, s: float) -> float:
     """The polynomial with coefficients c[0], ..., c[count - 1]."""
     total = c[count - 1]
@@ -110,7 +110,7 @@ def value_at(c: Array, count: int, s: float) -> float:
     return float(total)
 
 
-@typed("float64(float64[::1], int64, float64)", borrowing=True)
+@part("float64(float64[::1], int64, float64)", borrowing=True)
 def slope_at(c: Array, count: int, s: float) -> float:
     """Its derivative."""
     total = 0.0
@@ -119,7 +119,7 @@ def slope_at(c: Array, count: int, s: float) -> float:
     return total
 
 
-@typed("float64(float64[::1], int64, float64, float64)", borrowing=True)
+@part("float64(float64[::1], int64, float64, float64)", borrowing=True)
 def polish(c: Array, count: int, a: float, b: float) -> float:
     """The root in [a, b] of a polynomial that is positive at a and not at b: Newton's steps, or else halving."""
     s = 0.5 * (a + b)
@@ -139,7 +139,7 @@ def polish(c: Array, count: int, a: float, b: float) -> float:
     return s
 
 
-@typed("float64(float64[::1], int64, float64[::1])", borrowing=True)
+@part("float64(float64[::1], int64, float64[::1])", borrowing=True)
 def first_root(c: Array, count: int, ends: Array) -> float:
     """Smallest s in [0, 1] from which on the polynomial is negative; 2 if there is none.
 

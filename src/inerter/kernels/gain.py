@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled
+from inerter.kernels import compiled, part
 from inerter.kernels.closing import close, pull_back
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, solve, solve_transposed
@@ -15,7 +15,7 @@ Array = Any
 _GOLDEN = 0.6180339887498949
 
 
-@compiled
+@part()
 def resolve(A: Array, scale: Array, omega: float, M: Array, pivots: Array) -> bool:
     """M becomes the factors of j omega - A, with the states in units of `scale`."""
     n = A.shape[0]
@@ -26,7 +26,7 @@ def resolve(A: Array, scale: Array, omega: float, M: Array, pivots: Array) -> bo
     return factor(M, pivots)
 
 
-@compiled
+@part()
 def gain_at(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float) -> Any:
     """|G(j omega)|, infinite at a pole."""
     n = A.shape[0]
@@ -78,7 +78,7 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
     return values, gradients
 
 
-@compiled
+@part()
 def partial_fractions(A: Array, B: Array, C: Array, scale: Array) -> Any:
     """Poles and residues of C (s - A)^-1 B, and whether A has a full set of eigenvectors."""
     n = A.shape[0]
@@ -101,7 +101,7 @@ def partial_fractions(A: Array, B: Array, C: Array, scale: Array) -> Any:
     return poles, residues, True
 
 
-@compiled
+@part()
 def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> float:
     """|G(j omega)| from partial fractions."""
     G = direct + 0j
@@ -110,7 +110,7 @@ def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> fl
     return abs(G)
 
 
-@compiled
+@part()
 def frequencies(poles: Array) -> Array:
     """Zero, a logarithmic grid over all time scales, and points on and around every resonance, in order."""
     n = poles.size
@@ -138,7 +138,7 @@ def frequencies(poles: Array) -> Array:
     return np.sort(grid[:count])
 
 
-@compiled
+@part()
 def top(poles: Array, residues: Array, direct: float, low: float, high: float) -> float:
     """Where the gain is largest between `low` and `high`, by golden section."""
     width = 1e-5 * (high - low) + 1e-14 * high  # the grid is as fine as a resonance is wide
@@ -156,7 +156,7 @@ def top(poles: Array, residues: Array, direct: float, low: float, high: float) -
     return 0.5 * (low + high)
 
 
-@compiled
+@part()
 def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
     """Frequencies and values of the local maxima of the gain, found in partial fractions, valued by a direct solve.
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled
+from inerter.kernels import compiled, part
 from inerter.kernels.closing import close_in, closing_space, pull_back
 from inerter.kernels.linalg import exponential, factor, matmul, solve, solve_transposed
 
@@ -19,7 +19,7 @@ Array = Any
 _LARGEST_ERROR = 1e-9  # relative change of a squared norm by one step of refinement, which tells its rounding error
 
 
-@compiled
+@part()
 def units(A: Array) -> Array:
     """Units of the states that even out rows and columns of A: a few sweeps of balancing."""
     scale = np.empty(A.shape[0])
@@ -27,7 +27,7 @@ def units(A: Array) -> Array:
     return scale
 
 
-@compiled
+@part()
 def balance(A: Array, scale: Array) -> None:
     """Fill `scale` with `units`. They depend on A alone, so that a result does not depend on what came before it."""
     n = A.shape[0]
@@ -43,7 +43,7 @@ def balance(A: Array, scale: Array) -> None:
                 scale[i] = np.sqrt(row / column)
 
 
-@compiled
+@part()
 def places(n: int) -> Array:
     """Where the entries of a symmetric matrix of order n stand when each is listed once."""
     place = np.empty((n, n), np.int64)
@@ -56,14 +56,14 @@ def places(n: int) -> Array:
     return place
 
 
-@compiled
+@part()
 def lyapunov_space(n: int) -> Any:
     """Room for the Lyapunov equations of order n: factors, pivots, places, units, a right-hand side, A in its units."""
     N = n * (n + 1) // 2
     return np.zeros((N, N)), np.empty(N, np.int64), places(n), np.ones(n), np.empty(N), np.empty((n, n))
 
 
-@compiled
+@part()
 def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
     """Factors of P -> A P + P A' over symmetric P, in balanced units; False if singular."""
     K, pivots, place, scale, _, scaled = lyapunov
@@ -82,7 +82,7 @@ def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
     return factor(K, pivots)
 
 
-@compiled
+@part()
 def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, direct: float) -> Array:
     """exp(A time) u, or its Pade approximant where poles are given."""
     n = A.shape[0]
@@ -104,7 +104,7 @@ def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, d
     return out
 
 
-@compiled
+@part()
 def propagated_adjoint(
     A: Array, time: float, u: Array, bar: Array, poles: Array, residues: Array, direct: float, G_A: Array
 ) -> Array:
@@ -139,7 +139,7 @@ def propagated_adjoint(
     return out
 
 
-@compiled
+@part()
 def high_passed(A: Array, B: Array, C: Array, D: Array, corner: float) -> Any:
     """The system with each output filtered by s/(s + corner)."""
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
@@ -151,7 +151,7 @@ def high_passed(A: Array, B: Array, C: Array, D: Array, corner: float) -> Any:
     return A2, B2, C2
 
 
-@compiled
+@part()
 def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
     """P of A P + P A' + W = 0, or of A' P + P A + W = 0, from the factors of the former."""
     K, pivots, place, scale, b, _ = lyapunov
@@ -173,7 +173,7 @@ def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
             P[j, i] = P[i, j]
 
 
-@compiled
+@part()
 def norms_space(descriptor: Array, corner: float) -> Any:
     """Room for `norms_in`."""
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
@@ -189,7 +189,7 @@ def norms_space(descriptor: Array, corner: float) -> Any:
     )
 
 
-@compiled
+@part()
 def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, result: Array) -> bool:
     """Fill `result` with the norm of each output; False if that did not go well. See `norms` for the arguments."""
     closing, lyapunov, met, W, P, correction, CP = space

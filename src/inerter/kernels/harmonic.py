@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled
+from inerter.kernels import compiled, part
 from inerter.kernels.closing import close
 from inerter.kernels.gain import frequencies, resolve
 from inerter.kernels.h2 import units
@@ -25,7 +25,7 @@ _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
 
-@compiled
+@part()
 def transfer(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float, G: Array) -> bool:
     """G becomes the frequency response; False at a pole."""
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
@@ -44,7 +44,7 @@ def transfer(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float,
     return True
 
 
-@compiled
+@part()
 def slip(blocked: complex, admittance: complex, limit: float) -> Any:
     """Velocity across a friction with a force of amplitude `limit`, between what pushes with `blocked` if it sticks.
 
@@ -61,7 +61,7 @@ def slip(blocked: complex, admittance: complex, limit: float) -> Any:
     return blocked * speed / (limit + admittance * speed)
 
 
-@compiled
+@part()
 def reflect(Z: Array, velocity: Array, damper: Array, limit: Array, extra: Array) -> bool:
     """Solve for `extra`, all frictions at once, by waves that go to and fro between them and the mechanism.
 
@@ -87,7 +87,7 @@ def reflect(Z: Array, velocity: Array, damper: Array, limit: Array, extra: Array
     return False
 
 
-@compiled
+@part()
 def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
     """Gain of the first output with every friction slipping or sticking as it must, and whether that settled.
 
@@ -143,7 +143,7 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
     return abs(response) / amplitude, settled
 
 
-@compiled
+@part()
 def gain_at(system: Array, omega: float, limit: Array, amplitude: float, reference: float, G: Array) -> Any:
     """Gain at one frequency, infinite at a pole."""
     A, B, C, D, scale = system
@@ -152,7 +152,7 @@ def gain_at(system: Array, omega: float, limit: Array, amplitude: float, referen
     return balance(G, limit, amplitude, reference)
 
 
-@compiled
+@part()
 def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> Array:
     """Frequencies that show every resonance, from frictions that hardly act to frictions that hardly move.
 
@@ -195,7 +195,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
     return np.sort(found[found >= floor])
 
 
-@compiled
+@part()
 def top(system: Array, low: float, high: float, limit: Array, amplitude: float, reference: float, G: Array) -> float:
     """Where the gain is largest between `low` and `high`, by golden section."""
     width = 1e-10 * high
@@ -216,7 +216,7 @@ def top(system: Array, low: float, high: float, limit: Array, amplitude: float, 
     return 0.5 * (low + high)
 
 
-@compiled
+@part()
 def finer(grid: Array, values: Array) -> Array:
     """Points between those where the gain bends."""
     extra = np.empty(grid.size)

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled
+from inerter.kernels import part
 
 Array = Any  # compiled code is typed when it is compiled
 
 
-@compiled
+@part()
 def factor(A: Array, pivots: Array) -> bool:
     """LU factors of A in its place, with partial pivoting; False if A is singular. Rows should be of like size."""
     n = A.shape[0]
@@ -37,7 +37,7 @@ def factor(A: Array, pivots: Array) -> bool:
     return True
 
 
-@compiled
+@part()
 def solve(LU: Array, pivots: Array, b: Array) -> None:
     """Solve A x = b; b becomes x."""
     n = LU.shape[0]
@@ -57,7 +57,7 @@ def solve(LU: Array, pivots: Array, b: Array) -> None:
         b[i] = total / LU[i, i]
 
 
-@compiled
+@part()
 def solve_transposed(LU: Array, pivots: Array, b: Array) -> None:
     """Solve A^T x = b (no conjugation); b becomes x."""
     n = LU.shape[0]
@@ -76,7 +76,7 @@ def solve_transposed(LU: Array, pivots: Array, b: Array) -> None:
             b[k], b[row] = b[row], b[k]
 
 
-@compiled
+@part()
 def matmul(A: Array, B: Array, out: Array) -> None:
     """Multiply: out = A B."""
     for i in range(A.shape[0]):
@@ -89,7 +89,7 @@ def matmul(A: Array, B: Array, out: Array) -> None:
                     out[i, j] += a * B[k, j]
 
 
-@compiled
+@part()
 def exponential(X: Array, N: Array, with_derivative: bool) -> Any:
     """exp(X), and its derivative in the direction N, by a Taylor series of a scaled X and repeated squaring."""
     n = X.shape[0]

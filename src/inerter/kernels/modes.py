@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import typed
+from inerter.kernels import part, typed
 from inerter.kernels.arrays import (
     DAMPERS,
     ENTRY,
@@ -45,7 +45,7 @@ RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one
 ROUNDING = 1e-14  # of a sum, relative to its terms
 
 
-@typed("float64[:,::1](float64[:,::1], float64[:,::1])")
+@part("float64[:,::1](float64[:,::1], float64[:,::1])", apart=True)
 def product(A: Array, B: Array) -> Array:
     """A B."""
     out = np.zeros((A.shape[0], B.shape[1]))
@@ -58,7 +58,7 @@ def product(A: Array, B: Array) -> Array:
     return out
 
 
-@typed("float64[:,::1](float64[:,::1], float64[:,::1])")
+@part("float64[:,::1](float64[:,::1], float64[:,::1])", apart=True)
 def inner(A: Array, B: Array) -> Array:
     """A^T B."""
     out = np.zeros((A.shape[1], B.shape[1]))
@@ -71,7 +71,7 @@ def inner(A: Array, B: Array) -> Array:
     return out
 
 
-@typed("float64[:,::1](int64)")
+@part("float64[:,::1](int64)", apart=True)
 def unit(n: int) -> Array:
     """The unit matrix."""
     out = np.zeros((n, n))
@@ -80,7 +80,7 @@ def unit(n: int) -> Array:
     return out
 
 
-@typed("float64[:,::1](float64[:,::1])")
+@part("float64[:,::1](float64[:,::1])", apart=True)
 def transposed(A: Array) -> Array:
     """A^T, in memory of its own."""
     out = np.zeros((A.shape[1], A.shape[0]))
@@ -90,7 +90,7 @@ def transposed(A: Array) -> Array:
     return out
 
 
-@typed("UniTuple(float64[:,::1], 2)(float64[:,::1])")
+@part("UniTuple(float64[:,::1], 2)(float64[:,::1])", apart=True)
 def null_space(rows: Array) -> Any:
     """Bases of the vectors that all rows annihilate and of a complement, by elimination with complete pivoting."""
     m, n = rows.shape
@@ -135,13 +135,13 @@ def null_space(rows: Array) -> Any:
     return basis, complement
 
 
-@typed("boolean(int64, int64)")
+@part("boolean(int64, int64)", apart=True)
 def is_locked(kind: int, state: int) -> bool:
     """Whether an element holds its elongation: friction that sticks, a gap that touches."""
     return (state == 0) == (kind == FRICTION)
 
 
-@typed("boolean(float64[::1], float64[:,::1], int64, float64[::1])")
+@part("boolean(float64[::1], float64[:,::1], int64, float64[::1])", apart=True)
 def adds_to(row: Array, basis: Array, count: int, rest: Array) -> bool:
     """Whether a row is independent of the first `count` orthonormal ones; `rest` is then the unit vector it adds."""
     size, left = 0.0, 0.0
@@ -164,7 +164,7 @@ def adds_to(row: Array, basis: Array, count: int, rest: Array) -> bool:
     return True
 
 
-@typed("Tuple((int64[::1], boolean[::1]))(float64[:,::1], int64[:,::1], int64[::1])")
+@part("Tuple((int64[::1], boolean[::1]))(float64[:,::1], int64[:,::1], int64[::1])", apart=True)
 def independent_locks(locks: Array, elements: Array, state: Array) -> Any:
     """Numbers of locked elements whose rows are independent, and whether those hold each element.
 
@@ -185,7 +185,7 @@ def independent_locks(locks: Array, elements: Array, state: Array) -> Any:
     return chosen[:count].copy(), still
 
 
-@typed("boolean(float64[:,::1], float64[:,::1])")
+@part("boolean(float64[:,::1], float64[:,::1])", apart=True)
 def solve_rows(S: Array, right: Array) -> bool:
     """Solve S y = right for every column, rows and columns of S brought to one size; `right` becomes y."""
     size, width = S.shape[0], right.shape[1]
@@ -219,7 +219,7 @@ def solve_rows(S: Array, right: Array) -> bool:
     return True
 
 
-@typed("void(float64[:,::1], int64, int64, float64[:,::1], float64)")
+@part("void(float64[:,::1], int64, int64, float64[:,::1], float64)", apart=True)
 def add(out: Array, top: int, left: int, A: Array, sign: float) -> None:
     """Add sign * A to a block of `out`."""
     for i in range(A.shape[0]):
@@ -227,7 +227,7 @@ def add(out: Array, top: int, left: int, A: Array, sign: float) -> None:
             out[top + i, left + j] += sign * A[i, j]
 
 
-@typed("float64[:,::1](float64[:,::1], int64, int64, int64, int64)")
+@part("float64[:,::1](float64[:,::1], int64, int64, int64, int64)", apart=True)
 def block(A: Array, top: int, bottom: int, left: int, right: int) -> Array:
     """A block of A, in memory of its own."""
     out = np.zeros((bottom - top, right - left))
@@ -237,7 +237,7 @@ def block(A: Array, top: int, bottom: int, left: int, right: int) -> Array:
     return out
 
 
-@typed("float64[:,::1](float64[:,::1])")
+@part("float64[:,::1](float64[:,::1])", apart=True)
 def sizes_of(A: Array) -> Array:
     """Absolute values."""
     out = np.zeros(A.shape)
@@ -247,7 +247,7 @@ def sizes_of(A: Array) -> Array:
     return out
 
 
-@typed("void(float64[:,::1], float64[:,::1])")
+@part("void(float64[:,::1], float64[:,::1])", apart=True)
 def drop_rounding(A: Array, bound: Array) -> None:
     """Set to zero what is rounding of sums of terms as large as `bound`: what cannot move must not creep."""
     for i in range(A.shape[0]):
@@ -423,7 +423,7 @@ def build(
     return True
 
 
-@typed("float64[:,::1](float64[:,::1])")
+@part("float64[:,::1](float64[:,::1])", apart=True)
 def exponential(X: Array) -> Array:
     """exp(X), by a Taylor series of a scaled X and repeated squaring."""
     n = X.shape[0]
@@ -437,39 +437,62 @@ def exponential(X: Array) -> Array:
     while norm > 0.5:
         norm *= 0.5
         squarings += 1
-    scaled, term, total_term = block(X, 0, n, 0, n), unit(n), unit(n)
+    scaled = block(X, 0, n, 0, n)
     for i in range(n):
         for j in range(n):
             scaled[i, j] = np.ldexp(X[i, j], -squarings)
-    for k in range(1, 15):  # 0.5^15 / 15! is below rounding
-        term = product(term, scaled)
+    second = product(scaled, scaled)
+    third, fourth = product(second, scaled), product(second, second)
+    factorial = 20922789888000.0  # 16!, and 0.5^17 / 17! is below rounding
+    total = np.zeros((n, n))
+    add(total, 0, 0, fourth, 1.0 / factorial)
+    for k in range(12, -1, -4):  # Horner's rule in powers of four: six products, not sixteen
+        if k < 12:
+            total = product(fourth, total)
+        low = factorial / ((k + 4.0) * (k + 3.0) * (k + 2.0) * (k + 1.0))
+        factorial = low
         for i in range(n):
+            total[i, i] += 1.0 / low
             for j in range(n):
-                term[i, j] /= k
-        add(total_term, 0, 0, term, 1.0)
+                at_two = scaled[i, j] + second[i, j] / (k + 2.0) + third[i, j] / ((k + 2.0) * (k + 3.0))
+                total[i, j] += at_two / (low * (k + 1.0))
     for _ in range(squarings):
-        total_term = product(total_term, total_term)
-    return total_term
+        total = product(total, total)
+    return total
 
 
-@typed("void(float64[:,::1], int64, int64, int64, float64, float64[:,::1])")
-def over_chains(maps: Array, first: int, n: int, nr: int, h: float, out: Array) -> None:
-    """Rows of maps, from `first` on, over the state, the chains of integrators, and 1."""
-    last, size = maps.shape[1] - 1, out.shape[1]
+@part("void(float64[:,::1], int64, int64, int64, int64[::1], float64, float64[:,::1])", apart=True)
+def over_chains(maps: Array, first: int, n: int, nr: int, channels: Array, h: float, out: Array) -> None:
+    """Rows of maps, from `first` on, over the state, the chains of integrators of some channels, and 1."""
     for i in range(out.shape[0]):
         row = maps[first + i]
         for j in range(n):
             out[i, j] = row[j]
-        for c in range(nr):
-            out[i, n + 4 * c] = row[n + c]
-            out[i, n + 4 * c + 1] = row[n + nr + c] / h
-            out[i, n + 4 * c + 2] = row[n + 2 * nr + c] / (h * h)
-        for c in range(last - n - 3 * nr):
-            out[i, n + 4 * (nr + c)] = row[n + 3 * nr + c]
-        out[i, size - 1] = row[last]
+        for at in range(channels.shape[0]):
+            c = channels[at]
+            if c < nr:
+                out[i, n + 4 * at] = row[n + c]
+                out[i, n + 4 * at + 1] = row[n + nr + c] / h
+                out[i, n + 4 * at + 2] = row[n + 2 * nr + c] / (h * h)
+            else:
+                out[i, n + 4 * at] = row[n + 2 * nr + c]
+        out[i, out.shape[1] - 1] = row[maps.shape[1] - 1]
 
 
-@typed("void(float64[:,::1], int64, int64[::1], float64[:,::1], int64)")
+@part("Tuple((int64[::1], int64[::1]))(int64[::1])", apart=True)
+def moving_channels(used: Array) -> Any:
+    """Numbers of the channels of which a knot number is used, in order, and the used numbers among theirs alone."""
+    channels, among = np.zeros(used.shape[0], np.int64), np.zeros(used.shape[0], np.int64)
+    count = 0
+    for i in range(used.shape[0]):
+        if count == 0 or channels[count - 1] != used[i] // 4:
+            channels[count] = used[i] // 4
+            count += 1
+        among[i] = 4 * (count - 1) + used[i] % 4
+    return channels[:count].copy(), among
+
+
+@part("void(float64[:,::1], int64, int64[::1], float64[:,::1], int64)", apart=True)
 def into_knots(rows: Array, n: int, used: Array, out: Array, top: int) -> None:
     """Rows over the chains at the start of a step, as columns over the numbers z0, z1 - z0, h z0', h z1' of cubics."""
     size = rows.shape[1]
@@ -488,7 +511,7 @@ def into_knots(rows: Array, n: int, used: Array, out: Array, top: int) -> None:
         out[n + used.shape[0], top + i] = rows[i, size - 1]
 
 
-@typed("void(float64[:,::1], float64[:,::1], int64, int64[::1], float64[:,::1], int64)")
+@part("void(float64[:,::1], float64[:,::1], int64, int64[::1], float64[:,::1], int64)", apart=True)
 def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, top: int) -> None:
     """One eighth of the largest second derivative of each guard over a step, as weights on absolute values."""
     k, columns = guards.shape[0], n + used.shape[0] + 1
@@ -511,7 +534,7 @@ def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, 
                 steps[j, top + i] += order * (order - 1) / 8.0 * abs(term[j, i])
 
 
-@typed("float64(float64[:,::1], int64)")
+@part("float64(float64[:,::1], int64)", apart=True)
 def growth(maps: Array, n: int) -> float:
     """About the spectral radius of the state matrix, from above: the 32nd root of a norm of its 32nd power [1/s]."""
     A = block(maps, 0, n, 0, n)
@@ -538,20 +561,20 @@ def growth(maps: Array, n: int) -> float:
 def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -> float:
     """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
 
-    The input over the step is a cubic: a chain of four integrators for every road and force stands for it. Returns
-    how far a Taylor series of the flow serves [s].
+    The input over the step is a cubic: a chain of four integrators for every road and force that moves stands for it.
+    Returns how far a Taylor series of the flow serves [s].
     """
     n, nr, k = sizes[N], sizes[NR], sizes[K]
-    channels = nr + maps.shape[1] - 1 - n - 3 * nr
-    size = n + 4 * channels + 1
+    channels, used = moving_channels(used)
+    size = n + 4 * channels.shape[0] + 1
     rate, guards = np.zeros((n, size)), np.zeros((k, size))
     outputs = np.zeros((sizes[OUTPUTS], size))
-    over_chains(maps, 0, n, nr, h, rate)
-    over_chains(maps, sizes[GUARD], n, nr, h, guards)
-    over_chains(maps, sizes[OUTPUT], n, nr, h, outputs)
+    over_chains(maps, 0, n, nr, channels, h, rate)
+    over_chains(maps, sizes[GUARD], n, nr, channels, h, guards)
+    over_chains(maps, sizes[OUTPUT], n, nr, channels, h, outputs)
     chain = np.zeros((size, size))
     add(chain, 0, 0, rate, h)
-    for c in range(channels):
+    for c in range(channels.shape[0]):
         for j in range(3):
             chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
     exact = exponential(chain)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels import compiled
+from inerter.kernels import compiled, part
 
 Array = Any  # compiled code is typed when it is compiled
 
@@ -29,7 +29,7 @@ PATIENCE = 8  # block changes without progress, before only one reaction is chan
 ROUNDING = 1e-12  # part of the largest rate below which that of another one tells nothing
 
 
-@compiled
+@part()
 def times(A: Array, x: Array, out: Array) -> None:
     """Multiply: out = A x."""
     for i in range(A.shape[0]):
@@ -39,7 +39,7 @@ def times(A: Array, x: Array, out: Array) -> None:
         out[i] = total
 
 
-@compiled
+@part()
 def observe(rows: Array, known: Array, weight: float, out: Array, at: int) -> None:
     """Add `weight` times the observed quantities to one sample."""
     for i in range(rows.shape[0]):
@@ -49,7 +49,7 @@ def observe(rows: Array, known: Array, weight: float, out: Array, at: int) -> No
         out[at, i] += weight * total
 
 
-@compiled
+@part()
 def eliminate(changed: bool, A: Array, pivots: Array) -> bool:
     """LU factors in place of A if it is `changed`, with partial pivoting; False if it is singular."""
     n = A.shape[0] if changed else 0
@@ -71,7 +71,7 @@ def eliminate(changed: bool, A: Array, pivots: Array) -> bool:
     return regular
 
 
-@compiled
+@part()
 def forward(LU: Array, pivots: Array, b: Array) -> None:
     """The first half of solving A x = b."""
     n = LU.shape[0]
@@ -83,7 +83,7 @@ def forward(LU: Array, pivots: Array, b: Array) -> None:
             b[i] -= LU[i, k] * here
 
 
-@compiled
+@part()
 def backward(LU: Array, b: Array) -> None:
     """The second half: b becomes x."""
     n = LU.shape[0]
@@ -95,7 +95,7 @@ def backward(LU: Array, b: Array) -> None:
         b[i] = total / LU[i, i]
 
 
-@compiled
+@part()
 def weigh(law: Array, weight: Array) -> None:
     """How easily a reaction takes a rate that inertia gives to several: frictions that slid do, in proportion.
 
@@ -114,7 +114,7 @@ def weigh(law: Array, weight: Array) -> None:
             weight[i] = weight[i] / largest + 1e-9
 
 
-@compiled
+@part()
 def combine(Z: Array, guess: Array, at: int, weight: Array, Q: Array, taken: Array) -> None:
     """Equations for a (what each reaction takes) and multipliers m: a = weight Z' m and Z a = rates."""
     count, size = Z.shape
@@ -130,7 +130,7 @@ def combine(Z: Array, guess: Array, at: int, weight: Array, Q: Array, taken: Arr
             Q[i, j] = Z[i - size, j]
 
 
-@compiled
+@part()
 def shift(weight: Array, taken: Array, law: Array) -> None:
     """Add to the aims of frictions what they take."""
     for i in range(weight.shape[0]):
@@ -138,7 +138,7 @@ def shift(weight: Array, taken: Array, law: Array) -> None:
             law[AIM, i] += taken[i]
 
 
-@compiled
+@part()
 def hold(law: Array, force: Array) -> bool:
     """Set up the forces for the present sides: right sides where a reaction holds, and the force itself where not.
 
@@ -163,7 +163,7 @@ def hold(law: Array, force: Array) -> bool:
     return changed
 
 
-@compiled
+@part()
 def collect(changed: bool, G: Array, law: Array, LU: Array) -> None:
     """The equations of the forces, if they are `changed`."""
     for i in range(G.shape[0] if changed else 0):
@@ -172,7 +172,7 @@ def collect(changed: bool, G: Array, law: Array, LU: Array) -> None:
         LU[i, i] += 1.0 - law[HELD, i]
 
 
-@compiled
+@part()
 def misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
     """How many reactions do not fit their side, and the last of them; notes on which side each should be."""
     count, last = 0, -1
@@ -201,14 +201,14 @@ def misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
     return count, last
 
 
-@compiled
+@part()
 def feed(inputs: Array, step: int, known: Array, at: int) -> None:
     """The inputs of a step to their places."""
     for j in range(inputs.shape[1]):
         known[at + j] = inputs[step, j]
 
 
-@compiled
+@part()
 def take(guess: Array, at: int, law: Array) -> float:
     """Rates and aims without reactions to their places; how small a rate must be for its sign to mean nothing."""
     count, largest = law.shape[1], 0.0
@@ -219,14 +219,14 @@ def take(guess: Array, at: int, law: Array) -> float:
     return ROUNDING * largest
 
 
-@compiled
+@part()
 def change(law: Array, least: int) -> None:
     """Reactions from `least` on change to the side where they should be."""
     for i in range(least, law.shape[1]):
         law[SIDE, i] = law[BETTER, i]
 
 
-@compiled
+@part()
 def slow(guess: Array, pull: Array, force: Array, known: Array, at: int) -> float:
     """Mean velocities and forces of the step to their places; their sum tells whether they are numbers."""
     n, count = pull.shape
@@ -241,7 +241,7 @@ def slow(guess: Array, pull: Array, force: Array, known: Array, at: int) -> floa
     return total
 
 
-@compiled
+@part()
 def move(inertia: Array, moved: Array, h: float, known: Array, at: int) -> None:
     """Displacements and momenta from the start of the step to its end."""
     n = inertia.shape[0]

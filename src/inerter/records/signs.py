@@ -7,10 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.records.accelerance import Lines, force_over_acceleration, lines
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, smooth_displacement
-from inerter.records.accelerance import Lines, force_over_acceleration, lines
 
 Vector = NDArray[np.float64]
 CLEAR = 0.3  # least correlation that says anything

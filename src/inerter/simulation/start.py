@@ -56,8 +56,8 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:
     """
     branches, coordinates = system.graph.branches, system.mechanism.coordinates
     nodes = len(system.graph.nodes)
-    if nodes == 0:
-        return np.zeros(0)
+    if not (np.any(road) or np.any(force) or any(isinstance(b.element, Gap) for b in branches)):
+        return np.zeros(nodes)
     E = np.array([b.nodes for b in branches]).reshape(-1, nodes)
     offset = np.array([b.roads for b in branches]).reshape(len(branches), -1) @ road
     k = np.array([_size(b.element) if isinstance(b.element, Spring) else 0.0 for b in branches])
@@ -77,7 +77,7 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:
         H = E[[gaps[i] for i in touching]].reshape(-1, nodes)
         at = np.array([closed[i] * width[i] - offset[gaps[i]] for i in touching])
         m = len(touching)
-        system_rows = np.block([[K / stiff, H.T], [H, np.zeros((m, m))]])
+        system_rows = np.block([[K / stiff, H.T], [H, np.zeros((m, m))]]) if m else K / stiff
         right = np.concatenate([free / stiff, at])
         solved = np.linalg.lstsq(system_rows, right, rcond=1e-12)[0]
         solved = _centred(system_rows, solved, E[gaps], offset[gaps], nodes)

@@ -1,26 +1,24 @@
 """Piecewise-linear systems: what compiled code needs to know of a mechanism to simulate it in every mode.
 
-Node velocities v = R a + N w + V z' split into those that inertia carries (a), those that nothing but other motions
-resists (w, massless), and what roads impose through inerters (V). Positions g are as many independent elongations of
-gaps and springs, and displacements of coordinates, as there are. Both splits hold in every mode; what a mode makes of
-them is `kernels.modes`.
+Velocities, positions and all that follows from which elements are where is `systems.kinematics`, found once for a
+layout; what a mode makes of it is `kernels.modes`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from types import UnionType
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, MechanismError
-from inerter.kernels.arrays import FRICTION, GAP, KIND
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Spring
-from inerter.systems.coordinates import clean, complete, independent_rows, null_space, pseudo_inverse
-from inerter.systems.graph import Branch, Graph, full_graph
-from inerter.systems.outputs import Output, outputs
+from inerter.checks import is_number
+from inerter.errors import DesignError
+from inerter.networks.elements import Damper, Element, Inerter, Spring
+from inerter.systems.graph import Graph
+from inerter.systems.kinematics import Kinematics, kinematics, value_of, with_elements
+from inerter.systems.outputs import Output
 from inerter.vehicle.cars import Vehicle, check_vehicle
 from inerter.vehicle.mechanism import Mechanism
 
@@ -40,13 +38,14 @@ class Mechanics:
 
 @dataclass(frozen=True, eq=False)
 class PiecewiseSystem:
-    """A mechanism in the coordinates of the module's docstring.
+    """A mechanism in the coordinates of `systems.kinematics`.
 
     A row over the state, the inputs and eta = (a', w, forces of the nonlinear elements) is what an output is made of.
     Inputs are the roads' z, z', z'' and the external forces, in this order.
     """
 
     mechanism: Mechanism
+    kinematics: Kinematics
     graph: Graph
     mechanics: Mechanics
     nonlinear: tuple[int, ...]  # branches that are friction or gaps
@@ -98,131 +97,104 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     free = ", ".join(mechanism.free_values())
     if free:
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
-    graph = full_graph(mechanism)
-    inertia = _inertia(mechanism, graph)
-    R, N, V = motions = _velocities(mechanism, graph, inertia)
-    nodes, roads = _stack(graph.branches, graph)
-    rates = (nodes @ R, nodes @ N, roads + nodes @ V)
-    places = _places(mechanism, graph)
-    kinetic, kinetic_road = inertia.nodes @ R, inertia.roads + inertia.nodes @ V
-    nonlinear = tuple(i for i, b in enumerate(graph.branches) if isinstance(b.element, Friction | Gap))
-    damping = _weighted(graph, Damper, np.hstack(rates[:2]), np.hstack(rates))
-    system = PiecewiseSystem(
+    return _system(mechanism, kinematics(mechanism))
+
+
+def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:
+    """The same system with other values of some elements and coordinates' inertias, by label.
+
+    Far quicker than `piecewise`: for those who simulate one layout thousands of times. What was zero must stay zero.
+    `mechanism` has the new inertias, but its networks are the old ones; `graph` has the new elements.
+
+    Raises `DesignError` for a label that is not there, for a value that is not a number of the old one's sign, and for
+    a layout with a node between inerters alone, whose motions depend on their values.
+    """
+    if system.kinematics.weighs:
+        raise DesignError(
+            "A node is between inerters alone, so that its motion depends on values. Take piecewise(...)."
+        )
+    elements = {b.label: b.element for b in system.graph.branches}
+    inertias = {c.name: c for c in system.mechanism.coordinates}
+    for label, value in values.items():
+        if label in elements:
+            old, positive = value_of(elements[label]), value_of(elements[label]) > 0.0
+        elif label in inertias:
+            old, positive = inertias[label].inertia, True
+        else:
+            listed = ", ".join([*elements, *inertias])
+            raise DesignError(f"There is no element or coordinate labelled {label!r} (there are: {listed}).")
+        if not is_number(value) or not (value > 0.0 if positive else value == 0.0):
+            allowed = "any positive number" if positive else "nothing else"
+            raise DesignError(f"The value of {label!r} is {old:g} and can become {allowed} here, got {value!r}.")
+        if label in elements:
+            elements[label] = type(elements[label])(value, elements[label].name)  # type: ignore[call-arg]
+        else:
+            inertias[label] = replace(inertias[label], inertia=value)
+    mechanism = copy(system.mechanism)  # which was checked when it was made
+    object.__setattr__(mechanism, "coordinates", tuple(inertias.values()))
+    known = system.kinematics
+    return _system(mechanism, replace(known, graph=with_elements(known.graph, list(elements.values()))))
+
+
+def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
+    graph, rates, places = known.graph, known.rates, known.places
+    R, _, V = known.motions
+    inerters = (value_of(b.element) for b in graph.branches if isinstance(b.element, Inerter))
+    inertia = np.array([*(c.inertia for c in mechanism.coordinates), *inerters])
+    kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
+    resistance = _weighted(graph, Damper, np.hstack(rates[:2]), np.hstack(rates))
+    return PiecewiseSystem(
         mechanism=mechanism,
+        kinematics=known,
         graph=graph,
-        mechanics=_mechanics(mechanism, graph, motions, rates, places, inertia),
-        nonlinear=nonlinear,
-        outputs=outputs(mechanism, graph),
+        mechanics=_mechanics(known, resistance, kinetic, kinetic_road, inertia),
+        nonlinear=known.nonlinear,
+        outputs=known.outputs,
         rates=rates,
         elongations=places.elongations,
         displacements=places.displacements,
-        motions=motions,
+        motions=known.motions,
         kinetic=kinetic,
         kinetic_road=kinetic_road,
-        inertia=inertia.values,
+        inertia=inertia,
         positions=places.nodes,
         heights=places.roads,
-        needs_velocity=tuple(np.any(np.abs(_felt(damping, R.shape[1])) > 1e-9, axis=0)),
-        needs_acceleration=tuple(np.any(np.abs(kinetic_road) > 1e-12, axis=0) | _locked_to(rates, nonlinear)),
-        moves_elements=tuple(_moved_by(rates, [i for i in nonlinear if _value(graph.branches[i].element) > 0.0])),
+        needs_velocity=tuple(np.any(np.abs(_felt(resistance, R.shape[1])) > 1e-9, axis=0)),
+        needs_acceleration=known.needs_acceleration,
+        moves_elements=known.moves_elements,
     )
-    _check_locks(system)
-    return system
-
-
-@dataclass(frozen=True, eq=False)
-class _Inertia:
-    """Masses and inerters: their rows over nodes and roads, and their values."""
-
-    nodes: Matrix
-    roads: Matrix
-    values: Matrix
-
-
-def _inertia(mechanism: Mechanism, graph: Graph) -> _Inertia:
-    inerters = [b for b in graph.branches if isinstance(b.element, Inerter)]
-    nodes, roads = _stack(inerters, graph)
-    masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
-    still = np.zeros((len(masses), roads.shape[1]))
-    values = np.array([*(c.inertia for c in mechanism.coordinates), *(_value(b.element) for b in inerters)])
-    return _Inertia(np.vstack([masses, nodes]), np.vstack([still, roads]), values)
-
-
-@dataclass(frozen=True, eq=False)
-class _Places:
-    """Positions as rows over nodes and roads, and what follows from them, over positions g and roads z."""
-
-    nodes: Matrix
-    roads: Matrix
-    elongations: tuple[Matrix, Matrix]  # of springs and gaps, a row for each branch
-    displacements: tuple[Matrix, Matrix]  # of the coordinates
-    own: tuple[int, ...]  # for each branch the position that is its own elongation, or -1
-
-
-def _places(mechanism: Mechanism, graph: Graph) -> _Places:
-    """The first independent ones among the elongations of gaps and springs and the displacements of coordinates."""
-    branches = graph.branches
-    nodes, roads = _stack(branches, graph)
-    placed = [i for kind in (Gap, Spring) for i, b in enumerate(branches) if isinstance(b.element, kind)]
-    coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
-    choices = np.vstack([nodes[placed], coordinates])
-    choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
-    chosen = independent_rows(choices)
-    P, P_road = choices[chosen], choices_road[chosen]
-    over_g = clean(choices @ pseudo_inverse(P)) if chosen else np.zeros((len(choices), 0))
-    over_g[chosen] = np.eye(len(chosen))
-    over_z = clean(choices_road - over_g @ P_road)
-    e_g, e_z = np.zeros((len(branches), len(chosen))), np.zeros(roads.shape)
-    e_g[placed], e_z[placed] = over_g[: len(placed)], over_z[: len(placed)]
-    number = {i: chosen.index(at) for at, i in enumerate(placed) if at in chosen}
-    own = tuple(number.get(i, -1) for i in range(len(branches)))
-    return _Places(P, P_road, (e_g, e_z), (over_g[len(placed) :], over_z[len(placed) :]), own)
 
 
 def _mechanics(
-    mechanism: Mechanism,
-    graph: Graph,
-    motions: tuple[Matrix, Matrix, Matrix],
-    rates: tuple[Matrix, Matrix, Matrix],
-    places: _Places,
-    inertia: _Inertia,
+    known: Kinematics, resistance: Matrix, kinetic: Matrix, kinetic_road: Matrix, inertia: Matrix
 ) -> Mechanics:
     """Left and right-hand sides of the balances of `kernels.modes`, and the rows of what can be locked."""
-    branches, (R, N, V) = graph.branches, motions
-    moving, na, nw = np.hstack(rates[:2]), R.shape[1], N.shape[1]
-    resistance = _weighted(graph, Damper, moving, np.hstack(rates))
-    kinetic, kinetic_road = inertia.nodes @ R, inertia.roads + inertia.nodes @ V
-    momentum = inertia.values[:, None] * np.hstack([kinetic, kinetic_road])
+    R, N, _ = known.motions
+    moving, na, nw = np.hstack(known.rates[:2]), R.shape[1], N.shape[1]
+    momentum = inertia[:, None] * np.hstack([kinetic, kinetic_road])
     left = resistance[:, : na + nw].copy()
     left[:, :na] = 0.0
     left[:na, :na] = kinetic.T @ momentum[:, :na]
-    ports = np.zeros((len(mechanism.forces), len(graph.nodes)))
-    for i, force in enumerate(mechanism.forces):
-        ports[i, : len(mechanism.coordinates)] = [force.port.get(c.name, 0.0) for c in mechanism.coordinates]
-    right = np.hstack([
+    right = [
         -resistance[:, :na],
-        -_weighted(graph, Spring, moving, np.hstack(places.elongations)),
+        -_weighted(known.graph, Spring, moving, np.hstack(known.places.elongations)),
         -resistance[:, na + nw :],
         -np.vstack([kinetic.T @ momentum[:, na:], np.zeros((nw, kinetic_road.shape[1]))]),
-        (ports @ np.hstack([R, N])).T,
+        (known.ports @ np.hstack([R, N])).T,
         np.zeros((na + nw, 1)),
-    ])  # fmt: skip
-    kinds: tuple[type[Element] | UnionType, ...] = (Friction | Gap, Damper, Spring)
-    special, dampers, springs = ([i for i, b in enumerate(branches) if isinstance(b.element, k)] for k in kinds)
-    positions = np.hstack([places.nodes @ R, places.nodes @ N, places.roads + places.nodes @ V])
-    names = [[FRICTION if isinstance(branches[i].element, Friction) else GAP, places.own[i]] for i in special]
+    ]
     return Mechanics(
-        balance=np.hstack([left, right]),
-        rates=_dense(np.vstack([positions, np.hstack(rates)[[*special, *dampers, *springs]]])),
-        lengths=_dense(np.hstack(places.elongations)[special]),
-        elements=np.array(names, dtype=np.int64).reshape(len(special), 2),
-        limit=np.array([_value(branches[i].element) for i in special]),
+        balance=np.hstack([left, *right]),
+        rates=known.moving,
+        lengths=known.lengths,
+        elements=known.elements,
+        limit=np.array([value_of(known.graph.branches[i].element) for i in known.nonlinear]),
     )
 
 
 def _weighted(graph: Graph, kind: type[Element], left: Matrix, right: Matrix) -> Matrix:
     """Sum over the elements of one kind of left row x value x right row."""
-    values = np.array([_value(b.element) if isinstance(b.element, kind) else 0.0 for b in graph.branches])
+    values = np.array([value_of(b.element) if isinstance(b.element, kind) else 0.0 for b in graph.branches])
     return np.ascontiguousarray(left.T @ (values[:, None] * right))
 
 
@@ -230,20 +202,6 @@ def _felt(damping: Matrix, na: int) -> Matrix:
     """Damping between inertias and roads once the massless motions between them have given way."""
     nv = damping.shape[0]
     return damping[:na, nv:] - damping[:na, na:nv] @ np.linalg.pinv(damping[na:, na:nv]) @ damping[na:, nv:]
-
-
-def _locked_to(rates: tuple[Matrix, Matrix, Matrix], nonlinear: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Roads that a friction that sticks, or a gap that touches, may tie an inertia to."""
-    _, E_w, E_z = (rows[list(nonlinear)] for rows in rates)
-    return np.asarray(np.any(np.abs(null_space(E_w.T).T @ E_z) > 1e-9, axis=0))
-
-
-def _moved_by(rates: tuple[Matrix, Matrix, Matrix], elements: list[int]) -> NDArray[np.bool_]:
-    """Roads that move one of these elements with nothing but massless motions between."""
-    links, moved = (np.abs(rows) > 1e-9 for rows in rates[1:])
-    for _ in range(links.shape[1]):
-        moved = moved | (links @ (links.T @ moved))
-    return np.asarray(np.any(moved[elements], axis=0))
 
 
 def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix, Matrix]:
@@ -272,7 +230,7 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
         on_u[acceleration] += output.acceleration @ system.motions[2]
     for i in np.flatnonzero(output.forces):
         element, share = system.graph.branches[i].element, output.forces[i]
-        value = share * _value(element)
+        value = share * value_of(element)
         E_a, E_w, E_z = (rows[i] for rows in system.rates)
         match element:
             case Spring():
@@ -292,84 +250,3 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     if output.external.size:
         on_u[3 * roads :] += output.external
     return on_x, on_u, on_eta
-
-
-def _velocities(mechanism: Mechanism, graph: Graph, inertia: _Inertia) -> tuple[Matrix, Matrix, Matrix]:
-    """R, N and V: motions with inertia, massless motions, and what roads impose on a node between inerters alone.
-
-    A motion that only inertia resists and nothing excites keeps its momentum of zero, so it follows the others at once.
-    """
-    count = len(graph.nodes)
-    others = [b for b in graph.branches if not isinstance(b.element, Inerter)]
-    holding = [b for b in others if not isinstance(b.element, Friction | Gap) or _holds(b.element)]
-    loose = null_space(np.vstack([inertia.nodes, _stack(holding, graph)[0]]))
-    if loose.shape[1]:
-        node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]
-        raise MechanismError(
-            f"Node {node!r} is held by nothing while the gaps beside it are open: no mass, spring, damper, inerter or "
-            f"friction resists its motion. Join the gaps into one, or add what holds the part between them."
-        )
-    N = null_space(inertia.nodes)
-    U = null_space(_stack(others, graph)[0])
-    for force in mechanism.forces:
-        row = np.zeros(count)
-        row[: len(mechanism.coordinates)] = [force.port.get(c.name, 0.0) for c in mechanism.coordinates]
-        U = U @ null_space((row @ U)[None])
-    R = complete(np.hstack([U, N]), np.eye(count))
-    if not U.shape[1]:
-        return R, N, np.zeros((count, len(mechanism.roads)))
-    momentum = U.T @ inertia.nodes.T * inertia.values
-    own = momentum @ inertia.nodes @ U
-    return (
-        R - U @ np.linalg.solve(own, momentum @ inertia.nodes @ R),
-        N,
-        -U @ np.linalg.solve(own, momentum @ inertia.roads),
-    )
-
-
-def _holds(element: Element) -> bool:
-    """Whether a friction always holds, or a gap is always closed."""
-    value = _value(element)
-    return value > 0.0 if isinstance(element, Friction) else value == 0.0
-
-
-def _check_locks(system: PiecewiseSystem) -> None:
-    """Raises `MechanismError` if closing gaps would stop an inertia at once, or if a lock's force is not determined."""
-    mechanics, labels = system.mechanics, system.elements
-    na, nw = system.motions[0].shape[1], system.motions[1].shape[1]
-    ng, k = system.positions.shape[0], len(system.nonlinear)
-    H_a, H_w, H_z = np.split(mechanics.rates[ng : ng + k], [na, na + nw], axis=1)
-    gaps = [i for i, kind in enumerate(mechanics.elements[:, KIND]) if kind == GAP]
-    for together in null_space(H_w[gaps].T).T:
-        named = [i for i, share in zip(gaps, together, strict=True) if abs(share) > 1e-9]
-        across = together @ np.hstack([H_a, H_z])[gaps]
-        if np.any(np.abs(across) > 1e-9) and any(mechanics.limit[i] > 0.0 for i in named):
-            which = " and ".join(repr(labels[i]) for i in named)
-            raise MechanismError(
-                f"Gap {which} has inertia (or a given motion) on both sides and no compliance: closing it would be an "
-                f"impact. Put the spring or damper of the real part in series with it."
-            )
-    for together in null_space(np.hstack([H_w, H_a]).T).T:
-        if np.any(np.abs(together @ H_z) > 1e-9):
-            which = " and ".join(repr(labels[i]) for i, share in enumerate(together) if abs(share) > 1e-9)
-            raise MechanismError(
-                f"The force of {which} is not determined when it does not slip: nothing between given motions gives "
-                f"way. Put the spring of the real part (such as a shaft) in series with it."
-            )
-
-
-def _stack(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
-    """Rows of some branches over nodes and over roads."""
-    nodes, roads = len(graph.nodes), next((b.roads.size for b in graph.branches), 0)
-    on_nodes = np.array([b.nodes for b in branches]).reshape(len(branches), nodes)
-    return on_nodes, np.array([b.roads for b in branches]).reshape(len(branches), roads)
-
-
-def _value(element: Element) -> float:
-    value = element.value
-    assert not isinstance(value, Free)
-    return value
-
-
-def _dense(matrix: Matrix) -> Matrix:
-    return np.ascontiguousarray(clean(matrix))

@@ -1,0 +1,286 @@
+"""What follows from which elements are where in a mechanism and from which of their values are zero, and nothing else.
+
+Node velocities v = R a + N w + V z' split into those that inertia carries (a), those that nothing but other motions
+resists (w, massless), and what roads impose through inerters (V). Positions g are as many independent elongations of
+gaps and springs, and displacements of coordinates, as there are. It is found once for all designs of a layout.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from types import UnionType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import MechanismError
+from inerter.kernels.arrays import FRICTION, GAP
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Spring
+from inerter.systems.coordinates import clean, complete, independent_rows, null_space, pseudo_inverse
+from inerter.systems.graph import Branch, Graph, full_graph
+from inerter.systems.outputs import Output, outputs
+from inerter.vehicle.mechanism import Mechanism, Strut
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """The graph and the constant matrices of a layout.
+
+    Rates are of all branches, over a, w, z'; `moving` are those of positions and of what the kernels look at.
+    """
+
+    graph: Graph
+    outputs: dict[str, Output]
+    inertia_nodes: Matrix  # rows of masses and inerters over nodes and ...
+    inertia_roads: Matrix  # ... roads
+    motions: tuple[Matrix, Matrix, Matrix]  # R, N, V
+    rates: tuple[Matrix, Matrix, Matrix]
+    places: Places
+    moving: Matrix
+    lengths: Matrix
+    elements: NDArray[np.int64]
+    ports: Matrix  # of the external forces, over nodes
+    nonlinear: tuple[int, ...]
+    needs_acceleration: tuple[bool, ...]
+    moves_elements: tuple[bool, ...]
+    weighs: bool  # whether R and V depend on values of inertia, as where a node is between two inerters alone
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """A mechanism, equal to others of the same layout."""
+
+    shape: tuple[Any, ...]
+    mechanism: Mechanism = field(compare=False)
+
+
+def kinematics(mechanism: Mechanism) -> Kinematics:
+    """The kinematics of a mechanism without free values, with its own elements in the graph.
+
+    Raises `MechanismError` as `piecewise` does.
+    """
+    layout = _Layout(_shape_of(mechanism), mechanism)
+    known = _remembered(layout)
+    if known.weighs:
+        return _found(layout)
+    elements = (element for mount in mechanism.mounts() for element in mount.network.elements())
+    return replace(known, graph=with_elements(known.graph, list(elements)))
+
+
+def with_elements(graph: Graph, elements: Sequence[Element]) -> Graph:
+    """The same graph with other elements on its branches."""
+    pairs = zip(elements, graph.branches, strict=True)
+    return replace(graph, branches=tuple(Branch(element, b.label, b.nodes, b.roads) for element, b in pairs))
+
+
+def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
+    """All that the kinematics depend on."""
+    mounts = []
+    for mount in mechanism.mounts():
+        ends = (mount.upper, mount.lower) if isinstance(mount, Strut) else (mount.port, {mount.road: None})
+        mounts.append((type(mount), mount.name, _drawn(mount.network), *(tuple(end.items()) for end in ends)))
+    return (
+        tuple((c.name, c.angle) for c in mechanism.coordinates),
+        tuple(mounts),
+        tuple(road.name for road in mechanism.roads),
+        tuple((force.name, tuple(force.port.items())) for force in mechanism.forces),
+    )
+
+
+def _drawn(network: Network) -> tuple[Any, ...]:
+    if isinstance(network, Element):
+        return type(network), network.name, value_of(network) > 0.0
+    return (type(network), *map(_drawn, network.parts))  # type: ignore[attr-defined]
+
+
+def _found(layout: _Layout) -> Kinematics:
+    mechanism = layout.mechanism
+    graph = full_graph(mechanism)
+    branches = graph.branches
+    inertia = _inertia(mechanism, graph)
+    ports = np.zeros((len(mechanism.forces), len(graph.nodes)))
+    for i, force in enumerate(mechanism.forces):
+        ports[i, : len(mechanism.coordinates)] = [force.port.get(c.name, 0.0) for c in mechanism.coordinates]
+    *motions, weighs = _velocities(graph, inertia, ports, len(mechanism.roads))
+    R, N, V = motions
+    nodes, roads = _stack(branches, graph)
+    rates = (nodes @ R, nodes @ N, roads + nodes @ V)
+    places = _places(mechanism, graph)
+    kinds: tuple[type[Element] | UnionType, ...] = (Friction | Gap, Damper, Spring)
+    special, dampers, springs = ([i for i, b in enumerate(branches) if isinstance(b.element, k)] for k in kinds)
+    positions = np.hstack([places.nodes @ R, places.nodes @ N, places.roads + places.nodes @ V])
+    names = [[FRICTION if isinstance(branches[i].element, Friction) else GAP, places.own[i]] for i in special]
+    jolted = np.any(np.abs(inertia.roads + inertia.nodes @ V) > 1e-12, axis=0)
+    found = Kinematics(
+        graph=graph,
+        outputs=outputs(mechanism, graph),
+        inertia_nodes=inertia.nodes,
+        inertia_roads=inertia.roads,
+        motions=(R, N, V),
+        rates=rates,
+        places=places,
+        moving=_dense(np.vstack([positions, np.hstack(rates)[[*special, *dampers, *springs]]])),
+        lengths=_dense(np.hstack(places.elongations)[special]),
+        elements=np.array(names, dtype=np.int64).reshape(len(special), 2),
+        ports=ports,
+        nonlinear=tuple(special),
+        needs_acceleration=tuple(jolted | _locked_to(rates, special)),
+        moves_elements=tuple(_moved_by(rates, [i for i in special if value_of(branches[i].element) > 0.0])),
+        weighs=weighs,
+    )
+    _check_locks(found)
+    return found
+
+
+_remembered = lru_cache(maxsize=256)(_found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Inertia:
+    """Masses and inerters: their rows over nodes and roads, and their values."""
+
+    nodes: Matrix
+    roads: Matrix
+    values: Matrix
+
+
+def _inertia(mechanism: Mechanism, graph: Graph) -> _Inertia:
+    inerters = [b for b in graph.branches if isinstance(b.element, Inerter)]
+    nodes, roads = _stack(inerters, graph)
+    masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
+    still = np.zeros((len(masses), roads.shape[1]))
+    values = np.array([*(c.inertia for c in mechanism.coordinates), *(value_of(b.element) for b in inerters)])
+    return _Inertia(np.vstack([masses, nodes]), np.vstack([still, roads]), values)
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Positions as rows over nodes and roads, and what follows from them, over positions g and roads z."""
+
+    nodes: Matrix
+    roads: Matrix
+    elongations: tuple[Matrix, Matrix]  # of springs and gaps, a row for each branch
+    displacements: tuple[Matrix, Matrix]  # of the coordinates
+    own: tuple[int, ...]  # for each branch the position that is its own elongation, or -1
+
+
+def _places(mechanism: Mechanism, graph: Graph) -> Places:
+    """The first independent ones among the elongations of gaps and springs and the displacements of coordinates."""
+    branches = graph.branches
+    nodes, roads = _stack(branches, graph)
+    placed = [i for kind in (Gap, Spring) for i, b in enumerate(branches) if isinstance(b.element, kind)]
+    coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
+    choices = np.vstack([nodes[placed], coordinates])
+    choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
+    chosen = independent_rows(choices)
+    P, P_road = choices[chosen], choices_road[chosen]
+    over_g = clean(choices @ pseudo_inverse(P)) if chosen else np.zeros((len(choices), 0))
+    over_g[chosen] = np.eye(len(chosen))
+    over_z = clean(choices_road - over_g @ P_road)
+    e_g, e_z = np.zeros((len(branches), len(chosen))), np.zeros(roads.shape)
+    e_g[placed], e_z[placed] = over_g[: len(placed)], over_z[: len(placed)]
+    number = {i: chosen.index(at) for at, i in enumerate(placed) if at in chosen}
+    own = tuple(number.get(i, -1) for i in range(len(branches)))
+    return Places(P, P_road, (e_g, e_z), (over_g[len(placed) :], over_z[len(placed) :]), own)
+
+
+def _locked_to(rates: tuple[Matrix, Matrix, Matrix], nonlinear: list[int]) -> NDArray[np.bool_]:
+    """Roads that a friction that sticks, or a gap that touches, may tie an inertia to."""
+    _, E_w, E_z = (rows[nonlinear] for rows in rates)
+    return np.asarray(np.any(np.abs(null_space(E_w.T).T @ E_z) > 1e-9, axis=0))
+
+
+def _moved_by(rates: tuple[Matrix, Matrix, Matrix], elements: list[int]) -> NDArray[np.bool_]:
+    """Roads that move one of these elements with nothing but massless motions between."""
+    links, moved = (np.abs(rows) > 1e-9 for rows in rates[1:])
+    for _ in range(links.shape[1]):
+        moved = moved | (links @ (links.T @ moved))
+    return np.asarray(np.any(moved[elements], axis=0))
+
+
+def _velocities(graph: Graph, inertia: _Inertia, ports: Matrix, roads: int) -> tuple[Matrix, Matrix, Matrix, bool]:
+    """R, N and V: motions with inertia, massless motions, and what roads impose on a node between inerters alone.
+
+    A motion that only inertia resists and nothing excites keeps its momentum of zero, so it follows the others at once.
+    Whether there is one, so that R and V depend on values, is told last.
+    """
+    count = len(graph.nodes)
+    others = [b for b in graph.branches if not isinstance(b.element, Inerter)]
+    holding = [b for b in others if not isinstance(b.element, Friction | Gap) or _holds(b.element)]
+    loose = null_space(np.vstack([inertia.nodes, _stack(holding, graph)[0]]))
+    if loose.shape[1]:
+        node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]
+        raise MechanismError(
+            f"Node {node!r} is held by nothing while the gaps beside it are open: no mass, spring, damper, inerter or "
+            f"friction resists its motion. Join the gaps into one, or add what holds the part between them."
+        )
+    N = null_space(inertia.nodes)
+    U = null_space(_stack(others, graph)[0])
+    for row in ports:
+        U = U @ null_space((row @ U)[None])
+    R = complete(np.hstack([U, N]), np.eye(count))
+    if not U.shape[1]:
+        return R, N, np.zeros((count, roads)), False
+    momentum = U.T @ inertia.nodes.T * inertia.values
+    own = momentum @ inertia.nodes @ U
+    return (
+        R - U @ np.linalg.solve(own, momentum @ inertia.nodes @ R),
+        N,
+        -U @ np.linalg.solve(own, momentum @ inertia.roads),
+        True,
+    )
+
+
+def _holds(element: Element) -> bool:
+    """Whether a friction always holds, or a gap is always closed."""
+    value = value_of(element)
+    return value > 0.0 if isinstance(element, Friction) else value == 0.0
+
+
+def _check_locks(found: Kinematics) -> None:
+    """Raises `MechanismError` if closing gaps would stop an inertia at once, or if a lock's force is not determined."""
+    na, nw = found.motions[0].shape[1], found.motions[1].shape[1]
+    ng, k = found.places.nodes.shape[0], len(found.nonlinear)
+    special = [found.graph.branches[i] for i in found.nonlinear]
+    labels = [branch.label for branch in special]
+    H_a, H_w, H_z = np.split(found.moving[ng : ng + k], [na, na + nw], axis=1)
+    gaps = [i for i, branch in enumerate(special) if isinstance(branch.element, Gap)]
+    for together in null_space(H_w[gaps].T).T:
+        named = [i for i, share in zip(gaps, together, strict=True) if abs(share) > 1e-9]
+        across = together @ np.hstack([H_a, H_z])[gaps]
+        if np.any(np.abs(across) > 1e-9) and any(value_of(special[i].element) > 0.0 for i in named):
+            which = " and ".join(repr(labels[i]) for i in named)
+            raise MechanismError(
+                f"Gap {which} has inertia (or a given motion) on both sides and no compliance: closing it would be an "
+                f"impact. Put the spring or damper of the real part in series with it."
+            )
+    for together in null_space(np.hstack([H_w, H_a]).T).T:
+        if np.any(np.abs(together @ H_z) > 1e-9):
+            which = " and ".join(repr(labels[i]) for i, share in enumerate(together) if abs(share) > 1e-9)
+            raise MechanismError(
+                f"The force of {which} is not determined when it does not slip: nothing between given motions gives "
+                f"way. Put the spring of the real part (such as a shaft) in series with it."
+            )
+
+
+def _stack(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
+    """Rows of some branches over nodes and over roads."""
+    nodes, roads = len(graph.nodes), next((b.roads.size for b in graph.branches), 0)
+    on_nodes = np.array([b.nodes for b in branches]).reshape(len(branches), nodes)
+    return on_nodes, np.array([b.roads for b in branches]).reshape(len(branches), roads)
+
+
+def value_of(element: Element) -> float:
+    """The value of an element that has one."""
+    value = element.value
+    assert not isinstance(value, Free)
+    return value
+
+
+def _dense(matrix: Matrix) -> Matrix:
+    return np.ascontiguousarray(clean(matrix))

@@ -84,12 +84,17 @@ def suggestions(
         upper = parameters[name].interval[1]
         if issubclass(kind, Gap):
             yield (
-                f"{name}: a faster motion in which the force reverses often (now up to {fastest:.3g} Hz and {peak:.3g} N{room}), "
-                f"sampled so that crossing {format_quantity(2.0 * upper, 'm')} takes several samples."
+                f"{name}: a faster motion in which the force reverses often (now up to {fastest:.3g} Hz and "
+                f"{peak:.3g} N{room}), sampled so that crossing {format_quantity(2.0 * upper, 'm')} takes several samples."
             )
         elif issubclass(kind, Friction):
-            yield f"{name}: a slow cosine, 0.1 Hz and {format_quantity(max(travel, 1e-3), 'm')}, without the flywheel."
+            slow = format_quantity(max(travel, 1e-3), "m")
+            yield f"{name}: a slow cosine, 0.1 Hz and {slow}, without the flywheel."
         elif issubclass(kind, Inerter):
-            yield f"{name}: larger accelerations: {format_quantity(2.0 * travel, 'm')} at the same frequency, or twice the frequency."
+            wider = format_quantity(2.0 * travel, "m")
+            yield f"{name}: larger accelerations: {wider} at the same frequency, or twice the frequency."
         else:
-            yield f"{name}: a multisine or sweep of small amplitude up to twice the present {fastest:.3g} Hz or more{room}."
+            yield (
+                f"{name}: a multisine or sweep of small amplitude up to twice the present {fastest:.3g} Hz or "
+                f"more{room}."
+            )

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError
-from inerter.identification.virtual_rig import low_pass
 from inerter.networks.elements import Damper, Gap, Spring
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, noise_of, smooth_displacement
@@ -23,9 +21,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and tell nothing new
-_STEPS = 12.0  # of the simulation in a period of the load cell's bandwidth: its filter takes lines between steps
 _AT_REST = 0.02  # of the largest velocity
-_FORCE = "device_force"
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +35,6 @@ class Experiment:
     motion: Motion
     kept: NDArray[np.bool_]
     table: InputTable  # of the motion, without delay
-    parts: int  # steps of the simulation in an interval
     noise: float  # [N] r.m.s. of the noise of the force
 
     @property
@@ -59,7 +54,7 @@ class Experiment:
     def force(self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None) -> Matrix | None:
         """The force that the load cell would read of this device at the first `samples` samples; None if it fails."""
         run = self.run(system, delay, samples)
-        return None if run is None else self.sensed(run[_FORCE])
+        return None if run is None else run[reading_of(self.record)]
 
     def run(
         self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None, moving: bool = False
@@ -67,7 +62,7 @@ class Experiment:
         """The motion of the device, from rest or (`moving`) carried along with the table; None if it fails."""
         table = self.delayed(delay)
         if samples is not None and samples < self.size:
-            table = _shortened(table, (samples - 1) * self.parts)
+            table = _shortened(table, samples - 1)
         state = initial_state(system, table.value[0], "rest")
         if moving:
             state = _carried(system, state, table.slope[0])
@@ -76,13 +71,6 @@ class Experiment:
         if not integration.status.ok:
             return None
         return trajectory_of(integration, None, self.record.source, state)
-
-    def sensed(self, force: Matrix) -> Matrix:
-        """A force at all steps after the load cell, at the samples."""
-        band = self.record.force_bandwidth
-        if band is not None:
-            force = low_pass(force, band, math.sqrt(0.5), self.table.step)[0]
-        return np.asarray(force[:: self.parts])
 
 
 def experiment_of(record: Record, bandwidth: float | None = None, lead: float | None = None) -> Experiment:
@@ -102,9 +90,8 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         raise IdentificationError(f"The force of {record.source!r} is constant: nothing can be told from it.")
     motion = smooth_displacement(record, bandwidth)
     interval, count = record.interval, record.time.size
-    parts = 1 if record.force_bandwidth is None else max(1, math.ceil(_STEPS * interval * record.force_bandwidth))
     try:
-        table = _table(motion, interval, parts)
+        table = _table(motion)
     except InerterError as error:
         raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
     kept = ~saturated(record)
@@ -123,14 +110,19 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         raise IdentificationError(
             f"Of {record.source!r} only {kept.sum()} samples can be used; a fit needs 50 or more."
         )
-    return Experiment(record, motion, kept, table, parts, max(noise_of(record.force, interval).rms, 1e-9))
+    return Experiment(record, motion, kept, table, max(noise_of(record.force, interval).rms, 1e-9))
+
+
+def reading_of(record: Record) -> str:
+    """The output of the rig that the load cell of a record reads."""
+    return "device_force" if record.force_bandwidth is None else "reading_force"
 
 
 def disturbed(experiment: Experiment, noise: Matrix) -> Experiment:
     """The same experiment had the encoder's noise been larger by `noise` (samples,) [m]."""
     record = replace(experiment.record, displacement=experiment.record.displacement + noise)
     motion = smooth_displacement(record, experiment.motion.bandwidth)
-    table = _table(motion, record.interval, experiment.parts)
+    table = _table(motion)
     return replace(experiment, motion=motion, table=table)
 
 
@@ -147,12 +139,14 @@ def forgotten(experiment: Experiment, system: PiecewiseSystem, level: float) -> 
     runs = [experiment.run(system, moving=moving) for moving in (False, True)]
     if runs[0] is None or runs[1] is None:
         return 0
-    apart = np.abs(experiment.sensed(runs[0][_FORCE]) - experiment.sensed(runs[1][_FORCE])) > level
+    name = reading_of(experiment.record)
+    apart = np.abs(runs[0][name] - runs[1][name]) > level
     return int(np.flatnonzero(apart)[-1]) + 1 if apart.any() else 0
 
 
-def _table(motion: Motion, interval: float, parts: int) -> InputTable:
-    return tabulate([_signal(motion)], [0.0], (motion.time.size - 1) * interval, interval / parts)
+def _table(motion: Motion) -> InputTable:
+    duration = float(motion.time[-1] - motion.time[0])
+    return tabulate([_signal(motion)], [0.0], duration, duration / (motion.time.size - 1))
 
 
 def _signal(motion: Motion) -> Signal:

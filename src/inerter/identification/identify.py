@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from inerter.checks import is_number
 from inerter.errors import OK, IdentificationError, Status, StatusKind
 from inerter.identification.encoder import lean, scattered
-from inerter.identification.experiment import Experiment, experiment_of, forgotten, saturated
+from inerter.identification.experiment import Experiment, experiment_of, forgotten, reading_of, saturated
 from inerter.identification.fit import Comparison, Fit, Parameter
 from inerter.identification.guess import chain_of, guess_of, sign_of
 from inerter.identification.intervals import Optimum, Profile, optimum_of, profiles, steps_of
@@ -32,7 +32,7 @@ Matrix = NDArray[np.float64]
 LONGEST_DELAY = 0.02  # [s] that is looked for when a delay is free
 _ROUGH = 0.003  # of the r.m.s. force: what a residual counts as until the errors are known
 _ROUNDS = 3
-_ENOUGH = 0.9  # of the variance of the force: a model that explains less is not the device
+_ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
 _LAGS = 20
 _INDEPENDENT = 1e-3  # p-value below which residuals still hang together
 
@@ -138,8 +138,9 @@ def _for_fit(experiments: Sequence[Experiment], check: float) -> list[Experiment
 
 def _leads(problem: Problem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:
     """Leave out as much of the start of records that begin in motion as the unknown start of the device matters."""
-    system, result, leads = problem.system(point), [], []
+    result, leads = [], []
     for e in problem.experiments:
+        system = problem.system(point, e.record)
         first = int(np.argmax(e.kept))
         if lead is None and first > 0 and system is not None:
             kept = e.kept.copy()
@@ -250,16 +251,16 @@ def _parameter(space: Space, i: int, optimum: Optimum, profile: Profile, best: f
 def _comparisons(
     problem: Problem, optimum: Optimum, whole: Sequence[Experiment], leads: Sequence[float]
 ) -> tuple[Comparison, ...]:
-    result, system, first = [], problem.system(optimum.point), 0
+    result, first = [], 0
     residuals = problem.residual(optimum.point)
     values = problem.space.named(optimum.point)
-    assert system is not None
     for e, all_kept, w, lead, offset in zip(
         problem.experiments, whole, problem.whitenings, leads, problem.offsets(optimum.point), strict=True
     ):
-        run = e.run(system, values.get(DELAY, 0.0))
-        assert run is not None
-        model = values.get(GAIN, 1.0) * e.sensed(run["device_force"]) + offset
+        system = problem.system(optimum.point, e.record)
+        run = None if system is None else e.run(system, values.get(DELAY, 0.0))
+        assert system is not None and run is not None
+        model = values.get(GAIN, 1.0) * run[reading_of(e.record)] + offset
         white = residuals[first : first + e.size][w.weight > 0.0]
         first += e.size
         checked = all_kept.kept & ~e.kept

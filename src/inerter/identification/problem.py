@@ -16,6 +16,7 @@ from inerter.identification.noise import Whitening
 from inerter.identification.space import DELAY, GAIN, Space
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
+from inerter.records.record import Record
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
 from inerter.vehicle.cars import Rig
 
@@ -34,33 +35,35 @@ class Problem:
     offset: bool = True  # whether the load cell may have one, its own in each record
     horizon: float = 1.0  # part of each record that is compared
     simulations: int = 0
-    systems: dict[tuple[bool, ...], PiecewiseSystem] = field(default_factory=dict)  # by which values are zero
+    systems: dict[tuple[object, ...], PiecewiseSystem] = field(default_factory=dict)  # by load cell and zeros
     pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(os.cpu_count() or 1))
 
-    def system(self, coordinates: Matrix) -> PiecewiseSystem | None:
-        """The rig with these values; None where a device like that cannot be simulated."""
+    def system(self, coordinates: Matrix, record: Record) -> PiecewiseSystem | None:
+        """The rig with these values and the load cell of a record; None where a device like that cannot be simulated."""
         values = {n: v for n, v in self.space.named(coordinates).items() if n not in (GAIN, DELAY)}
-        zero = tuple(value == 0.0 for value in values.values())
+        layout = (record.force_bandwidth, *(value == 0.0 for value in values.values()))
         try:
-            known = self.systems.get(zero)
+            known = self.systems.get(layout)
             if known is not None:
                 return revalued(known, {n: v for n, v in values.items() if v != 0.0})
-            system = piecewise(_labelled(self.rig).with_values(values))
+            system = piecewise(replace(_labelled(self.rig), cell_bandwidth=record.force_bandwidth).with_values(values))
         except InerterError:
             return None
         if set(values) <= {b.label for b in system.graph.branches} and not system.kinematics.weighs:
-            self.systems[zero] = system
+            self.systems[layout] = system
         return system
 
     def forces(self, coordinates: Matrix) -> list[Matrix | None]:
         """What the load cells would read, for each record as far as the horizon."""
         self.simulations += len(self.experiments)
-        system, values = self.system(coordinates), self.space.named(coordinates)
-        if system is None:
-            return [None] * len(self.experiments)
+        values = self.space.named(coordinates)
         gain, delay = values.get(GAIN, 1.0), values.get(DELAY, 0.0)
-        found = (e.force(system, delay, self.samples(e)) for e in self.experiments)
-        return [None if force is None else gain * force for force in found]
+        result = []
+        for e in self.experiments:
+            system = self.system(coordinates, e.record)
+            force = None if system is None else e.force(system, delay, self.samples(e))
+            result.append(None if force is None else gain * force)
+        return result
 
     def samples(self, experiment: Experiment) -> int:
         return max(4, round(self.horizon * experiment.size))

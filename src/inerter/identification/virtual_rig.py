@@ -91,17 +91,17 @@ class VirtualRig:
         steps = (first + count - 1) * parts
         position, velocity = self._moved(command.grid(0.0, step, steps + 1)[0], step)
         table = Signal.sampled(step * np.arange(steps + 1), position, derivative=velocity, label=command.label)
-        run = simulate(Rig(self.device), displacement=table, duration=steps * step, step=step)
+        rig = Rig(self.device, self.force_bandwidth)
+        run = simulate(rig, displacement=table, duration=steps * step, step=step)
         if not run.status.ok:
             raise IdentificationError(f"The virtual rig cannot be simulated: {run.status}.")
         at = (first + np.arange(count)) * parts
-        sensed = low_pass(run["device_force"], self.force_bandwidth, math.sqrt(0.5), step)[0]
-        delayed = np.interp(step * at - self.force_delay, table.time, sensed)
+        delayed = np.interp(step * at - self.force_delay, table.time, run[rig.reading])
         return self._read(position[at], delayed, interval, command)
 
     def _moved(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:
         """Position and velocity of the table, which begins at rest."""
-        position, velocity = low_pass(command - command[0], self.table_bandwidth, _TABLE_DAMPING, step)
+        position, velocity = _low_pass(command - command[0], self.table_bandwidth, _TABLE_DAMPING, step)
         return command[0] + position, velocity
 
     def _read(self, displacement: Matrix, force: Matrix, interval: float, command: Signal) -> Record:
@@ -126,7 +126,7 @@ def _rounded(values: Matrix, resolution: float) -> Matrix:
     return np.asarray(values if resolution == 0.0 else resolution * np.rint(values / resolution))
 
 
-def low_pass(signal: Matrix, bandwidth: float, damping: float, step: float) -> tuple[Matrix, Matrix]:
+def _low_pass(signal: Matrix, bandwidth: float, damping: float, step: float) -> tuple[Matrix, Matrix]:
     """A signal after a low pass of second order, and its derivative; exact for a signal that is linear over a step.
 
     It starts as if the signal had always had its first value.

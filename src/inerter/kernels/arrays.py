@@ -8,6 +8,7 @@ Array = Any
 FRICTION, GAP = 0, 1
 KIND, OWN_POSITION = 0, 1  # columns of `Mechanics.elements`
 NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT = range(11)  # places in `Mechanics.sizes`
+SHARP = 4  # terms of a guard's sway over a step that are values, where that is worth it
 
 
 class Mechanics(NamedTuple):

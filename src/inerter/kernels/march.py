@@ -9,6 +9,7 @@ from numba import types
 from numba.experimental import function_type
 
 from inerter.kernels import compiled
+from inerter.kernels.arrays import SHARP
 
 _FLOATS, _INTS = types.Array(types.float64, 1, "C"), types.Array(types.int64, 1, "C")
 _TABLE = types.Array(types.float64, 2, "C")
@@ -53,20 +54,24 @@ def padded(rows: int) -> int:
     return -(-rows // 4) * 4
 
 
-def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int) -> tuple[int, int, int]:
+def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp: bool) -> tuple[int, int, int]:
     """Columns of a step, and its rows: of what follows from them, and of the guards' sway."""
-    return n + inputs + 1, padded(n + 2 * elements + outputs * (2 if jumps else 1)), padded(elements)
+    rows = n + 2 * elements + outputs * (2 if jumps else 1) + (SHARP * elements if sharp else 0)
+    return n + inputs + 1, padded(rows), padded(elements)
 
 
 @cache
-def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: int) -> March:
+def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: int, sharp: bool) -> March:
     """The march for systems of n states, these of `flow.knot_numbers`, so many nonlinear elements and squared outputs.
 
     It goes on while no guard can be crossed within the step, and returns the first segment that needs more care. Where
-    signals are held, the first `jumps` inputs may jump at every knot: positions follow at once.
+    signals are held, the first `jumps` inputs may jump at every knot: positions follow at once. `sharp`: the first
+    terms of the guards' sway are values, not sums of sizes, which sees that large motions cancel in them.
     """
     inputs = len(used)
-    columns, rows, sways = lines_of(n, inputs, elements, outputs, jumps)
+    columns, rows, sways = lines_of(n, inputs, elements, outputs, jumps, sharp)
+    bends = n + 2 * elements + outputs * (2 if jumps else 1)  # rows of the sway's first terms
+    terms = SHARP if sharp else 0
     at_end, at_start = n + 2 * elements, n + 2 * elements + outputs  # rows of outputs
     numbers = used or (0,)  # an empty tuple cannot be compiled, even if it is never looked into
 
@@ -120,6 +125,8 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
             safe = True
             for e in range(elements):
                 end, start, sway = y[n + e], y[n + elements + e], y[rows + e]
+                for term in range(terms):
+                    sway += abs(y[bends + term * elements + e])
                 if not (min(start, end) - sway > limits[e, 0] and max(start, end) + sway < limits[e, 1]):
                     safe = False
             if not safe:

@@ -35,6 +35,7 @@ from inerter.kernels.arrays import (
     OUTPUT,
     OUTPUTS,
     OWN_POSITION,
+    SHARP,
     K,
     N,
 )
@@ -511,9 +512,12 @@ def into_knots(rows: Array, n: int, used: Array, out: Array, top: int) -> None:
         out[n + used.shape[0], top + i] = rows[i, size - 1]
 
 
-@part("void(float64[:,::1], float64[:,::1], int64, int64[::1], float64[:,::1], int64)", apart=True)
-def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, top: int) -> None:
-    """One eighth of the largest second derivative of each guard over a step, as weights on absolute values."""
+@part("void(float64[:,::1], float64[:,::1], int64, int64[::1], float64[:,::1], int64, int64)", apart=True)
+def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, bends: int, top: int) -> None:
+    """One eighth of the largest second derivative of each guard over a step, as weights on absolute values.
+
+    Its first terms go to the rows from `bends` on as they are, if that is not negative.
+    """
     k, columns = guards.shape[0], n + used.shape[0] + 1
     term, power = np.zeros((columns, k)), guards
     for j in range(columns):
@@ -529,9 +533,13 @@ def _bound_sway(guards: Array, chain: Array, n: int, used: Array, steps: Array, 
         if largest == 0.0:
             break
         into_knots(power, n, used, term, 0)
+        weight, first = order * (order - 1) / 8.0, bends + (order - 2) * k
         for j in range(columns):
             for i in range(k):
-                steps[j, top + i] += order * (order - 1) / 8.0 * abs(term[j, i])
+                if bends >= 0 and 2 <= order < 2 + SHARP:
+                    steps[j, first + i] = weight * term[j, i]
+                else:
+                    steps[j, top + i] += weight * abs(term[j, i])
 
 
 @part("float64(float64[:,::1], int64)", apart=True)
@@ -589,5 +597,6 @@ def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -
     if steps.shape[0] > columns:
         into_knots(outputs, n, used, steps, rows)
         rows += sizes[OUTPUTS]
-    _bound_sway(guards, chain, n, used, steps, -(-rows // 4) * 4)
+    sways = steps.shape[1] - -(-k // 4) * 4
+    _bound_sway(guards, chain, n, used, steps, rows if sways >= rows + SHARP * k else -1, sways)
     return 1.0 / max(growth(maps, n), 1e-9)

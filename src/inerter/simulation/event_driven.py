@@ -13,7 +13,7 @@ from inerter.errors import OK, SimulationError, Status, StatusKind
 from inerter.kernels import events as kernel
 from inerter.kernels.arrays import ENTRY, ETA, GUARD, Mechanics, Modes
 from inerter.kernels.march import lines_of, march_of
-from inerter.networks.elements import Damper
+from inerter.networks.elements import Damper, Gap
 from inerter.simulation.inputs import InputTable
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
@@ -174,7 +174,8 @@ def start(
     branches = system.graph.branches if account else ()
     samples, channels = table.samples if keep else 0, table.value.shape[1]
     jumps = channels if table.jumps else 0
-    columns, followed, swaying = lines_of(n, used.size, k, len(outputs), jumps)
+    sharp = any(isinstance(system.graph.branches[i].element, Gap) for i in system.nonlinear)
+    columns, followed, swaying = lines_of(n, used.size, k, len(outputs), jumps, sharp)
     work = np.zeros(
         (kernel.ROWS, max(64, columns + followed + swaying + n, nu, 4 * channels, channels + len(branches)))
     )
@@ -196,7 +197,7 @@ def start(
     )
     record.states[:1] = state
     place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0], np.int64)
-    march = march_of(n, tuple(used.tolist()), k, len(outputs), jumps)
+    march = march_of(n, tuple(used.tolist()), k, len(outputs), jumps, sharp)
     capacity, width = min(3**k, 9), n + nu + 1
     modes = Modes(
         number=np.full(3**k, -1, np.int64),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 from inerter.checks import check_positive
 from inerter.errors import DesignError, MechanismError
-from inerter.networks.elements import Free, Network, Spring, check_network
+from inerter.networks.elements import Damper, Free, Network, Spring, check_network
 from inerter.networks.transform import name_free_values, with_values
 from inerter.vehicle.mechanism import (
     GROUND,
@@ -164,28 +165,50 @@ class HalfCar:
         return replace(self, front=with_values(self.front, values), rear=with_values(self.rear, values))
 
 
+_CELL = 1e13  # [N/m] stiffness of a load cell: a millionth of the softness of any device
+_ON_CELL = {"load_cell": 1.0}
+
+
 @dataclass(frozen=True)
 class Rig:
     """A device between a motion table, whose displacement is given, and a load cell on the ground.
 
     Source: Wang and Su (2008), the test platform. Input `displacement` [m] of the device's upper end; the load cell
-    reads the output `device_force`, positive in tension.
+    reads the output `device_force`, positive in tension. A load cell that follows only up to `cell_bandwidth` [Hz]
+    (second order, Butterworth) is a mass on a spring, so stiff that it hardly moves; it then reads `reading_force`.
 
-    Raises `NetworkError` if `device` is no network.
+    Raises `NetworkError` if `device` is no network, `MechanismError` if the bandwidth is not positive.
     """
 
     device: Network
+    cell_bandwidth: float | None = None  # [Hz]
 
     def __post_init__(self) -> None:
+        if self.cell_bandwidth is not None:
+            check_positive(MechanismError, "The bandwidth of a load cell", self.cell_bandwidth, "Hz")
         object.__setattr__(self, "device", name_free_values({"device": check_network(self.device)})["device"])
 
     def mechanism(self) -> Mechanism:
         """The same rig as a `Mechanism`."""
+        coordinates: tuple[Coordinate, ...] = ()
+        cell: tuple[Strut, ...] = ()
+        lower = GROUND
+        if self.cell_bandwidth is not None:
+            omega = 2.0 * math.pi * self.cell_bandwidth
+            coordinates, lower = (Coordinate("load_cell", _CELL / omega**2),), _ON_CELL
+            damping = math.sqrt(2.0) * _CELL / omega
+            mount = Spring(_CELL, name="reading") | Damper(damping, name="load_cell_damping")
+            cell = (Strut("load_cell_mount", mount, upper=_ON_CELL, lower=GROUND),)
         return Mechanism(
-            coordinates=(),
-            struts=(Strut("device", self.device, upper={"displacement": 1.0}, lower=GROUND),),
+            coordinates=coordinates,
+            struts=(Strut("device", self.device, upper={"displacement": 1.0}, lower=lower), *cell),
             roads=(RoadInput("displacement"),),
         )
+
+    @property
+    def reading(self) -> str:
+        """The output that the load cell reads."""
+        return "device_force" if self.cell_bandwidth is None else "reading_force"
 
     def free_values(self) -> dict[str, Free]:
         """The design variables by name, in the order in which they appear."""

@@ -151,7 +151,8 @@ def _table(motion: Motion) -> InputTable:
 
 def _signal(motion: Motion) -> Signal:
     time = motion.time - motion.time[0]
-    return Signal.sampled(time, motion.displacement, derivative=motion.velocity, label="measured displacement")
+    height = motion.displacement - motion.displacement[0]  # where the table stands at the start does not matter
+    return Signal.sampled(time, height, derivative=motion.velocity, label="measured displacement")
 
 
 def _shortened(table: InputTable, segments: int) -> InputTable:

@@ -19,7 +19,7 @@ from inerter.identification.guess import chain_of, guess_of, sign_of
 from inerter.identification.intervals import Optimum, Profile, optimum_of, profiles, steps_of
 from inerter.identification.noise import plain, whitening_of
 from inerter.identification.problem import Problem
-from inerter.identification.search import POINTS, search
+from inerter.identification.search import POINTS, search, soft
 from inerter.identification.space import DELAY, GAIN, Space, space_of
 from inerter.identification.telling import suggestions, told
 from inerter.networks.elements import Gap, Network
@@ -32,6 +32,7 @@ Matrix = NDArray[np.float64]
 LONGEST_DELAY = 0.02  # [s] that is looked for when a delay is free
 _ROUGH = 0.003  # of the r.m.s. force: what a residual counts as until the errors are known
 _ROUNDS = 3
+_ATTEMPTS, _FINE = 3, 10.0  # searches at most, and the whitened residual (its last tenth) that needs no further one
 _ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
 _LAGS = 20
 _INDEPENDENT = 1e-3  # p-value below which residuals still hang together
@@ -86,7 +87,7 @@ def identify(
             plain(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
         ]
         guess = {} if chain is None else guess_of(chain, list(problem.experiments))
-        point, costs = search(problem, guess, seed, starts, _part(progress, 0.0, 0.6))
+        point, costs = _searched(problem, guess, seed, starts, _part(progress, 0.0, 0.6))
         problem.experiments, leads = _leads(problem, point, lead)
         optimum = scattered(problem, _refined(problem, point), seed)
         if progress is not None:
@@ -96,6 +97,24 @@ def identify(
         if progress is not None:
             progress(1.0)
         return _fit(problem, optimum, found, experiments, leads, tuple(costs), tuple(notes), seed)
+
+
+def _searched(
+    problem: Problem,
+    guess: Mapping[str, tuple[float, float]],
+    seed: int,
+    starts: int,
+    progress: Callable[[float], None] | None,
+) -> tuple[Matrix, list[float]]:
+    """The best of a search, or of further ones with more points while even the best leaves more than noise."""
+    found: list[tuple[Matrix, list[float]]] = []
+    kept = np.concatenate([e.kept for e in problem.experiments])
+    for attempt in range(_ATTEMPTS):
+        found.append(search(problem, guess, seed + attempt, starts * (1 + attempt), progress))
+        point, costs = min(found, key=lambda f: soft(problem.residual(f[0])))
+        if np.quantile(np.abs(problem.residual(point)[kept]), 0.9) < _FINE:
+            break
+    return point, costs
 
 
 def _checked(records: Record | Sequence[Record], model: Network, check: float, starts: int) -> tuple[list[Record], Rig]:

@@ -90,7 +90,11 @@ class VirtualRig:
         step = interval / parts
         steps = (first + count - 1) * parts
         position, velocity = self._moved(command.grid(0.0, step, steps + 1)[0], step)
-        table = Signal.sampled(step * np.arange(steps + 1), position, derivative=velocity, label=command.label)
+        time, moved = (
+            step * np.arange(steps + 1),
+            position - position[0],
+        )  # the device is at rest where the table starts
+        table = Signal.sampled(time, moved, derivative=velocity, label=command.label)
         rig = Rig(self.device, self.force_bandwidth)
         run = simulate(rig, displacement=table, duration=steps * step, step=step)
         if not run.status.ok:

@@ -6,6 +6,7 @@ from strategies import random_stable
 
 from inerter import LinearSystem, frequency_response
 from inerter.errors import LinearSystemError
+from inerter.norms.response import modal_response
 
 
 @pytest.mark.parametrize("order", [1, 4, 11, 40])
@@ -52,6 +53,26 @@ def test_arrivals_of_one_source_are_one_column_with_their_delays():
     lag = 1.0 / (1.0 + 1j * omega)
     expected = np.column_stack([lag * (1.0 + 2.0 * np.exp(-0.3j * omega)), 5.0 * lag * np.exp(-0.1j * omega)])
     np.testing.assert_allclose(frequency_response(system, omega)[:, 0], expected, rtol=1e-12)
+
+
+def oscillator(damping):
+    """An oscillator; at damping 2 its eigenvalue is double, with one eigenvector."""
+    return LinearSystem([[0.0, 1.0], [-1.0, -damping]], [[0.0], [1.0]], [[1.0, 0.0], [0.0, 1.0]], [[0.0], [0.5]])
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        *(random_stable(np.random.default_rng(order), order, 2, 2, 1e-2) for order in (1, 4, 11)),
+        *(oscillator(damping) for damping in (1e-6, 0.3, 2.0, 2.0 + 1e-9, 2.0 - 1e-6)),
+        LinearSystem([[-1.0, 1e3], [0.0, -1.0]], np.eye(2), np.eye(2), np.zeros((2, 2)), delays=[0.0, 0.3]),
+        LinearSystem([[-1.0]], [[1.0, 2.0]], [[1.0]], [[0.0, 0.0]], delays=[0.0, 0.3], sources=("z", "z")),
+    ],
+)
+def test_the_sum_over_modes_is_the_response(system):
+    omega = np.linspace(0.1, 30.0, 3000)
+    exact, found = frequency_response(system, omega), modal_response(system, omega)
+    assert np.all(np.abs(found - exact).max(axis=0) <= 1e-11 * np.abs(exact).max(axis=0))
 
 
 @pytest.mark.parametrize("omega", [[np.nan], [np.inf], [[1.0, 2.0]]])

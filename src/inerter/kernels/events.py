@@ -10,7 +10,7 @@ from numba import float64, int64, types
 from inerter.kernels import compiled, compiling_beside, part, typed
 from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
 from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at
-from inerter.kernels.march import SIGNATURE
+from inerter.kernels.march import TYPE
 
 Array = Any
 DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(8)
@@ -610,7 +610,7 @@ _tuple: Any = types.NamedTuple
 integrate = compiled(  # now, while another process compiles the kernels of modes
     integrate,
     types.int64(
-        types.FunctionType(SIGNATURE),
+        TYPE,
         _TABLES,
         _tuple((_TABLE, _INT_TABLE, _INTS, *_MECHANICS, *_MODES), Work),
         _tuple((_FLOATS, _TABLE, _TABLE, _TABLE, _TABLE, *_HISTORY, _TABLE, _TABLE), Record),

@@ -192,7 +192,36 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
                         near[count] = omega
                         count += 1
         found = np.concatenate((found, near[:count]))
-    return np.sort(found[found >= floor])
+    grid, count = np.empty(found.size), 0
+    for omega in found:  # by insertion: the library's sort would take seconds to compile
+        if omega >= floor:
+            at = count
+            while at > 0 and grid[at - 1] > omega:
+                grid[at] = grid[at - 1]
+                at -= 1
+            grid[at] = omega
+            count += 1
+    return grid[:count]
+
+
+@part()
+def merged(grid: Array, values: Array, points: Array, new: Array) -> Any:
+    """Points in order with their values, from two such lists; of neighbours of equal value the first.
+
+    Or a top between two of them would be lost.
+    """
+    omegas, heights = np.empty(grid.size + points.size), np.empty(grid.size + points.size)
+    i, count = 0, 0
+    for j in range(points.size + 1):
+        while i < grid.size and (j == points.size or grid[i] <= points[j]):
+            if count == 0 or abs(values[i] - heights[count - 1]) > 1e-12 * values[i]:
+                omegas[count], heights[count] = grid[i], values[i]
+                count += 1
+            i += 1
+        if j < points.size and (count == 0 or abs(new[j] - heights[count - 1]) > 1e-12 * new[j]):
+            omegas[count], heights[count] = points[j], new[j]
+            count += 1
+    return omegas[:count].copy(), heights[:count].copy()
 
 
 @part()
@@ -255,15 +284,7 @@ def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude
         for k in range(points.size):
             new[k], settled = gain_at(system, points[k], limit, amplitude, reference, G)
             fine = fine and settled
-        both, heights = np.concatenate((grid, points)), np.concatenate((values, new))
-        order = np.argsort(both)
-        both, heights = both[order], heights[order]
-        count = 0
-        for k in range(both.size):  # points of equal gain count once, or a top between two of them would be lost
-            if count == 0 or abs(heights[k] - heights[count - 1]) > 1e-12 * heights[k]:
-                both[count], heights[count] = both[k], heights[k]
-                count += 1
-        grid, values = both[:count].copy(), heights[:count].copy()
+        grid, values = merged(grid, values, points, new)
         points = finer(grid, values)
         if points.size == 0:
             break

@@ -7,6 +7,7 @@ from typing import Any
 
 from numba import types
 from numba.experimental import function_type
+from numba.extending import typeof_impl
 
 from inerter.kernels import compiled
 from inerter.kernels.arrays import SHARP
@@ -33,6 +34,8 @@ SIGNATURE = types.int64(
     types.int64,  # first segment whose squares count
 )
 
+TYPE: Any = types.FunctionType(SIGNATURE)
+
 
 class March(types.WrapperAddressProtocol):
     """A march as an argument of other compiled code, which so need not be compiled anew for each."""
@@ -47,6 +50,11 @@ class March(types.WrapperAddressProtocol):
 
     def signature(self) -> Any:
         return SIGNATURE
+
+
+@typeof_impl.register(March)
+def _type_of(march: March, context: object) -> Any:
+    return TYPE  # the compiler would make it anew at each call, which takes longer than a short integration
 
 
 def padded(rows: int) -> int:

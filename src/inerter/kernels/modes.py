@@ -445,21 +445,21 @@ def exponential(X: Array) -> Array:
     second = product(scaled, scaled)
     third, fourth = product(second, scaled), product(second, second)
     factorial = 20922789888000.0  # 16!, and 0.5^17 / 17! is below rounding
-    total = np.zeros((n, n))
-    add(total, 0, 0, fourth, 1.0 / factorial)
+    power = np.zeros((n, n))
+    add(power, 0, 0, fourth, 1.0 / factorial)
     for k in range(12, -1, -4):  # Horner's rule in powers of four: six products, not sixteen
         if k < 12:
-            total = product(fourth, total)
+            power = product(fourth, power)
         low = factorial / ((k + 4.0) * (k + 3.0) * (k + 2.0) * (k + 1.0))
         factorial = low
         for i in range(n):
-            total[i, i] += 1.0 / low
+            power[i, i] += 1.0 / low
             for j in range(n):
                 at_two = scaled[i, j] + second[i, j] / (k + 2.0) + third[i, j] / ((k + 2.0) * (k + 3.0))
-                total[i, j] += at_two / (low * (k + 1.0))
+                power[i, j] += at_two / (low * (k + 1.0))
     for _ in range(squarings):
-        total = product(total, total)
-    return total
+        power = product(power, power)
+    return power
 
 
 @part("void(float64[:,::1], int64, int64, int64, int64[::1], float64, float64[:,::1])", apart=True)

@@ -25,7 +25,7 @@ from inerter.methods.realisations import Drive, check_drive, drive, realisation_
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.h2 import h2
-from inerter.norms.response import frequency_response
+from inerter.norms.response import modal_response
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.cars import Vehicle
@@ -247,7 +247,7 @@ def _beyond(linear: LinearProblem, way: Drive) -> tuple[Array | None, Status]:
         return None, whole.status
     lines = way.signal(0)
     omega = 2.0 * np.pi * lines.frequencies
-    gains = np.abs(frequency_response(system, omega, linear.pade_order)[:, :, 0]) ** 2
+    gains = np.abs(modal_response(system, omega, linear.pade_order)[:, :, 0]) ** 2
     inside = 0.5 * (omega * lines.amplitudes) ** 2 @ gains
     power = (way.road.velocity_intensity * whole.outputs) ** 2
     rest = np.asarray(power - inside)

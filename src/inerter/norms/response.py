@@ -14,6 +14,7 @@ from inerter.systems.linear import LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+_MODAL = 1e-12  # of the largest value: what a sum over modes may be off by where it is compared
 _MOST_ENTRIES = 4_000_000  # of all matrices that are solved at once
 
 
@@ -26,6 +27,19 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
 
     Raises `LinearSystemError` unless omega holds finite numbers.
     """
+    return _response(system, omega, pade_order, resolvent)
+
+
+def modal_response(system: LinearSystem, omega: ArrayLike, pade_order: int | None = None) -> Complex:
+    """As `frequency_response`, to 1e-11 of the largest value, and much quicker for many frequencies.
+
+    A sum over modes; by elimination where eigenvectors are so nearly parallel that it would lose more digits, which is
+    looked at where it would show: at both ends, and at the frequencies next to the poles.
+    """
+    return _response(system, omega, pade_order, _modal)
+
+
+def _response(system: LinearSystem, omega: ArrayLike, pade_order: int | None, resolved: Any) -> Complex:
     check_system(system)
     if pade_order is not None:
         pade(pade_order)  # refuses an order that there is not, even where nothing is late
@@ -35,7 +49,7 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
         raise LinearSystemError(f"A frequency response needs a list of frequencies [rad/s], got {omega!r}.") from None
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies)):
         raise LinearSystemError("A frequency response needs a list of finite frequencies [rad/s].")
-    response = resolvent(system)(frequencies) + system.D
+    response = resolved(system)(frequencies) + system.D
     sources = list(dict.fromkeys(system.sources))
     result = np.zeros((frequencies.size, len(system.outputs), len(sources)), dtype=complex)
     for column, source in enumerate(sources):
@@ -64,6 +78,31 @@ def resolvent(system: LinearSystem) -> Any:
             return np.zeros((omega.size, C.shape[0], B.shape[1]), dtype=complex)
         parts = np.array_split(omega, max(1, omega.size * A.size // _MOST_ENTRIES))
         return np.concatenate([_solve(A, B, C, part) for part in parts])
+
+    return evaluate
+
+
+def _modal(system: LinearSystem) -> Any:
+    """The function of `resolvent`, as a sum over modes where that has enough digits."""
+    exact = resolvent(system)
+    A, scale = balance(system.A)
+    try:
+        poles, vectors = np.linalg.eig(A)
+        excited = np.linalg.solve(vectors, (system.B / scale[:, None]).astype(complex))
+    except np.linalg.LinAlgError:
+        return exact
+    residues = (system.C * scale @ vectors).T[:, :, None] * excited[:, None, :]
+
+    def evaluate(omega: NDArray[np.float64]) -> Complex:
+        if omega.size <= 10 * poles.size or not poles.size:
+            return np.asarray(exact(omega))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.tensordot(1.0 / (1j * omega[:, None] - poles), residues, 1)
+        worst = np.unique([0, omega.size - 1, *np.argmin(np.abs(1j * omega[:, None] - poles), axis=0)])
+        known = exact(omega[worst])
+        with np.errstate(invalid="ignore"):
+            close = np.abs(found[worst] - known).max(axis=0) <= _MODAL * np.abs(known).max(axis=0)
+        return np.asarray(found if np.all(close) else exact(omega))
 
     return evaluate
 

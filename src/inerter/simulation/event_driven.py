@@ -191,7 +191,7 @@ def start(
         states=np.empty((samples, n)),
         visited=np.zeros(samples, np.int64),
         sums=np.zeros((2, len(outputs))),
-        events=np.empty((256, 4)),
+        events=np.empty((1024, 4)),
         branch_road=np.array([b.roads for b in branches]).reshape(len(branches), roads),
         gauss=np.array([0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS]),
     )

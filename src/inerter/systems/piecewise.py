@@ -201,6 +201,8 @@ def _weighted(graph: Graph, kind: type[Element], left: Matrix, right: Matrix) ->
 def _felt(damping: Matrix, na: int) -> Matrix:
     """Damping between inertias and roads once the massless motions between them have given way."""
     nv = damping.shape[0]
+    if na == nv:
+        return damping[:, nv:]
     return damping[:na, nv:] - damping[:na, na:nv] @ np.linalg.pinv(damping[na:, na:nv]) @ damping[na:, nv:]
 
 

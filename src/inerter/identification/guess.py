@@ -76,8 +76,7 @@ def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[flo
     """Values of the free elements by name, each with the half-width of the range in which to look for it."""
     best: dict[str, tuple[float, float]] = {}
     for experiment in experiments:
-        values = _solved(chain, experiment)
-        for element, value, width in values:
+        for element, value, width in _solved(chain, experiment):
             if element is None or not isinstance(element.value, Free) or element.value.name is None:
                 continue
             name = element.value.name
@@ -110,7 +109,7 @@ def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, li
 def _solved(chain: Chain, experiment: Experiment) -> list[tuple[Element | None, float, float]]:
     h, motion = experiment.record.interval, experiment.motion
     z, v, F = motion.displacement, motion.velocity, experiment.record.force
-    w = 2.0 * max(float(np.std(motion.acceleration) / max(np.std(v), 1e-30)), 1.2)
+    w = 2.0 * max(float(np.std(motion.acceleration)) / max(float(np.std(v)), 1e-30), 1.2)
     first = min(int(6.0 / (w * h)) + 1, z.size // 2)
     use = experiment.kept.copy()
     use[:first] = False

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -316,7 +317,7 @@ def _criterion(problem: Problem, optimum: Optimum) -> float:
     """Schwarz's criterion: -2 log likelihood of the whitened residuals, plus log(samples) for each unknown."""
     n = optimum.samples
     logs = sum(float(np.sum(np.log(w.weight[w.weight > 0.0]))) for w in problem.whitenings)
-    return n * float(np.log(max(optimum.variance, 1e-300))) - 2.0 * logs + np.log(n) * optimum.point.size
+    return n * math.log(max(optimum.variance, 1e-300)) - 2.0 * logs + math.log(n) * optimum.point.size
 
 
 def _correlation(covariance: Matrix) -> Matrix:

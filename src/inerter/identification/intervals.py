@@ -50,7 +50,7 @@ def optimum_of(problem: Problem, start: Matrix, steps: Matrix | None = None, eva
     samples = sum(int((w.weight > 0.0).sum()) for w in problem.whitenings)
     variance = 2.0 * cost / max(samples - point.size, 1)
     information = jacobian.T @ jacobian
-    covariance = np.linalg.pinv(information, rcond=1e-14, hermitian=True) * variance
+    covariance = np.asarray(np.linalg.pinv(information, rcond=1e-14, hermitian=True) * variance)
     return Optimum(
         point, cost, residual, jacobian, variance, covariance, _widening(jacobian, residual, variance), samples
     )
@@ -93,8 +93,8 @@ class Profile:
 
     def moved(self, by: float) -> Profile:
         """The same profile elsewhere; ends at the bounds of the search stay there."""
-        ends = (replace(side, end=side.end + by) if side.told else side for side in (self.lower, self.upper))
-        return Profile(*ends, tuple((x + by, rise) for x, rise in self.points), self.better)
+        lower, upper = (replace(side, end=side.end + by) if side.told else side for side in (self.lower, self.upper))
+        return Profile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
 
 def profiles(problem: Problem, optimum: Optimum) -> list[Profile]:
@@ -105,7 +105,7 @@ def profiles(problem: Problem, optimum: Optimum) -> list[Profile]:
     for i in range(optimum.point.size):
         (below, points, better), (above, more, other) = found[2 * i], found[2 * i + 1]
         best = min((b for b in (better, other) if b is not None), key=lambda b: b[0], default=None)
-        result.append(Profile(below, above, tuple(sorted(points + [(float(optimum.point[i]), 0.0)] + more)), best))
+        result.append(Profile(below, above, tuple(sorted([*points, (float(optimum.point[i]), 0.0), *more])), best))
     return result
 
 

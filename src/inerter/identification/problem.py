@@ -39,7 +39,7 @@ class Problem:
     pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(os.cpu_count() or 1))
 
     def system(self, coordinates: Matrix, record: Record) -> PiecewiseSystem | None:
-        """The rig with these values and the load cell of a record; None where a device like that cannot be simulated."""
+        """The rig with these values and a record's load cell; None where such a device cannot be simulated."""
         values = {n: v for n, v in self.space.named(coordinates).items() if n not in (GAIN, DELAY)}
         layout = (record.force_bandwidth, *(value == 0.0 for value in values.values()))
         try:
@@ -122,6 +122,7 @@ def _labelled(rig: Rig) -> Rig:
     """The same rig with every free element named as its value is."""
 
     def label(element: Element) -> Network:
-        return replace(element, name=element.value.name) if isinstance(element.value, Free) else element
+        value = element.value
+        return type(element)(value, value.name) if isinstance(value, Free) else element  # type: ignore[call-arg]
 
     return Rig(map_elements(rig.device, label))

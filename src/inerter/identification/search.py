@@ -82,10 +82,14 @@ def improve(
     space = problem.space
     lower, upper = space.bounds
     widths = np.full(start.size, STEP) if steps is None else steps
+
+    def derivatives(point: Matrix) -> Matrix:
+        return problem.jacobian(point, widths)
+
     result = least_squares(
         problem.residual,
         np.clip(start, lower, upper),
-        jac=lambda x: problem.jacobian(x, widths),  # type: ignore[arg-type]
+        jac=derivatives,
         bounds=(lower - 1e-12, upper + 1e-12),
         x_scale="jac",
         loss="soft_l1",

@@ -72,7 +72,7 @@ class Space:
 
 
 def space_of(rig: Rig, gain: bool, delay: float) -> Space:
-    """The free values of a device and, if they are wanted, the gain and the delay (up to `delay` [s]) of its sensors."""
+    """The free values of a device and, if wanted, the gain and the delay (up to `delay` [s]) of its sensors."""
     elements: dict[str, Element] = {}
     for element in rig.device.elements():
         if isinstance(element.value, Free) and element.value.name is not None:

@@ -36,16 +36,12 @@ def told(
         wide = parameter.interval[1] > _WIDE * parameter.interval[0]
         how = f"; only its order of magnitude, {low} to {high}" if wide else ""
         return Told(True, f"{name}: told{how}.")
+    cause = _cause(kind, comparisons)
     if not below and not above:
-        return Told(
-            False,
-            f"{name}: cannot be told: any value within its bounds explains the records as well. {_cause(kind, comparisons)}",
-        )
+        return Told(False, f"{name}: cannot be told: any value within its bounds explains the records as well. {cause}")
     if above:
-        return Told(False, f"{name}: cannot be told from {least} below {high}. {_cause(kind, comparisons)}")
-    return Told(
-        False, f"{name}: at least {low}; larger values cannot be told from each other. {_cause(kind, comparisons)}"
-    )
+        return Told(False, f"{name}: cannot be told from {least} below {high}. {cause}")
+    return Told(False, f"{name}: at least {low}; larger values cannot be told from each other. {cause}")
 
 
 def _cause(kind: type[Element] | None, comparisons: Sequence[Comparison]) -> str:
@@ -85,7 +81,8 @@ def suggestions(
         if issubclass(kind, Gap):
             yield (
                 f"{name}: a faster motion in which the force reverses often (now up to {fastest:.3g} Hz and "
-                f"{peak:.3g} N{room}), sampled so that crossing {format_quantity(2.0 * upper, 'm')} takes several samples."
+                f"{peak:.3g} N{room}), sampled so that crossing {format_quantity(2.0 * upper, 'm')} takes several "
+                f"samples."
             )
         elif issubclass(kind, Friction):
             slow = format_quantity(max(travel, 1e-3), "m")

@@ -116,7 +116,7 @@ class VirtualRig:
         load = sign * self.force_gain * force + self.force_offset + self.force_noise * random.standard_normal(count)
         load = np.clip(_rounded(load, self.force_resolution), -self.force_range, self.force_range)
         return Record(
-            time=interval * np.arange(count),
+            time=np.asarray(interval * np.arange(count, dtype=np.float64)),
             displacement=position,
             force=load,
             source=f"virtual rig, {command.label}, seed {self.seed}",

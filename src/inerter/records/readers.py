@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,8 +91,9 @@ def read_record(
         "units": {role: units.get(role, channel.unit) for role, channel in chosen.items()},
         **({"filled": filled} if filled else {}),
     }
+    values: dict[str, Any] = {role: samples.values for role, samples in channels.items()}
     return Record(
-        **{role: samples.values for role, samples in channels.items()},
+        **values,
         source=source,
         notes=(*contents.notes, *notes, *more, *mended),
         force_range=force_range,

@@ -26,7 +26,7 @@ _PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
     "N/m": ((1e6, "MN/m"), (1e3, "kN/m"), (1.0, "N/m")),
     "N s/m": ((1e6, "MN s/m"), (1e3, "kN s/m"), (1.0, "N s/m")),
     "N": ((1e6, "MN"), (1e3, "kN"), (1.0, "N")),
-    "m": ((1.0, "m"), (1e-3, "mm"), (1e-6, "um")),
+    "m": ((1.0, "m"), (1e-3, "mm")),
     "m/N": ((1.0, "m/N"), (1e-3, "mm/N"), (1e-6, "um/N")),
 }
 
@@ -78,6 +78,8 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     if rounded == 0.0 or not math.isfinite(rounded):
         return f"{rounded:g} {unit}"
     choices = _PREFIXES.get(unit, ((1.0, unit),))
+    if unit == "m" and abs(rounded) < 1e-5:  # 0.1 mm is a gap, 5 um a bearing's play
+        choices = ((1e-6, "um"),)
     scale, name = next((choice for choice in choices if abs(rounded) >= choice[0]), choices[-1])
     return f"{rounded / scale:.12g} {name}"
 

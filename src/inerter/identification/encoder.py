@@ -1,8 +1,9 @@
 """What the sensors' own errors do to the estimates: how far they scatter them, and how far they move them.
 
 **Scatter.** An encoder reads in steps. Near the turning points of a motion that repeats, its rounding is the same
-each time and averages out no more than the motion does, so the residuals do not tell what it did to the estimates.
-Its errors, and those of the load cell, are therefore drawn anew and followed to the estimates, linearised.
+each time and does not average out, so the residuals do not tell what it did to the estimates. Its errors, and those
+of the load cell, are therefore drawn anew along the motion as it was measured and followed to the estimates,
+linearised: their mean is taken away, and their spread is the least that an interval has.
 
 **Lean.** The noise that the smoothed displacement still has passes through the model into its force, so values that
 let less of it through seem to fit better. How far this leads is found by adding as much noise again and seeing how
@@ -29,8 +30,12 @@ DRAWS, PAIRS = 40, 4
 _HARMONICS = 60  # of a motion that repeats, at most
 
 
-def scattered(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS) -> Optimum:
-    """The same optimum with intervals at least as wide as the errors of the sensors make them."""
+def scattered(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS) -> tuple[Optimum, Matrix]:
+    """The same optimum with intervals at least as wide as the errors of the sensors make them, and their mean effect.
+
+    That is how far, in coordinates, the rounding of the encoder moves the best fit each time, at most two standard
+    errors. Half of it counts as scatter, because it is known no better.
+    """
     random = np.random.default_rng([seed, 2])
     gain = optimum.covariance / optimum.variance @ optimum.jacobian.T
     before = problem.residual(optimum.point)
@@ -40,13 +45,16 @@ def scattered(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS)
         residual = replace(problem, experiments=disturbances).residual(optimum.point)
         white = [w(f) for w, (_, f) in zip(problem.whitenings, errors, strict=True)]
         change = np.clip(residual - before, -ROBUST, ROBUST) - np.concatenate(white)
-        return np.asarray(gain @ change)
+        return np.asarray(-gain @ change)
 
     errors = [[_errors(e, random) for e in problem.experiments] for _ in range(draws)]
     steps = np.array(list(problem.pool.map(moved, errors)))
     problem.simulations += draws * len(problem.experiments)
-    ratio = np.mean(steps**2, axis=0) / np.maximum(np.diag(optimum.covariance), 1e-300)
-    return replace(optimum, widening=np.maximum(optimum.widening, np.clip(ratio, 1.0, 1e4)))
+    mean = np.mean(steps, axis=0)
+    square = np.var(steps, axis=0, ddof=1) + (0.5 * mean) ** 2
+    ratio = square / np.maximum(np.diag(optimum.covariance), 1e-300)
+    wider = replace(optimum, widening=np.maximum(optimum.widening, np.clip(ratio, 1.0, 1e4)))
+    return wider, np.asarray(np.clip(mean, -2.0 * wider.errors, 2.0 * wider.errors))
 
 
 def lean(problem: Problem, optimum: Optimum, seed: int, pairs: int = PAIRS) -> Matrix:
@@ -77,10 +85,10 @@ def _errors(experiment: Experiment, random: np.random.Generator) -> tuple[Matrix
     step = resolution(record.displacement)
     taken = float(np.std((record.displacement - motion.displacement)[experiment.kept]))
     noise = taken / math.sqrt(1.0 - min(2.0 * motion.bandwidth * record.interval, 0.8))
-    shifted = _repeated(experiment) + step * random.uniform(-0.5, 0.5)
-    read = shifted + math.sqrt(max(noise**2 - step**2 / 12.0, 0.0)) * random.standard_normal(shifted.size)
+    moved = _repeated(experiment)
+    read = moved + math.sqrt(max(noise**2 - step**2 / 12.0, 0.0)) * random.standard_normal(moved.size)
     rounded = step * np.rint(read / step) if step > 0.0 else read
-    return rounded - shifted, experiment.noise * random.standard_normal(shifted.size)
+    return rounded - moved, experiment.noise * random.standard_normal(moved.size)
 
 
 def _repeated(experiment: Experiment) -> Matrix:

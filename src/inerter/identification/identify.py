@@ -90,11 +90,11 @@ def identify(
         guess = {} if chain is None else guess_of(chain, list(problem.experiments))
         point, costs = _searched(problem, guess, seed, starts, _part(progress, 0.0, 0.6))
         problem.experiments, leads = _leads(problem, point, lead)
-        optimum = scattered(problem, _refined(problem, point), seed)
+        optimum, rounding = scattered(problem, _refined(problem, point), seed)
         if progress is not None:
             progress(0.7)
         optimum, found = _profiled(problem, optimum)
-        optimum, found = _straightened(problem, optimum, found, seed)
+        optimum, found = _straightened(problem, optimum, found, rounding + lean(problem, optimum, seed))
         if progress is not None:
             progress(1.0)
         return _fit(problem, optimum, found, experiments, leads, tuple(costs), tuple(notes), seed)
@@ -205,11 +205,11 @@ def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile
 
 
 def _straightened(
-    problem: Problem, optimum: Optimum, found: Sequence[Profile], seed: int
+    problem: Problem, optimum: Optimum, found: Sequence[Profile], lean_by: Matrix
 ) -> tuple[Optimum, list[Profile]]:
-    """The best fit and its profiles without the lean that the encoder's noise gave them."""
+    """The best fit and its profiles without what the sensors' errors did to them."""
     lower, upper = problem.space.bounds
-    point = np.clip(optimum.point - lean(problem, optimum, seed), lower, upper)
+    point = np.clip(optimum.point - lean_by, lower, upper)
     by = point - optimum.point
     return replace(optimum, point=point), [p.moved(float(d)) for p, d in zip(found, by, strict=True)]
 
@@ -279,7 +279,8 @@ def _comparisons(
     ):
         system = problem.system(optimum.point, e.record)
         run = None if system is None else e.run(system, values.get(DELAY, 0.0))
-        assert system is not None and run is not None
+        assert system is not None
+        assert run is not None
         model = values.get(GAIN, 1.0) * run[reading_of(e.record)] + offset
         white = residuals[first : first + e.size][w.weight > 0.0]
         first += e.size
@@ -299,7 +300,7 @@ def _comparisons(
                 lead=lead,
                 whiteness=ljung_box(white),
                 openings=openings,
-            )  # fmt: skip
+            )
         )
     return tuple(result)
 

@@ -17,7 +17,9 @@ def device(**changes: float) -> it.Network:
     return it.Rig(BALL_SCREW).with_values({**PAPER, **changes}).device
 
 
-def fit_test(seed: int = 0, duration: float = 5.0, sensors: dict[str, object] | None = None, **changes: float) -> it.Record:
+def fit_test(
+    seed: int = 0, duration: float = 5.0, sensors: dict[str, object] | None = None, **changes: float
+) -> it.Record:
     """The fit test of the paper: a cosine of 1 mm at 3 Hz."""
     rig = it.VirtualRig(device(**changes), seed=seed, **(sensors or {}))
     return rig.run(it.cosine(amplitude=1e-3, frequency=3.0), duration=duration)

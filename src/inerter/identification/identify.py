@@ -111,7 +111,7 @@ def _searched(
     found: list[tuple[Matrix, list[float]]] = []
     kept = np.concatenate([e.kept for e in problem.experiments])
     for attempt in range(_ATTEMPTS):
-        found.append(search(problem, guess, seed + attempt, starts * (1 + attempt), progress))
+        found.append(search(problem, guess, seed + attempt, starts << attempt, progress))
         point, costs = min(found, key=lambda f: soft(problem.residual(f[0])))
         if np.quantile(np.abs(problem.residual(point)[kept]), 0.9) < _FINE:
             break

@@ -49,7 +49,7 @@ def starts(problem: Problem, guess: Mapping[str, tuple[float, float]], seed: int
     """Points of a Sobol sequence: half of them around the guess, if there is one, and a quarter without backlash."""
     space = problem.space
     lower, upper = space.bounds
-    draws = qmc.Sobol(len(space.names), seed=seed).random(count)
+    draws = qmc.Sobol(len(space.names), seed=seed).random(1 << (count - 1).bit_length())[:count]
     result = []
     for n, draw in enumerate(draws):
         point = lower + draw * (upper - lower)

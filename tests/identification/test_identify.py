@@ -1,0 +1,186 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rigs import BALL_SCREW, PAPER, device, fit_test
+
+import inerter as it
+from inerter.identification.experiment import experiment_of, reading_of
+from inerter.identification.guess import chain_of, guess_of
+from inerter.identification.identify import ljung_box
+from inerter.identification.noise import whitening_of
+from inerter.identification.space import space_of
+from inerter.systems.piecewise import piecewise
+
+QUIET = {"encoder_noise": 0.0, "encoder_resolution": 0.0, "force_noise": 0.0, "force_resolution": 0.0}
+
+
+@pytest.fixture(scope="module")
+def paper() -> it.Fit:
+    return it.identify([fit_test(seed=1)], BALL_SCREW, seed=0)
+
+
+def test_the_experiment_of_the_paper(paper):
+    """Every parameter within 2 % of the truth and inside its interval; no backlash is an upper bound, not a number."""
+    assert paper.status.ok
+    for name in ("ks", "cs", "b", "f"):
+        parameter = paper.parameters[name]
+        assert parameter.value == pytest.approx(PAPER[name], rel=0.02)
+        assert parameter.interval[0] <= PAPER[name] <= parameter.interval[1]
+        assert paper.identifiable[name]
+    gap = paper.parameters["gap"]
+    assert math.isnan(gap.value)
+    assert gap.interval[0] == 0.0
+    assert gap.interval[1] < 1e-6
+    assert not paper.identifiable["gap"]
+    assert "cannot be told from 0 m below" in paper.identifiable["gap"].sentence
+    assert any(sentence.startswith("gap:") for sentence in paper.next_experiment)
+
+
+def test_what_a_fit_says_of_itself(paper):
+    comparison = paper.comparisons[0]
+    assert comparison.explained() > 0.999
+    assert comparison.explained(check=True) > 0.999
+    assert comparison.rms() < 0.3
+    assert comparison.whiteness > 1e-3
+    assert paper.correlation.shape == (5, 5)
+    assert np.allclose(np.diag(paper.correlation), 1.0)
+    assert paper.covariance[3, 3] > 0.0
+    assert it.Rig(paper.device).free_values() == {}
+    for parameter in paper.parameters.values():  # profiles touch zero at the best fit and rise to the threshold
+        assert min(rise for _, rise in parameter.profile) == 0.0
+        assert max(rise for _, rise in parameter.profile) > 0.7
+
+
+def test_backlash_is_found_where_it_rattles():
+    fit = it.identify([fit_test(seed=2, gap=1e-4)], BALL_SCREW, seed=0)
+    assert fit.parameters["gap"].value == pytest.approx(1e-4, rel=0.02)
+    assert fit.parameters["b"].value == pytest.approx(113.0, rel=0.02)
+    assert fit.comparisons[0].openings == {"gap": fit.comparisons[0].openings["gap"]}
+    assert fit.comparisons[0].openings["gap"] > 20
+
+
+def test_two_records_share_parameters_and_have_their_own_offsets():
+    """One record tells the friction, the other the rest; the load cell is set to zero anew for each."""
+    model = (it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100, 2e4, name="cs"))) - (
+        it.Inerter(it.free(10, 500, name="b")) | it.Friction(it.free(0, 100, name="f"))
+    )
+    first = fit_test(seed=3, duration=3.0, sensors={"force_offset": 4.0})
+    slow = it.VirtualRig(device(), seed=4, force_offset=-2.5).run(it.cosine(amplitude=5e-3, frequency=0.5), 4.0)
+    fit = it.identify([first, slow], model, seed=0, starts=32)
+    assert [c.offset for c in fit.comparisons] == pytest.approx([4.0, -2.5], abs=0.02)
+    for name in ("ks", "cs", "b", "f"):
+        assert fit.parameters[name].value == pytest.approx(PAPER[name], rel=0.02)
+
+
+def test_gain_and_delay_of_the_sensor():
+    model = (it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100, 2e4, name="cs"))) - (
+        it.Inerter(113.0) | it.Friction(it.free(0, 100, name="f"))
+    )
+    record = fit_test(seed=5, sensors={"force_gain": 1.05, "force_delay": 0.004})
+    fit = it.identify([record], model, seed=0, gain=True, delay=True, starts=32)
+    assert fit.parameters["sensor gain"].value == pytest.approx(1.05, rel=2e-3)
+    assert fit.parameters["sensor delay"].value == pytest.approx(0.004, abs=2e-4)
+    assert fit.parameters["f"].value == pytest.approx(10.0, rel=0.02)
+
+
+def test_a_reversed_load_cell_is_noticed():
+    turned = it.identify([fit_test(seed=6, sensors={"reversed": True}, duration=3.0)], BALL_SCREW, seed=0, starts=32)
+    assert any("reversed" in note for note in turned.notes)
+    assert turned.parameters["b"].value == pytest.approx(113.0, rel=0.02)
+
+
+def test_a_record_that_begins_in_motion():
+    """The start of the device is then unknown, and is left out for as long as it matters."""
+    rig = it.VirtualRig(device(), seed=7)
+    record = rig.run(it.cosine(amplitude=1e-3, frequency=3.0), duration=5.0, start=0.1)
+    fit = it.identify([record], BALL_SCREW, seed=0, starts=32)
+    assert fit.comparisons[0].lead >= 0.5
+    assert fit.parameters["ks"].value == pytest.approx(1e6, rel=0.02)
+
+
+def test_what_a_record_does_not_tell_gets_no_number():
+    """A slow motion tells the friction; nothing of the inertance but that it is small."""
+    record = it.VirtualRig(device(b=5.0), seed=8).run(it.cosine(amplitude=1e-3, frequency=0.2), duration=6.0)
+    model = (it.Spring(1e6) | it.Damper(3200)) - (
+        it.Inerter(it.free(0.1, 500, name="b")) | it.Friction(it.free(0, 100, name="f"))
+    )
+    fit = it.identify([record], model, seed=0, starts=32)
+    assert fit.parameters["f"].value == pytest.approx(10.0, rel=0.02)
+    if not fit.identifiable["b"]:
+        assert math.isnan(fit.parameters["b"].value)
+    assert fit.parameters["b"].interval[0] <= 5.0 <= fit.parameters["b"].interval[1]
+
+
+def test_a_model_that_is_not_the_device_says_so():
+    record = fit_test(seed=9, duration=3.0)
+    fit = it.identify(
+        [record], it.Spring(it.free(1e3, 1e6, name="k")) | it.Damper(it.free(1, 1e4, name="c")), seed=0, starts=16
+    )
+    assert not fit.status.ok
+    assert "explains" in fit.status.message
+    assert all(math.isnan(p.value) for p in fit.parameters.values())
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-4])
+def test_perfect_sensors_are_predicted_to_rounding(gap):
+    """The model that made a record predicts it: the load cell's filter and the table's motion are the same twice."""
+    record = fit_test(gap=gap, sensors=QUIET)
+    experiment = experiment_of(record, bandwidth=100.0)
+    force = experiment.force(piecewise(it.Rig(device(gap=gap), record.force_bandwidth)))
+    assert reading_of(record) == "reading_force"
+    assert np.abs(force - record.force)[600:4900].max() < 2e-3 * np.abs(record.force).max() / 50.0
+
+
+def test_the_first_guess_needs_no_simulation():
+    experiment = experiment_of(fit_test(seed=3, sensors=QUIET))
+    guess = guess_of(chain_of(it.Rig(BALL_SCREW).device), [experiment])
+    assert guess["b"][0] == pytest.approx(113.0, rel=0.03)
+    assert guess["f"][0] == pytest.approx(10.0, rel=0.1)
+
+
+@given(st.lists(st.floats(1e-3, 1e6), min_size=5, max_size=5))
+@settings(max_examples=30, deadline=None)
+def test_coordinates_and_values_go_both_ways(factors):
+    space = space_of(it.Rig(BALL_SCREW), gain=False, delay=0.0)
+    values = np.clip(np.array(factors), space.lower, space.upper)
+    assert space.to_values(space.to_coordinates(values)) == pytest.approx(values, rel=1e-12)
+
+
+def test_whitened_residuals_are_white():
+    rng = np.random.default_rng(0)
+    colour = np.convolve(rng.standard_normal(6000), [1.0, 0.8, 0.5, 0.2], "same")
+    kept = np.ones(6000, dtype=bool)
+    white = whitening_of(colour, np.zeros(6000), kept, 1e-6)(colour)
+    assert ljung_box(colour) < 1e-6 < 1e-3 < ljung_box(white)
+    assert np.std(white) == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"records": []}, "takes a record"),
+        ({"records": "bench.csv"}, "takes a record"),
+        ({"model": it.Spring(1.0)}, "no free values"),
+        ({"check": 0.9}, "fraction from 0 to 0.6"),
+        ({"starts": 2}, "from 8 on"),
+        ({"delay": -1.0}, "delay"),
+        ({"gain": True}, "cannot be told"),
+        ({"lead": 99.0}, "shorter"),
+    ],
+)
+def test_requests_that_cannot_be(change, sentence):
+    record = fit_test(duration=1.0)
+    given_ = {"records": [record], "model": BALL_SCREW, **change}
+    with pytest.raises(it.InerterError, match=sentence):
+        it.identify(given_.pop("records"), given_.pop("model"), **given_)
+
+
+def test_constant_channels_are_refused():
+    record = fit_test(duration=1.0)
+    for name in ("displacement", "force"):
+        flat = record.noted(**{name: np.full(record.time.size, 2.0)})
+        with pytest.raises(it.InerterError, match="constant"):
+            it.identify([flat], BALL_SCREW)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from inerter.identification.noise import OPTIMISM
 from inerter.identification.problem import Problem
 from inerter.identification.search import improve
 
@@ -48,7 +49,7 @@ def optimum_of(problem: Problem, start: Matrix, steps: Matrix | None = None, eva
     """The best fit near `start`, with differences as wide as the coordinates are uncertain."""
     point, cost, residual, jacobian = improve(problem, start, evaluations, steps, ROBUST)
     samples = sum(int((w.weight > 0.0).sum()) for w in problem.whitenings)
-    variance = 2.0 * cost / max(samples - point.size, 1)
+    variance = OPTIMISM * 2.0 * cost / max(samples - point.size, 1)
     information = jacobian.T @ jacobian
     covariance = np.asarray(np.linalg.pinv(information, rcond=1e-14, hermitian=True) * variance)
     return Optimum(

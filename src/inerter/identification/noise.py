@@ -10,7 +10,8 @@ from scipy.fft import next_fast_len
 
 Matrix = NDArray[np.float64]
 _MAD = 1.4826  # standard deviations in a median absolute deviation
-_BANDS, _LINES = 6, 10  # of the spectrum of residuals: in an octave, and the fewest lines in each
+_BANDS, _LINES = 6, 20  # of the spectrum of residuals: in an octave, and the fewest lines in each
+OPTIMISM = (1.0 + 1.0 / _LINES) ** 2  # by which weights from the residuals themselves make variances too small
 
 
 @dataclass(frozen=True, eq=False)

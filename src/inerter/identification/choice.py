@@ -32,7 +32,7 @@ _PAIRS = (("ideal", "friction"), ("elastic", "elastic-friction"), ("backlash", "
 
 @dataclass(frozen=True)
 class Candidate:
-    """How one candidate predicts the check part; losses are mean squares of residuals whitened alike, about 1 at best."""
+    """How one candidate predicts the check part. A loss is a mean square of whitened residuals, about 1 at best."""
 
     name: str
     unknowns: int
@@ -265,10 +265,10 @@ def _stuck(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iterator[tup
         part = next((p.name for p in ranked if set(fits[p.name].parameters) < mine), None)
         if part is not None and _worse(ranked, c.name, part):
             yield c.name, part
-        beyond = set(fits[best.name].parameters) - mine
-        if mine < set(fits[best.name].parameters) and _worse(ranked, c.name, best.name):
-            if not any(fits[best.name].identifiable[name] for name in beyond):
-                yield c.name, best.name
+        whole = fits[best.name]
+        untold = not any(whole.identifiable[name] for name in set(whole.parameters) - mine)
+        if mine < set(whole.parameters) and untold and _worse(ranked, c.name, best.name):
+            yield c.name, best.name
 
 
 def _worse(ranked: Sequence[Candidate], one: str, other: str) -> bool:

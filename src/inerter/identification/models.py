@@ -18,7 +18,7 @@ _ELEMENTS: dict[str, Network] = {
     "f": Friction(free(0.0, 500.0, name="f")),
     "c": Damper(free(1.0, 2e4, name="c")),
 }
-# the shaft and its play before the inerter, and what is beside it; Wang and Su (2008), Figure 6b, and what it leaves out
+# before the inerter, and beside it: Wang and Su (2008), Figure 6b, and its parts
 _ROWS = {
     "ideal": ("", "b"),
     "friction": ("", "b | f"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -106,19 +107,15 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     widths = quantile * np.sqrt(np.maximum(np.diag(of_slopes), 0.0))
     ends = [(float(s - w), float(s + w)) for s, w in zip(slopes, widths, strict=True)]
     law, sentence = _judged(p, slopes, ends, top, level)
-    return FrictionLaw(
-        law, sentence, level, interval, p, float(slopes[0]), ends[0], float(slopes[1]), ends[1], speeds
-    )
+    return FrictionLaw(law, sentence, level, interval, p, float(slopes[0]), ends[0], float(slopes[1]), ends[1], speeds)
 
 
-def _judged(
-    p: float, slopes: Matrix, ends: list[tuple[float, float]], top: float, level: float
-) -> tuple[Law, str]:
+def _judged(p: float, slopes: Matrix, ends: list[tuple[float, float]], top: float, level: float) -> tuple[Law, str]:
     if p >= SURE:
         unseen = max(abs(end) for end in ends[1])
         return "coulomb", (
-            f"No dependence on speed up to {top:.3g} m/s (p = {p:.2g}); a viscous part of more than {unseen:.3g} N s/m, "
-            f"{unseen * top:.2g} N at that speed, would have shown."
+            f"No dependence on speed up to {top:.3g} m/s (p = {p:.2g}); a viscous part of more than {unseen:.3g} "
+            f"N s/m, {unseen * top:.2g} N at that speed, would have shown."
         )
     if ends[0][1] < 0.0:
         return "stribeck", (
@@ -137,7 +134,10 @@ def _judged(
 
 
 def _untold(
-    why: str, level: float = math.nan, interval: tuple[float, float] = (0.0, math.inf), speeds: tuple[float, float] = (0.0, 0.0)
+    why: str,
+    level: float = math.nan,
+    interval: tuple[float, float] = (0.0, math.inf),
+    speeds: tuple[float, float] = (0.0, 0.0),
 ) -> FrictionLaw:
     nothing = (-math.inf, math.inf)
     sentence = f"The law of friction cannot be told: {why}."
@@ -182,17 +182,17 @@ def _turned(motion: Motion) -> NDArray[np.bool_]:
 
 
 def _wound(motion: Motion, force: Matrix, level: float) -> NDArray[np.bool_]:
-    """Samples at which the shaft is wound up: in each stroke, beyond the travel in which the force gets to its level."""
+    """Samples at which the shaft is wound up: in each stroke, beyond the travel that brings the force to its level."""
     direction = np.sign(motion.velocity)
     edges = [0, *(np.flatnonzero(np.diff(direction)) + 1).tolist(), direction.size]
     travels = []
-    for start, stop in zip(edges[:-1], edges[1:], strict=True):
+    for start, stop in pairwise(edges):
         travel = np.abs(motion.displacement[start:stop] - motion.displacement[start])
         reached = np.flatnonzero(direction[start:stop] * force[start:stop] >= _REACHED * level)
         if reached.size and stop - start > 8:
             travels.append(float(travel[reached[0]]))
     needed = _WOUND * float(np.median(travels)) if travels else math.inf
     use = np.zeros(direction.size, dtype=bool)
-    for start, stop in zip(edges[:-1], edges[1:], strict=True):
+    for start, stop in pairwise(edges):
         use[start:stop] = np.abs(motion.displacement[start:stop] - motion.displacement[start]) > needed
     return use

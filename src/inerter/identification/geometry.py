@@ -9,7 +9,7 @@ from inerter.errors import IdentificationError
 
 
 def ball_screw_inertance(flywheel_inertia: float, pitch: float) -> float:
-    """b = I (2 pi / p)^2 [kg] of a ball screw: flywheel and screw of inertia I [kg m^2], pitch p [m] a turn.
+    """Inertance b = I (2 pi / p)^2 [kg] of a ball screw: flywheel and screw of inertia I [kg m^2], pitch p [m] a turn.
 
     A turn of the screw moves the nut by p, so the flywheel turns by 2 pi / p a metre and b v^2 / 2 = I omega^2 / 2.
     The nut's own mass is not in it, for both ends of the device move. Source: Wang and Su (2008), section 3.
@@ -27,7 +27,7 @@ def ball_screw_inertance(flywheel_inertia: float, pitch: float) -> float:
 def rack_and_pinion_inertance(
     flywheel_inertia: float, pinion_radius: float, gear_ratio: float = 1.0, pinion_inertia: float = 0.0
 ) -> float:
-    """b = (J + n^2 I) / r^2 [kg] of a rack and pinion: pinion of pitch radius r [m], flywheel of inertia I [kg m^2].
+    """Inertance b = (J + n^2 I) / r^2 [kg] of a rack and pinion of pitch radius r [m], flywheel of inertia I [kg m^2].
 
     The flywheel turns n = `gear_ratio` times as fast as the pinion: with a gear of radius r_g on the pinion's shaft
     and a flywheel pinion of radius r_f, n = r_g / r_f. J [kg m^2] is the inertia of what turns with the pinion.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import check_positive
 from inerter.errors import IdentificationError, Status
+from inerter.identification.experiment import saturated
 from inerter.identification.fit import Fit, Parameter, Told
 from inerter.identification.friction_law import FrictionLaw, friction_law
 from inerter.identification.identify import identify
@@ -21,7 +22,7 @@ from inerter.networks.elements import Element, Free, Inerter, Network, free
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
-from inerter.records.result import Response
+from inerter.records.result import Response, exact
 from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
@@ -138,7 +139,7 @@ def staged(
         fit=found,
         response=response,
         status=found.status,
-        notes=tuple(_notes(law, within, found, inertance, response)),
+        notes=tuple(_notes(law, within, found, inertance, check, response)),
     )
 
 
@@ -157,7 +158,7 @@ def _checked(model: Network, inertance: float | None, shaft_inertance: float | N
 
 def _with(device: Network, label: str, value: float | Free) -> Network:
     def change(element: Element) -> Network:
-        return replace(element.with_value(value), name=label) if element.label == label else element  # type: ignore[call-arg]
+        return element.with_value(value) if element.label == label else element
 
     return map_elements(device, change)
 
@@ -184,14 +185,27 @@ def _friction_test(device: Network, record: Record, law: FrictionLaw, shaft_iner
 
 
 def _response(device: Network, record: Record) -> ResponseCheck:
-    measured, model = frequency_response(record), model_response(device, record)
+    measured, model = frequency_response(record), _read(model_response(device, record), record)
     inertances = [e for e in device.elements() if isinstance(e, Inerter) and e.label == _INERTANCE]
     return ResponseCheck(
         measured=measured,
         model=model,
-        linear=linear_response(device, measured.omega),
-        ideal=linear_response(inertances[0], measured.omega),
+        linear=_read(linear_response(device, measured.omega), record),
+        ideal=_read(linear_response(inertances[0], measured.omega), record),
         bands=tuple(_bands(measured, model)),
+    )
+
+
+def _read(response: Response, record: Record) -> Response:
+    """A model's response as the load cell of the record reads it: Butterworth, of second order."""
+    if record.force_bandwidth is None:
+        return response
+    s = 1j * response.frequency / record.force_bandwidth
+    return replace(
+        exact(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude),
+        source=response.source,
+        status=response.status,
+        notes=(*response.notes, f"As read by a load cell of {record.force_bandwidth:g} Hz."),
     )
 
 
@@ -219,10 +233,18 @@ def _bands(measured: Response, model: Response) -> list[Band]:
 
 
 def _notes(
-    law: FrictionLaw, within: Free, found: Fit, inertance: float | None, response: ResponseCheck | None
+    law: FrictionLaw,
+    within: Free,
+    found: Fit,
+    inertance: float | None,
+    check: Record | None,
+    response: ResponseCheck | None,
 ) -> list[str]:
     low, high = (format_quantity(v, "N") for v in law.interval)
-    notes = [f"Friction {format_quantity(law.level, 'N')} ({low} to {high}) from the test without flywheel.", law.sentence]
+    notes = [
+        f"Friction {format_quantity(law.level, 'N')} ({low} to {high}) from the test without flywheel.",
+        law.sentence,
+    ]
     profile = found.parameters[_FRICTION]
     inner = profile.interval
     if inner[1] < within.lower * 1.0001 or inner[0] > within.upper * 0.9999:
@@ -232,6 +254,11 @@ def _notes(
         )
     notes += [] if inertance is None else [f"The inertance was given: {format_quantity(inertance, 'kg')}."]
     notes += list(found.notes)
+    if check is not None and saturated(check).any():
+        notes.append(
+            f"The load cell was saturated in {100.0 * float(saturated(check).mean()):.2g} % of the check, which no "
+            f"model's response has in it: move less."
+        )
     if response is not None:
         told = [b for b in response.bands if not b.agrees]
         notes.append(

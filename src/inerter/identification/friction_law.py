@@ -53,11 +53,13 @@ def friction_law(source: Record | Fit, inertance: float = 0.0) -> FrictionLaw:
     """Whether friction depends on the speed, from a slow record, or from what a fit left of its records.
 
     Where the device slides, its force is that of the direction of motion times a level and two slopes over the speed,
-    below and above 0.3 of the largest, besides an offset, and forces in proportion to displacement and acceleration
-    (`inertance` [kg] times the acceleration is taken away first). After each reversal, what is moved while the shaft
-    winds up is left out. The p-value is of Wald's test that both slopes are zero, with errors summed over 24 blocks of
-    time, so that what hangs together in time does not count as many (Liang and Zeger 1986). Below 0.01 the friction
-    depends on speed: viscous where it grows, Stribeck's where it falls at low speed (Armstrong-Helouvry et al. 1994).
+    below and above 0.3 of the largest, besides an offset, and a force in proportion to the displacement (`inertance`
+    [kg] times the acceleration is taken away first). After each reversal, what is moved while the shaft winds up is
+    left out. The p-value is of Wald's test that both slopes are zero, with errors summed over 24 blocks of time, so
+    that what hangs together does not count as many (Liang and Zeger 1986), and never less than those of independent
+    errors. Below 0.01 the friction depends on speed: viscous where it grows, Stribeck's where it falls at low speed
+    (Armstrong-Helouvry, Dupont and Canudas de Wit 1994). Of a fit, the slowest record is looked at, and the level is
+    what the model leaves of it.
 
     Raises `IdentificationError` for what is neither a record nor a fit, `RecordError` for an uneven record.
     """
@@ -158,9 +160,20 @@ def _solved(y: Matrix, columns: list[Matrix], blocks: NDArray[np.int64]) -> tupl
     inverse = np.linalg.pinv((X * weight[:, None]).T @ X, rcond=1e-12, hermitian=True)
     scores = X * (weight * residual)[:, None]
     sums = np.stack([scores[blocks == block].sum(axis=0) for block in range(_BLOCKS)])
-    covariance = inverse @ (sums.T @ sums) @ inverse * _BLOCKS / (_BLOCKS - 1)
+    together = inverse @ (sums.T @ sums) @ inverse * _BLOCKS / (_BLOCKS - 1)
+    covariance = _larger(inverse * float(np.mean(weight * residual**2)), together)
     scale = np.where(size > 0.0, size, 1.0)
     return solution / scale, covariance / np.outer(scale, scale), residual
+
+
+def _larger(independent: Matrix, together: Matrix) -> Matrix:
+    """The second covariance, in no direction less than the first, which few blocks may be by chance."""
+    values, vectors = np.linalg.eigh(independent)
+    kept = values > 1e-12 * float(values.max())
+    root = vectors[:, kept] * np.sqrt(values[kept])
+    inverse = vectors[:, kept] / np.sqrt(values[kept])
+    ratio, axes = np.linalg.eigh(inverse.T @ together @ inverse)
+    return np.asarray(root @ (axes * np.maximum(ratio, 1.0)) @ axes.T @ root.T)
 
 
 def _rounding(record: Record, residual: Matrix) -> float:

@@ -14,10 +14,14 @@ if TYPE_CHECKING:
     from inerter.errors import InerterError as InerterError
     from inerter.errors import Status as Status
     from inerter.errors import StatusKind as StatusKind
+    from inerter.identification.choice import Choice as Choice
+    from inerter.identification.choice import choose as choose
     from inerter.identification.fit import Fit as Fit
     from inerter.identification.identify import identify as identify
     from inerter.identification.response import linear_response as linear_response
     from inerter.identification.response import model_response as model_response
+    from inerter.identification.staged import Staged as Staged
+    from inerter.identification.staged import staged as staged
     from inerter.identification.virtual_rig import VirtualRig as VirtualRig
     from inerter.indices.index import LoadCarrying as LoadCarrying
     from inerter.indices.index import RideComfort as RideComfort
@@ -90,6 +94,7 @@ __all__ = [
     "ApproximateLinear",
     "Batch",
     "Budget",
+    "Choice",
     "Comparison",
     "Coordinate",
     "Damper",
@@ -119,6 +124,7 @@ __all__ = [
     "RoadInput",
     "Signal",
     "Spring",
+    "Staged",
     "StatisticalLinearisation",
     "Status",
     "StatusKind",
@@ -133,6 +139,7 @@ __all__ = [
     "budget",
     "bump",
     "chirp",
+    "choose",
     "compare",
     "cosine",
     "evaluate",
@@ -155,6 +162,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "sine",
+    "staged",
     "step",
     "write_record",
 ]
@@ -217,6 +225,10 @@ _HOME = {
     "Fit": "identification.fit",
     "identify": "identification.identify",
     "VirtualRig": "identification.virtual_rig",
+    "Choice": "identification.choice",
+    "choose": "identification.choice",
+    "Staged": "identification.staged",
+    "staged": "identification.staged",
     "Weighted": "vehicle.mechanism",
     "assemble": "systems.assemble",
     "evaluate": "methods.method",

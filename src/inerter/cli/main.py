@@ -43,7 +43,18 @@ Json = Annotated[
 ]
 
 Part = Literal[
-    "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims", "methods", "optima", "budgets"
+    "rig",
+    "linear",
+    "table1",
+    "table2",
+    "table3",
+    "figure12",
+    "figure13",
+    "figure14",
+    "claims",
+    "methods",
+    "optima",
+    "budgets",
 ]
 
 
@@ -128,6 +139,7 @@ def simulate(
     help_epilogue="""Examples:
   inerter reproduce wang-su-2008 -o paper
   inerter reproduce wang-su-2008 --only linear
+  inerter reproduce wang-su-2008 --only rig    Figures 8 to 10, on a virtual rig
   inerter reproduce wang-su-2008 --only table1 --only figure14"""
 )
 def reproduce(

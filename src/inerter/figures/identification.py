@@ -25,6 +25,7 @@ _HEIGHT = 1.75  # of a panel over time [inch]
 _MEASURED: dict[str, Any] = {"color": colour(0), "linewidth": 1.1}
 _MODEL: dict[str, Any] = {"color": colour(1), "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
 _LINEAR: dict[str, Any] = {"color": "black", "linewidth": 0.9, "linestyle": (0, (1, 1.5))}
+_IDEAL: dict[str, Any] = {"color": "#7A7A7A", "linewidth": 0.9, "linestyle": (0, (5, 1.5, 1, 1.5))}
 _RECEIVED: dict[str, Any] = {"color": "#9A9A9A", "linewidth": 1.1}
 _FEW = 60  # frequencies that are drawn as points with bars, not as a curve with a band
 _WIDEST = 3.0  # spacings between two frequencies that a curve joins
@@ -46,10 +47,16 @@ def draw(figure: Figure, folder: Path, name: str) -> list[Path]:
         return save(figure, folder, name, pdf=True)
 
 
-def response_figure(measured: Response, model: Response | None = None, linear: Response | None = None) -> Figure:
+def response_figure(
+    measured: Response,
+    model: Response | None = None,
+    linear: Response | None = None,
+    ideal: Response | None = None,
+) -> Figure:
     """Gain, phase and coherence over frequency, measured with its band, beside a model; as in Figure 10 of the paper.
 
-    `model` is the model's response at the same amplitude, `linear` the linear one as a baseline, both if there are any.
+    `model` is the model's response at the same amplitude, `linear` the linear one and `ideal` that of the inertance
+    alone as baselines, as far as there are any.
     """
     with styled():
         figure, (first,) = new_figure(height=4.9)
@@ -63,16 +70,16 @@ def response_figure(measured: Response, model: Response | None = None, linear: R
             draw_gain(axes[0], response, own, label, style)
             draw_phase(axes[1], response, style)
             draw_coherence(axes[2], response, style)
-        if linear is not None:
-            label = "linear model (no friction, gaps closed)"
-            axes[0].plot(linear.frequency, linear.gain * own.factor, label=label, zorder=1.5, **_LINEAR)
-            axes[1].plot(linear.frequency, np.degrees(linear.phase), zorder=1.5, **_LINEAR)
+        baselines = [(linear, "linear model (no friction, gaps closed)", _LINEAR), (ideal, "ideal inerter", _IDEAL)]
+        for response, label, style in ((r, label, style) for r, label, style in baselines if r is not None):
+            axes[0].plot(response.frequency, response.gain * own.factor, label=label, zorder=1.5, **style)
+            axes[1].plot(response.frequency, np.degrees(response.phase), zorder=1.5, **style)
         log_axis(axes[0], "y")
         axes[0].set_ylabel(axis_label("Gain", own.unit))
         axes[1].set_ylabel(axis_label("Phase", "deg"))
         axes[1].yaxis.set_major_locator(MultipleLocator(_phase_step(*axes[1].get_ylim())))
         axes[2].set(ylabel="Coherence", ylim=(0.0, 1.05), yticks=(0.0, 0.5, 1.0))
-        span = [r.frequency for r in (measured, model, linear) if r is not None and r.omega.size]
+        span = [r.frequency for r in (measured, model, linear, ideal) if r is not None and r.omega.size]
         low, high = min(f.min() for f in span), max(f.max() for f in span)
         for ax in axes:
             ax.set_xlim(low / 1.05, high * 1.05)

@@ -11,17 +11,35 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from inerter.figures.identification import Motion, response_figure, time_figure
 from inerter.figures.labels import axis_label, capital, index_title, index_unit, indices, scale
 from inerter.figures.style import LayoutStyle, add_legend, colour, log_axis, new_figure, save, styled
+from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
 
-FIGURE_11, FIGURE_12, FIGURE_13, FIGURE_14 = (f"figure-{number}" for number in (11, 12, 13, 14))
+FIGURE_8, FIGURE_9, FIGURE_10, FIGURE_11, FIGURE_12, FIGURE_13, FIGURE_14 = (f"figure-{n}" for n in range(8, 15))
 METHODS = "methods"
+_CURVES = (("measured (virtual rig)", "force"), ("identified model", "model"))
+_WINDOW = (2.0, 3.0)  # [s] of Figure 9
 _COLOUR = {"S2": "#0072B2", "S3": "#D55E00"}
 _LINES: tuple[Any, ...] = ("-", (0, (7, 1.5)), (0, (1, 1.2)), (0, (5, 1.2, 1, 1.2)))
 _BASELINE = LayoutStyle("black", "--", "", label="S1 (baseline)", zorder=3.0)
 _EFFECTS = {"": "ideal", "-soft": "elastic", "-10N": "friction", "-soft-10N": "both"}
+
+
+def draw_rig(found: RigTest, folder: Path) -> list[Path]:
+    """Figures 8 to 10: the friction test, the test at 3 Hz with its fit, and the frequency responses."""
+    (slow, _), (fast, model) = (
+        [Motion(label, part["time"], part["displacement"], part[name]) for label, name in _CURVES]
+        for part in (found.friction, found.fit)
+    )
+    figures = {
+        FIGURE_8: time_figure(slow),
+        FIGURE_9: time_figure(fast, model, _WINDOW),
+        FIGURE_10: response_figure(*(found.responses[name] for name in ("measured", "model", "linear", "ideal"))),
+    }
+    return [path for name, figure in figures.items() for path in _draw(figure, folder, name)]
 
 
 def draw_figure_11(results: xr.Dataset, folder: Path) -> list[Path]:

@@ -11,6 +11,7 @@ from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, N
 from inerter.networks.parser import network
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.reproduce import Reproduction
+from inerter.papers.wang_su_2008.rig import SIMULATED
 from inerter.papers.wang_su_2008.rows import VERDICTS
 from inerter.papers.wang_su_2008.source import TITLE, study
 from inerter.report.page import PageFigure, environment, inline
@@ -20,6 +21,7 @@ from inerter.report.reproduction_tables import (
     compared_table,
     designs_table,
     optima_table,
+    rig_table,
     simulated_table,
 )
 from inerter.report.reproduction_text import agreement_of
@@ -48,6 +50,19 @@ _METHOD_TITLES = {
     "approximate-linear": "Approximated linear model (Method 1)",
 }
 _CAPTIONS = {
+    drawn.FIGURE_8: (
+        "Figure 8 anew, on a virtual rig: friction without the flywheel, a cosine of 0.1 Hz and 1 mm. The force is a "
+        "square wave of 10 N, rounded where the shaft winds up."
+    ),
+    drawn.FIGURE_9: (
+        "Figure 9 anew, on a virtual rig: a cosine of 3 Hz and 1 mm, and the force of the identified model; the third "
+        "of five seconds."
+    ),
+    drawn.FIGURE_10: (
+        "Figure 10 anew, on a virtual rig: from displacement to force, by a multisine of 0.1 mm r.m.s. from 0.5 to "
+        "20 Hz that nothing was fitted to. The identified model on the same displacement, its linear part, and its "
+        "inertance alone, all as the load cell reads them."
+    ),
     drawn.FIGURE_11: (
         "Figure 11 anew: optimal indices of the quarter car over the static stiffness, and their improvement over S1, "
         "with an ideal inerter and with an elastic one in its hard (2000 kN/m, 6400 N s/m) and soft setting "
@@ -84,6 +99,8 @@ def write_reproduction(found: Reproduction, folder: Path) -> None:
 
 def _draw(found: Reproduction, folder: Path) -> None:
     draw_networks(_networks(), folder, _NETWORKS)
+    if found.rig is not None:
+        drawn.draw_rig(found.rig, folder)
     if found.figure11 is not None:
         drawn.draw_figure_11(found.figure11, folder)
     if "figure12" in found.parts:
@@ -122,6 +139,8 @@ def _page(found: Reproduction, folder: Path) -> str:
             claims=found.claims,
             optima=optima_table(found),
             budgets=budgets_table(found),
+            rig=rig_table(found),
+            rig_notes=[SIMULATED, *found.rig.notes, *found.rig.bands] if found.rig else [],
             figures=figures,
         )
     )

@@ -11,12 +11,14 @@ from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import DIFFERS, SimulatedRow
+from inerter.records.result import Response
 
 
 def tables(found: Reproduction) -> dict[str, list[dict[str, Any]]]:
     """The reproduction as plain rows, by the name of the file that holds them."""
     linear = found.linear
     return {
+        **_rig_tables(found),
         "linear-rows": [_linear_row(c) for c in linear.compared] if linear else [],
         "designs": [_design_row(f) for f in linear.found] if linear else [],
         "simulated-rows": [_simulated_row(row) for row in found.rows.values()],
@@ -30,6 +32,39 @@ def tables(found: Reproduction) -> dict[str, list[dict[str, Any]]]:
         "budgets": [_budget_row(name, numbers) for name, numbers in found.budgets.items()],
         "origins": [{"title": o.title, "text": o.text} for o in origins(found)],
     }
+
+
+def _rig_tables(found: Reproduction) -> dict[str, list[dict[str, Any]]]:
+    """The virtual rig: parameters, and the curves of Figures 8 to 10."""
+    if found.rig is None:
+        return {}
+    rig, units = found.rig, {"time": "s", "displacement": "m", "force": "N", "model": "N"}
+    parameters = [
+        {
+            "parameter": p.name,
+            "unit": p.unit,
+            "printed": p.printed,
+            "identified": p.value if p.value == p.value else None,
+            "lower": p.interval[0],
+            "upper": p.interval[1],
+            "difference_percent": 100.0 * p.difference if p.difference == p.difference else None,
+            "told": p.sentence,
+        }
+        for p in rig.parameters
+    ]
+    motions = {}
+    for name, part in (("figure8", rig.friction), ("figure9", rig.fit)):
+        columns = {f"{key} [{units[key]}]": part[key].tolist() for key in part}
+        motions[name] = [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
+    return {"rig": parameters, **motions, "figure10": list(_response_rows(rig.responses))}
+
+
+def _response_rows(responses: dict[str, Response]) -> Iterator[dict[str, Any]]:
+    for name, response in responses.items():
+        columns = {"frequency [Hz]": response.frequency, **response.columns()}
+        del columns["averages"]
+        for values in zip(*(column.tolist() for column in columns.values()), strict=True):
+            yield {"response": name, **dict(zip(columns, values, strict=True))}
 
 
 def csv_text(rows: list[dict[str, Any]]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from inerter.figures.labels import typeset
+from inerter.figures.labels import printed, typeset
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import DIFFERS, WITHIN, SimulatedRow
@@ -108,3 +108,23 @@ def budgets_table(found: Reproduction) -> Table | None:
     header = ["Design", "Of", "Limit"]
     caption = "The most friction or backlash, and the softest shaft, with which a design still beats S1"
     return Table(caption, header, rows) if rows else None
+
+
+def rig_table(found: Reproduction) -> Table | None:
+    if found.rig is None:
+        return None
+    rows = [
+        Row(
+            p.name,
+            [
+                Cell(printed(p.printed, p.unit)),
+                Cell(printed(p.value, p.unit) if told else f"below {printed(p.interval[1], p.unit)}"),
+                Cell(f"{printed(p.interval[0], p.unit)} to {printed(p.interval[1], p.unit)}"),
+                Cell(typeset(f"{signed(100.0 * p.difference)} %") if told else ""),
+            ],
+        )
+        for p in found.rig.parameters
+        for told in (p.value == p.value,)
+    ]
+    header = ["Parameter", "Printed", "Identified", "95 % interval", "Difference"]
+    return Table("Identified by the staged protocol from simulated records, beside the printed values", header, rows)

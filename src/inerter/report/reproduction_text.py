@@ -10,6 +10,7 @@ from inerter.figures.labels import printed
 from inerter.papers.wang_su_2008.claims import Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.reproduce import Reproduction
+from inerter.papers.wang_su_2008.rig import SIMULATED, Found
 from inerter.papers.wang_su_2008.rows import VERDICTS, SimulatedRow
 from inerter.papers.wang_su_2008.source import TITLE
 from inerter.report.text import WIDTH
@@ -21,6 +22,9 @@ _SIGNS = dict(zip(VERDICTS, "=~!", strict=True))
 def reproduction_text(found: Reproduction) -> str:
     """Everything as plain text of at most 80 columns."""
     lines = [*wrap(TITLE, WIDTH), ""]
+    if found.rig is not None:
+        lines += [*wrap(SIMULATED, WIDTH), "", *(_rig_line(p) for p in found.rig.parameters), ""]
+        lines += [line for note in (*found.rig.notes, *found.rig.bands) for line in wrap(note, WIDTH)] + [""]
     if found.linear is not None:
         lines += [*_linear_text(found.linear.compared), *_designs_text(found.linear.found)]
     for table in (1, 2, 3):
@@ -38,6 +42,12 @@ def reproduction_text(found: Reproduction) -> str:
         lines += ["Claims", ""]
         lines += [line for claim in found.claims for line in _claim_lines(claim)]
     return "\n".join(lines).rstrip()
+
+
+def _rig_line(p: Found) -> str:
+    low, high = (format_quantity(value, p.unit, digits=5) for value in p.interval)
+    value = format_quantity(p.value, p.unit, digits=5) if p.value == p.value else "not told"
+    return f"{p.name:5}printed {format_quantity(p.printed, p.unit):13}identified {value:16}{low} to {high}"
 
 
 def agreement_of(compared: list[ComparedRow]) -> str:

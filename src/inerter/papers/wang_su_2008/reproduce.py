@@ -17,20 +17,24 @@ import xarray as xr
 import inerter
 from inerter.errors import StudyError
 from inerter.optimisation.threads import one_blas_thread
-from inerter.papers.wang_su_2008 import agreement, beyond, curves, linear, rows
+from inerter.papers.wang_su_2008 import agreement, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import Claim, Evidence, judge
 from inerter.papers.wang_su_2008.linear import Linear
+from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
 from inerter.study.run import FIGURES, REPORT, StudyResult, claimed, run_study, write_text
 from inerter.study.workers import spread
 
 JOURNAL = "tasks.jsonl"
-_PAPER = ("linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")
+_PAPER = ("rig", "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")
 PARTS = (*_PAPER, "methods", "optima", "budgets")  # the last ones are not in the paper
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
-_PAPER_ORDER = ("table1", "table2", "table3", "curves", "methods", "optima", "budgets")  # of tasks in results
-TABLES = ("linear-rows", "designs", "simulated-rows", "curves", "claims", "methods", "optima", "budgets", "origins")
+_PAPER_ORDER = ("rig", "table1", "table2", "table3", "curves", "methods", "optima", "budgets")  # of tasks in results
+TABLES = (
+    *("rig", "figure8", "figure9", "figure10"),  # of the virtual rig
+    *("linear-rows", "designs", "simulated-rows", "curves", "claims", "methods", "optima", "budgets", "origins"),
+)
 _OWN = (*linear.STUDIES, JOURNAL, FIGURES, REPORT, *(f"{name}.csv" for name in TABLES))
 Numbers = dict[str, Any]
 Progress = Callable[[str, int, int], None]
@@ -62,6 +66,8 @@ def _numbers(task: Task) -> Numbers:
     match task.part:
         case "table1" | "table2" | "table3":
             return rows.compute(int(task.part[-1]), task.name)
+        case "rig":
+            return rig.compute(task.name)
         case "curves":
             return curves.compute(task.name, dict(task.given))
         case "methods":
@@ -79,6 +85,7 @@ class Reproduction:
 
     parts: tuple[str, ...]
     studies: dict[str, StudyResult] = field(default_factory=dict)
+    rig: RigTest | None = None
     linear: Linear | None = None
     rows: dict[tuple[int, str], SimulatedRow] = field(default_factory=dict)
     curves: xr.Dataset | None = None  # Figures 11, 13 and 14 over k
@@ -119,7 +126,8 @@ def reproduce(
                 for name in needed
             }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
-        tasks = [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
+        tasks = [Task("rig", rig.NAME)] if "rig" in wanted else []
+        tasks += [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
         tasks += [Task(part, name) for part in ("table2", "table3", "table1") if part in wanted for name in _rows(part)]
         tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
         found = _run(tasks, folder / JOURNAL, jobs, resume, progress)
@@ -174,6 +182,7 @@ def _put_together(
     return Reproduction(
         parts=parts,
         studies=studies,
+        rig=next(map(rig.restored, of("rig").values()), None),
         linear=recomputed,
         rows=judged,
         curves=drawn,

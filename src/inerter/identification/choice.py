@@ -1,0 +1,294 @@
+"""Which elements a record asks for: candidate devices by how well they predict the part that was not fitted."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import IdentificationError, InerterError, Status, StatusKind
+from inerter.identification.fit import Fit
+from inerter.identification.identify import identify
+from inerter.identification.models import MODELS, VISCOUS, mounted
+from inerter.identification.noise import Whitening, whitening_of
+from inerter.identification.search import POINTS
+from inerter.networks.elements import Element, Free, Network
+from inerter.networks.transform import map_elements, with_values
+from inerter.records.record import Record
+from inerter.vehicle.cars import Rig
+
+Matrix = NDArray[np.float64]
+LEAST, MOST = 0.01, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
+_ROBUST = 3.0  # whitened residuals beyond this count less than their square
+_BLOCKS = 20
+_RANGE = 4.0  # about known values, in which a fit is tried anew
+_ANEW = " anew"
+_PAIRS = (("ideal", "friction"), ("elastic", "elastic-friction"), ("backlash", "ball-screw"))
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """How one candidate predicts the check part. A loss is a mean square of whitened residuals, about 1 at best."""
+
+    name: str
+    unknowns: int
+    loss: float
+    behind: float  # the best one's loss less than this one's
+    error: float  # standard error of that difference
+    as_good: bool  # as the best one, by the rule of `choose`
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """The result of `choose`."""
+
+    name: str
+    fits: dict[str, Fit]
+    candidates: tuple[Candidate, ...]  # the best first
+    device: Network  # the chosen candidate with its best values, without the mount of rigid ones
+    status: Status
+    notes: tuple[str, ...] = ()
+
+    @property
+    def fit(self) -> Fit:
+        """That of the chosen candidate."""
+        return self.fits[self.name]
+
+
+def choose(
+    records: Record | Sequence[Record],
+    models: Mapping[str, Network] | Iterable[str] | None = None,
+    *,
+    seed: int = 0,
+    offset: bool = True,
+    gain: bool = False,
+    delay: bool | float = False,
+    check: float = 0.2,
+    bandwidth: float | None = None,
+    lead: float | None = None,
+    starts: int = POINTS,
+    progress: Callable[[float], None] | None = None,
+) -> Choice:
+    """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
+
+    `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
+    chosen one with a damper, with and without friction. Rigid ones get a very stiff mount. What else there is, is as
+    in `identify`.
+
+    **The criterion.** Each candidate is fitted with the weights that its own residuals ask for, so its likelihood
+    compares with no other's. Here all are judged by one yardstick: the last part `check` of each record, which none was
+    fitted to, with the weights and the whitening of the candidate that leaves the least there. Its loss is the mean
+    square of the whitened residuals (those beyond 3 count less). A candidate is as good as the best if its loss is
+    larger by no more than the standard error of the difference, from 20 blocks of time; that counts as 1 % of the
+    best loss at least, for what changes less is not worth an element, and as 10 % at most, for an element may show in
+    few blocks only (the rule of one standard error, Breiman et al. 1984). Of those as good, the one with the fewest
+    unknowns is chosen.
+
+    Raises `IdentificationError` if no candidate can be fitted or nothing is kept for the check; a candidate that
+    fails among others is told in `notes`.
+    """
+    given = _named(models)
+    if not 0.0 < check <= 0.6:
+        raise IdentificationError(f"Candidates are compared on the part kept for the check, 0 to 0.6, got {check!r}.")
+    fits: dict[str, Fit] = {}
+    failed: list[str] = []
+    expected = len(given) + (2 if models is None else 0)
+
+    def fitted(model: Network, part: Callable[[float], None] | None = None) -> Fit:
+        return identify(
+            records, mounted(model), seed=seed, offset=offset, gain=gain, delay=delay, check=check,
+            bandwidth=bandwidth, lead=lead, starts=starts, progress=part,
+        )  # fmt: skip
+
+    def fit_all(candidates: Mapping[str, Network]) -> None:
+        for name, model in candidates.items():
+            done = len(fits) + len(failed)
+            part = None if progress is None else _part(progress, done / expected, (done + 1) / expected)
+            try:
+                fits[name] = fitted(model, part)
+            except InerterError as error:
+                failed.append(f"{name}: cannot be fitted. {error}")
+
+    def again(candidates: Mapping[str, Network]) -> None:
+        """Candidates that a relative shows to be far from their best fit are fitted anew near that relative's."""
+        ranked = compare(fits)
+        for name, relative in _stuck(ranked, fits):
+            with suppress(InerterError):
+                anew = fitted(_near(candidates[name], fits[relative]))
+                losses = {c.name: c.loss for c in compare({relative: fits[relative], name: fits[name], _ANEW: anew})}
+                fits[name] = anew if losses[_ANEW] < losses[name] else fits[name]
+
+    fit_all(given)
+    if not fits:
+        raise IdentificationError(f"No candidate can be fitted. {' '.join(failed)}")
+    again(given)
+    if models is None:
+        first = _chosen(compare(fits))
+        pair = next(pair for pair in _PAIRS if first in pair)
+        more = {name + VISCOUS: MODELS[name + VISCOUS] for name in pair}
+        given = {**given, **more}
+        fit_all(more)
+        again(given)
+    ranked = compare(fits)
+    name = _chosen(ranked)
+    fit = fits[name]
+    values = {n: p.best for n, p in fit.parameters.items()}
+    return Choice(
+        name=name,
+        fits=fits,
+        candidates=ranked,
+        device=with_values(Rig(given[name]).device, values),
+        status=_status(fit),
+        notes=(
+            _sentence(ranked, name),
+            *(
+                f"{c}: does not reach {o}, of the same parts, so this is not its best fit; try more starts."
+                for c, o in _stuck(ranked, fits)
+            ),
+            *failed,
+        ),
+    )
+
+
+def compare(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
+    """The candidates, the best first, by the criterion of `choose`.
+
+    Raises `IdentificationError` if they have no samples of a check part in common.
+    """
+    masks = [
+        np.logical_and.reduce(parts)
+        for parts in zip(*([c.checked for c in f.comparisons] for f in fits.values()), strict=True)
+    ]
+    if sum(int(mask.sum()) for mask in masks) < 2 * _BLOCKS:
+        raise IdentificationError("Too few samples are kept for the check to compare candidates on; raise `check`.")
+    left = {name: _spread(fit, masks) for name, fit in fits.items()}
+    yardstick = _whitenings(fits[min(left, key=lambda name: left[name])], masks)
+    losses = {name: _losses(fit, yardstick) for name, fit in fits.items()}
+    mean = {name: float(loss.mean()) for name, loss in losses.items()}
+    best = min(mean, key=lambda name: mean[name])
+    result = []
+    for name, loss in losses.items():
+        blocks = np.array([part.mean() for part in np.array_split(loss - losses[best], _BLOCKS)])
+        error = float(blocks.std(ddof=1)) / math.sqrt(_BLOCKS)
+        behind = mean[name] - mean[best]
+        allowed = float(np.clip(error, LEAST * mean[best], MOST * mean[best]))
+        result.append(Candidate(name, len(fits[name].parameters), mean[name], behind, error, behind <= allowed))
+    return tuple(sorted(result, key=lambda c: c.loss))
+
+
+def _chosen(ranked: Sequence[Candidate]) -> str:
+    return min((c for c in ranked if c.as_good), key=lambda c: (c.unknowns, c.loss)).name
+
+
+def _named(models: Mapping[str, Network] | Iterable[str] | None) -> dict[str, Network]:
+    if models is None:
+        return {name: model for name, model in MODELS.items() if not name.endswith(VISCOUS)}
+    if isinstance(models, Mapping):
+        chosen = dict(models)
+    else:
+        names = [models] if isinstance(models, str) else list(models)
+        for name in names:
+            if name not in MODELS:
+                raise IdentificationError(f"There is no candidate named {name!r} (there are: {', '.join(MODELS)}).")
+        chosen = {name: MODELS[name] for name in names}
+    if not chosen:
+        raise IdentificationError("There is no candidate to choose from.")
+    return chosen
+
+
+def _spread(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> float:
+    """R.m.s. of what a fit leaves of the check part [N], each record as large as its force."""
+    shares = [
+        np.mean(c.residual[mask] ** 2) / np.var(c.record.force)
+        for c, mask in zip(fit.comparisons, masks, strict=True)
+        if mask.any()
+    ]
+    return float(np.sqrt(np.mean(shares)))
+
+
+def _whitenings(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> list[Whitening]:
+    return [
+        whitening_of(c.residual, c.model, mask, c.experiment.noise / 3.0)
+        for c, mask in zip(fit.comparisons, masks, strict=True)
+        if mask.any()
+    ]
+
+
+def _losses(fit: Fit, yardstick: Sequence[Whitening]) -> Matrix:
+    parts = []
+    for c, whitening in zip((c for c in fit.comparisons if c.checked.any()), yardstick, strict=True):
+        white = whitening(c.residual)[whitening.weight > 0.0]
+        parts.append(2.0 * _ROBUST**2 * (np.sqrt(1.0 + (white / _ROBUST) ** 2) - 1.0))
+    return np.concatenate(parts)
+
+
+def _status(fit: Fit) -> Status:
+    if not fit.status.ok:
+        return Status(StatusKind.INACCURATE, f"even the chosen candidate fails: {fit.status.message}")
+    return fit.status
+
+
+def _unknowns(c: Candidate) -> str:
+    return "one unknown" if c.unknowns == 1 else f"{c.unknowns} unknowns"
+
+
+def _sentence(ranked: Sequence[Candidate], name: str) -> str:
+    chosen = next(c for c in ranked if c.name == name)
+    best = ranked[0]
+    others = [c for c in ranked if not c.as_good]
+    worse = ""
+    if others:
+        ratio = others[0].loss / best.loss
+        how = f"{ratio:.3g} times" if ratio > 2.0 else f"{100.0 * (ratio - 1.0):.2g} % above"
+        worse = f" The next, {others[0].name}, leaves {how} the loss of the best."
+    if chosen is best:
+        return f"{name}: predicts the check part best, with {_unknowns(chosen)}.{worse}"
+    return (
+        f"{name}: with {_unknowns(chosen)} it predicts the check part as well as {best.name} with "
+        f"{best.unknowns} (loss larger by {100.0 * chosen.behind / best.loss:.2g} %).{worse}"
+    )
+
+
+def _stuck(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iterator[tuple[str, str]]:
+    """Candidates that could predict better than they do, each with the relative that shows it.
+
+    One that is worse than a part of itself could at least equal that. And a part of the best one could equal that, if
+    nothing that the best one has beyond it can be told.
+    """
+    best = ranked[0]
+    for c in ranked:
+        mine = set(fits[c.name].parameters)
+        part = next((p.name for p in ranked if set(fits[p.name].parameters) < mine), None)
+        if part is not None and _worse(ranked, c.name, part):
+            yield c.name, part
+        whole = fits[best.name]
+        untold = not any(whole.identifiable[name] for name in set(whole.parameters) - mine)
+        if mine < set(whole.parameters) and untold and _worse(ranked, c.name, best.name):
+            yield c.name, best.name
+
+
+def _worse(ranked: Sequence[Candidate], one: str, other: str) -> bool:
+    losses = {c.name: c.loss for c in ranked}
+    return losses[one] > (1.0 + MOST) * losses[other]
+
+
+def _near(model: Network, fit: Fit) -> Network:
+    """The model with the values that it has in common with a fit bounded to a range about them."""
+
+    def bound(element: Element) -> Network:
+        value = element.value
+        if not isinstance(value, Free) or value.name not in fit.parameters:
+            return element
+        best = fit.parameters[value.name].best
+        low, high = max(value.lower, best / _RANGE), min(value.upper, best * _RANGE)
+        return element.with_value(replace(value, lower=low, upper=high)) if low < high else element
+
+    return map_elements(Rig(model).device, bound)
+
+
+def _part(progress: Callable[[float], None], first: float, last: float) -> Callable[[float], None]:
+    return lambda done: progress(first + (last - first) * done)

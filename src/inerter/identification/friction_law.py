@@ -1,0 +1,211 @@
+"""The friction of a device from a slow record: its level, and whether it depends on the speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import f as fisher
+from scipy.stats import t as student
+
+from inerter.errors import IdentificationError
+from inerter.identification.fit import Fit
+from inerter.records.record import Record
+from inerter.records.smoothing import Motion, resolution, smooth_displacement
+
+Matrix = NDArray[np.float64]
+Law = Literal["coulomb", "viscous", "stribeck", "other", "untold"]
+SURE = 0.01  # p-value below which friction depends on the speed
+_BLOCKS = 24
+_FEWEST = 200  # samples in which the device slides
+_SLOW = 0.3  # of the largest speed: where the two slopes meet
+_REACHED, _WOUND = 0.9, 1.5  # part of the level that shows when the shaft is wound up, and how far beyond is left out
+_NOISES = 5.0  # of the velocity, above which its sign is sure
+_RANGE = 4.0  # of speeds, with fewer of which no law shows
+_OUTLIER, _NINETY = 4.0, 1.645  # standard deviations; 90 % of normal errors lie within the second
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """What a record tells of friction: its `level`, and its slopes over the speed.
+
+    `law` is "coulomb" where no dependence shows, "viscous" where it grows with speed, "stribeck" where it falls at low
+    speed, "other" where it does neither, and "untold" where the record cannot say.
+    """
+
+    law: Law
+    sentence: str
+    level: float  # [N] mean size of the friction while it slides; of a fit, what its model leaves of it
+    interval: tuple[float, float]  # [N] of the level, 95 %
+    p_value: float  # of a friction that does not depend on the speed; nan if untold
+    slow: float  # [N s/m] slope below `_SLOW` of the largest speed
+    slow_interval: tuple[float, float]  # 95 %
+    fast: float  # [N s/m] slope above
+    fast_interval: tuple[float, float]
+    speeds: tuple[float, float]  # [m/s] least and largest at which it slides
+
+
+def friction_law(source: Record | Fit, inertance: float = 0.0) -> FrictionLaw:
+    """Whether friction depends on the speed, from a slow record, or from what a fit left of its records.
+
+    Where the device slides, its force is that of the direction of motion times a level and two slopes over the speed,
+    below and above 0.3 of the largest, besides an offset, and a force in proportion to the displacement (`inertance`
+    [kg] times the acceleration is taken away first). After each reversal, what is moved while the shaft winds up is
+    left out. The p-value is of Wald's test that both slopes are zero, with errors summed over 24 blocks of time, so
+    that what hangs together does not count as many (Liang and Zeger 1986), and never less than those of independent
+    errors. Below 0.01 the friction depends on speed: viscous where it grows, Stribeck's where it falls at low speed
+    (Armstrong-Helouvry, Dupont and Canudas de Wit 1994). Of a fit, the slowest record is looked at, and the level is
+    what the model leaves of it.
+
+    Raises `IdentificationError` for what is neither a record nor a fit, `RecordError` for an uneven record.
+    """
+    if isinstance(source, Fit):
+        parts = [(c.experiment.motion, c.residual, c.fitted | c.checked, c.record) for c in source.comparisons]
+        slowest = min(parts, key=lambda part: float(np.abs(part[0].velocity).max()))
+        motion, force, kept, record = slowest
+        return _law(motion, force, _turned(motion) & kept, record, 0.0)
+    if not isinstance(source, Record):
+        raise IdentificationError(f"A friction law is of a record or a fit, got {type(source).__name__}.")
+    motion = smooth_displacement(source)
+    force = source.force - inertance * motion.acceleration
+    level = 0.5 * float(np.quantile(force, 0.9) - np.quantile(force, 0.1))
+    return _law(motion, force, _wound(motion, force, level), source, level)
+
+
+def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, rough: float) -> FrictionLaw:
+    speed = np.abs(motion.velocity)
+    use = use & (speed > _NOISES * motion.velocity_noise)
+    blocks = np.minimum(_BLOCKS * np.cumsum(use) // max(int(use.sum()), 1), _BLOCKS - 1)[use]
+    if use.sum() < _FEWEST:
+        return _untold(f"the device slides in {int(use.sum())} samples only; record more, with larger strokes")
+    v, y = motion.velocity[use], force[use]
+    top = float(np.abs(v).max())
+    speeds = (float(np.abs(v).min()), top)
+    slow, direction = _SLOW * top, np.sign(v)
+    nuisance = [np.ones(v.size), motion.displacement[use] - motion.displacement[use].mean()]
+    if not rough:  # of a record, the acceleration was taken away as far as it is known
+        nuisance.append(motion.acceleration[use])
+    plain = _solved(y, [direction, *nuisance], blocks)
+    level, error = float(plain[0][0]), math.sqrt(float(plain[1][0, 0]))
+    error = math.hypot(error, _rounding(record, plain[2]))
+    quantile = float(student.ppf(0.975, _BLOCKS - 1))
+    interval = (level - quantile * error, level + quantile * error)
+    if rough and level < 3.0 * float(np.std(plain[2])) / math.sqrt(use.sum() / _BLOCKS):
+        return _untold(f"no friction shows beside the noise, {level:.3g} N", level, interval, speeds)
+    if speeds[0] > top / _RANGE:
+        return _untold(
+            f"it slides from {speeds[0]:.3g} to {top:.3g} m/s only; use larger strokes", level, interval, speeds
+        )
+    low, high = np.minimum(np.abs(v), slow), np.maximum(np.abs(v) - slow, 0.0)
+    solution, covariance, _ = _solved(y, [direction, direction * low, direction * high, *nuisance], blocks)
+    slopes, of_slopes = solution[1:3], covariance[1:3, 1:3]
+    degrees = _BLOCKS - 1
+    wald = float(slopes @ np.linalg.pinv(of_slopes, hermitian=True) @ slopes) / 2.0 * (degrees - 1) / degrees
+    p = float(fisher.sf(wald, 2, degrees - 1))
+    widths = quantile * np.sqrt(np.maximum(np.diag(of_slopes), 0.0))
+    ends = [(float(s - w), float(s + w)) for s, w in zip(slopes, widths, strict=True)]
+    law, sentence = _judged(p, slopes, ends, top, level)
+    return FrictionLaw(law, sentence, level, interval, p, float(slopes[0]), ends[0], float(slopes[1]), ends[1], speeds)
+
+
+def _judged(p: float, slopes: Matrix, ends: list[tuple[float, float]], top: float, level: float) -> tuple[Law, str]:
+    if p >= SURE:
+        unseen = max(abs(end) for end in ends[1])
+        return "coulomb", (
+            f"No dependence on speed up to {top:.3g} m/s (p = {p:.2g}); a viscous part of more than {unseen:.3g} "
+            f"N s/m, {unseen * top:.2g} N at that speed, would have shown."
+        )
+    if ends[0][1] < 0.0:
+        return "stribeck", (
+            f"Friction falls with speed at low speed, by {-slopes[0]:.3g} N s/m below {_SLOW * top:.3g} m/s "
+            f"(p = {p:.2g}): a Stribeck effect, which Coulomb's law leaves out."
+        )
+    if ends[1][0] > 0.0 or ends[0][0] > 0.0:
+        slope = slopes[1] if ends[1][0] > 0.0 else slopes[0]
+        return "viscous", (
+            f"Friction grows with speed, by {slope:.3g} N s/m (p = {p:.2g}): add a damper beside the inerter."
+        )
+    return "other", (
+        f"Friction depends on speed (p = {p:.2g}), yet neither as a damper nor as Stribeck's law: slopes "
+        f"{slopes[0]:.3g} and {slopes[1]:.3g} N s/m."
+    )
+
+
+def _untold(
+    why: str,
+    level: float = math.nan,
+    interval: tuple[float, float] = (0.0, math.inf),
+    speeds: tuple[float, float] = (0.0, 0.0),
+) -> FrictionLaw:
+    nothing = (-math.inf, math.inf)
+    sentence = f"The law of friction cannot be told: {why}."
+    return FrictionLaw("untold", sentence, level, interval, math.nan, math.nan, nothing, math.nan, nothing, speeds)
+
+
+def _solved(y: Matrix, columns: list[Matrix], blocks: NDArray[np.int64]) -> tuple[Matrix, Matrix, Matrix]:
+    """Least squares without outliers, the covariance from sums over blocks, and the residuals."""
+    X = np.stack(columns, axis=1)
+    size = np.linalg.norm(X, axis=0)
+    X = X / np.where(size > 0.0, size, 1.0)
+    weight = np.ones(y.size)
+    for _ in range(3):
+        solution = np.linalg.pinv(X * weight[:, None], rcond=1e-8) @ (weight * y)
+        residual = y - X @ solution
+        spread = float(np.quantile(np.abs(residual), 0.9)) / _NINETY or 1e-300
+        weight = np.where(np.abs(residual) < _OUTLIER * spread, 1.0, 0.0)
+    inverse = np.linalg.pinv((X * weight[:, None]).T @ X, rcond=1e-12, hermitian=True)
+    scores = X * (weight * residual)[:, None]
+    sums = np.stack([scores[blocks == block].sum(axis=0) for block in range(_BLOCKS)])
+    together = inverse @ (sums.T @ sums) @ inverse * _BLOCKS / (_BLOCKS - 1)
+    covariance = _larger(inverse * float(np.mean(weight * residual**2)), together)
+    scale = np.where(size > 0.0, size, 1.0)
+    return solution / scale, covariance / np.outer(scale, scale), residual
+
+
+def _larger(independent: Matrix, together: Matrix) -> Matrix:
+    """The second covariance, in no direction less than the first, which few blocks may be by chance."""
+    values, vectors = np.linalg.eigh(independent)
+    kept = values > 1e-12 * float(values.max())
+    root = vectors[:, kept] * np.sqrt(values[kept])
+    inverse = vectors[:, kept] / np.sqrt(values[kept])
+    ratio, axes = np.linalg.eigh(inverse.T @ together @ inverse)
+    return np.asarray(root @ (axes * np.maximum(ratio, 1.0)) @ axes.T @ root.T)
+
+
+def _rounding(record: Record, residual: Matrix) -> float:
+    """How far the steps of a load cell can move a level whose noise does not smear them [N], at most.
+
+    The first term of the mean of a rounded value with Gaussian noise (Widrow and Kollar 2008, section 9).
+    """
+    step = resolution(record.force)
+    if step == 0.0:
+        return 0.0
+    noise = max(float(np.var(residual)) - step**2 / 12.0, 0.0)
+    return step / math.pi * math.exp(-2.0 * math.pi**2 * noise / step**2)
+
+
+def _turned(motion: Motion) -> NDArray[np.bool_]:
+    """Samples away from reversals by more than the noise of the direction, and a little."""
+    near = np.abs(motion.velocity) <= 0.03 * float(np.abs(motion.velocity).max())
+    return ~near
+
+
+def _wound(motion: Motion, force: Matrix, level: float) -> NDArray[np.bool_]:
+    """Samples at which the shaft is wound up: in each stroke, beyond the travel that brings the force to its level."""
+    direction = np.sign(motion.velocity)
+    edges = [0, *(np.flatnonzero(np.diff(direction)) + 1).tolist(), direction.size]
+    travels = []
+    for start, stop in pairwise(edges):
+        travel = np.abs(motion.displacement[start:stop] - motion.displacement[start])
+        reached = np.flatnonzero(direction[start:stop] * force[start:stop] >= _REACHED * level)
+        if reached.size and stop - start > 8:
+            travels.append(float(travel[reached[0]]))
+    needed = _WOUND * float(np.median(travels)) if travels else math.inf
+    use = np.zeros(direction.size, dtype=bool)
+    for start, stop in pairwise(edges):
+        use[start:stop] = np.abs(motion.displacement[start:stop] - motion.displacement[start]) > needed
+    return use

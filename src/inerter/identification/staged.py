@@ -1,0 +1,269 @@
+"""The staged protocol of Wang and Su (2008), section 4: friction alone, then the shaft, then a look at frequencies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import check_positive
+from inerter.errors import IdentificationError, Status
+from inerter.identification.experiment import saturated
+from inerter.identification.fit import Fit, Parameter, Told
+from inerter.identification.friction_law import FrictionLaw, friction_law
+from inerter.identification.identify import identify
+from inerter.identification.models import MODELS
+from inerter.identification.response import linear_response, model_response
+from inerter.identification.search import POINTS
+from inerter.networks.elements import Element, Free, Inerter, Network, free
+from inerter.networks.transform import map_elements, with_values
+from inerter.records.record import Record
+from inerter.records.response import frequency_response
+from inerter.records.result import Response, exact
+from inerter.records.smoothing import smooth_displacement
+from inerter.signals.signal import Signal
+from inerter.simulation.simulate import simulate
+from inerter.units import format_quantity
+from inerter.vehicle.cars import Rig
+
+Matrix = NDArray[np.float64]
+_LIGHT = 1.0  # [kg] of a shaft that is not known, for the friction test alone
+_NARROWEST = 1e-3  # of the friction: the least range in which the second stage may move it
+_FRICTION, _INERTANCE = "f", "b"
+_CLOSE = (0.05, math.radians(3.0))  # of gain and phase, within which a band agrees whatever the scatter
+_STEP = 2e-4  # [s] of the simulation of the friction test, at most
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionTest:
+    """The first stage: the level of the square wave, and the force of the identified device on the same motion."""
+
+    record: Record
+    law: FrictionLaw
+    model: Matrix  # (samples,) [N], with the offset of the load cell
+    offset: float  # [N]
+
+
+@dataclass(frozen=True)
+class Band:
+    """One octave of the check: the median differences of model from measurement, and a verdict."""
+
+    lower: float  # [Hz]
+    upper: float  # [Hz]
+    lines: int
+    gain: float  # model over measurement, less one
+    phase: float  # [rad] model less measurement
+    scatter: float  # half the width of the measurement's 95 % band, as a part of the gain
+    agrees: bool
+    verdict: str
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseCheck:
+    """The third stage: frequency responses from displacement to force, measured and of models."""
+
+    measured: Response
+    model: Response  # of the identified device, at the same amplitude
+    linear: Response  # of its linear part
+    ideal: Response  # of its inertance alone
+    bands: tuple[Band, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Staged:
+    """The result of `staged`."""
+
+    parameters: dict[str, Parameter]
+    identifiable: dict[str, Told]
+    device: Network  # with the best values
+    friction: FrictionTest
+    fit: Fit  # of the second stage, in which the friction could move within its interval
+    response: ResponseCheck | None
+    status: Status
+    notes: tuple[str, ...] = ()
+
+
+def staged(
+    friction: Record,
+    fit: Record,
+    check: Record | None = None,
+    *,
+    inertance: float | None = None,
+    shaft_inertance: float | None = None,
+    model: Network | None = None,
+    seed: int = 0,
+    starts: int = POINTS,
+    progress: Callable[[float], None] | None = None,
+) -> Staged:
+    """The parameters of a ball-screw inerter from three short tests, one after the other.
+
+    **Friction.** `friction` is of the device without its flywheel, moved slowly: its force is a square wave, whose
+    level is f. What the shaft alone weighs, `shaft_inertance` [kg], is taken away if it is given.
+    **Shaft and backlash.** `fit` is of the whole device in a faster motion: least squares give k_s, c_s and the
+    backlash, and the inertance unless `inertance` [kg] is given, such as from the geometry. The friction may move
+    within its interval, so that the intervals of the others know of its uncertainty.
+    **Check.** `check`, a sweep or multisine, was fitted to by nothing: its frequency response is compared, octave by
+    octave, with the identified device's at the same amplitude. An octave agrees if model and measurement differ by no
+    more than the measurement's own 95 % band, or by 5 % and 3 degrees.
+
+    `model` is by default the ball screw of Wang and Su (2008), Figure 6b; any other needs a friction named f, and an
+    inerter named b.
+
+    Raises `IdentificationError` where the friction cannot be told or the model does not fit; `RecordError` and
+    `IdentificationError` as `identify` does. Source: Wang and Su (2008), section 4.
+    """
+    device = _checked(MODELS["ball-screw"] if model is None else model, inertance, shaft_inertance)
+    law = friction_law(friction, shaft_inertance or 0.0)
+    if not law.level > 0.0 or not math.isfinite(law.interval[1]):
+        raise IdentificationError(
+            f"The friction cannot be told from {friction.source!r}. {law.sentence} Move slowly, such as a cosine of "
+            f"0.1 Hz and 1 mm, without the flywheel."
+        )
+    half = max(law.level - law.interval[0], _NARROWEST * law.level)
+    within = free(max(law.level - half, 0.0), law.level + half, _FRICTION)
+    found = identify(fit, _with(device, _FRICTION, within), seed=seed, starts=starts, progress=progress)
+    parameters, identifiable = dict(found.parameters), dict(found.identifiable)
+    parameters[_FRICTION], identifiable[_FRICTION] = _friction(law)
+    values = {name: p.best for name, p in parameters.items()}
+    best = with_values(_with(device, _FRICTION, within), values)
+    order = [e.label for e in device.elements() if e.label in parameters]
+    response = None if check is None else _response(best, check)
+    return Staged(
+        parameters={name: parameters[name] for name in order},
+        identifiable={name: identifiable[name] for name in order},
+        device=best,
+        friction=_friction_test(best, friction, law, shaft_inertance),
+        fit=found,
+        response=response,
+        status=found.status,
+        notes=tuple(_notes(law, within, found, inertance, check, response)),
+    )
+
+
+def _checked(model: Network, inertance: float | None, shaft_inertance: float | None) -> Network:
+    device = Rig(model).device
+    labels = {e.label for e in device.elements()}
+    if not {_FRICTION, _INERTANCE} <= labels:
+        raise IdentificationError(
+            f"The staged protocol needs a friction named f and an inerter named b, got {', '.join(sorted(labels))}."
+        )
+    for what, value in (("inertance", inertance), ("inertance of the shaft", shaft_inertance)):
+        if value is not None:
+            check_positive(IdentificationError, f"The {what}", value, "kg")
+    return device if inertance is None else _with(device, _INERTANCE, inertance)
+
+
+def _with(device: Network, label: str, value: float | Free) -> Network:
+    def change(element: Element) -> Network:
+        return element.with_value(value) if element.label == label else element
+
+    return map_elements(device, change)
+
+
+def _friction(law: FrictionLaw) -> tuple[Parameter, Told]:
+    error = 0.5 * (law.interval[1] - law.interval[0]) / 1.96
+    interval = (max(law.interval[0], 0.0), law.interval[1])
+    return Parameter(_FRICTION, "N", law.level, interval, law.level, error), Told(True, f"{_FRICTION}: told.")
+
+
+def _friction_test(device: Network, record: Record, law: FrictionLaw, shaft_inertance: float | None) -> FrictionTest:
+    """The device without its flywheel on the smoothed motion of the test."""
+    shaft = _with(device, _INERTANCE, shaft_inertance or _LIGHT)
+    motion = smooth_displacement(record)
+    every = math.ceil(record.interval / _STEP * (1.0 - 1e-9))
+    moved = Signal.sampled(
+        np.arange(record.time.size) * record.interval, motion.displacement, derivative=motion.velocity
+    )
+    run = simulate(Rig(shaft), displacement=moved, duration=record.duration, step=record.interval / every, every=every)
+    force = np.full(record.time.size, np.nan)
+    force[: run.time.size] = run["device_force"][: force.size]
+    offset = float(np.nanmedian(record.force - force))
+    return FrictionTest(record, law, force + offset, offset)
+
+
+def _response(device: Network, record: Record) -> ResponseCheck:
+    measured, model = frequency_response(record), _read(model_response(device, record), record)
+    inertances = [e for e in device.elements() if isinstance(e, Inerter) and e.label == _INERTANCE]
+    return ResponseCheck(
+        measured=measured,
+        model=model,
+        linear=_read(linear_response(device, measured.omega), record),
+        ideal=_read(linear_response(inertances[0], measured.omega), record),
+        bands=tuple(_bands(measured, model)),
+    )
+
+
+def _read(response: Response, record: Record) -> Response:
+    """A model's response as the load cell of the record reads it: Butterworth, of second order."""
+    if record.force_bandwidth is None:
+        return response
+    s = 1j * response.frequency / record.force_bandwidth
+    return replace(
+        exact(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude),
+        source=response.source,
+        status=response.status,
+        notes=(*response.notes, f"As read by a load cell of {record.force_bandwidth:g} Hz."),
+    )
+
+
+def _bands(measured: Response, model: Response) -> list[Band]:
+    """Octaves from the lowest frequency that both tell."""
+    both = np.abs(model.omega[:, None] / measured.omega - 1.0) < 1e-6
+    mine, its = np.nonzero(both)
+    if not mine.size:
+        return []
+    frequency = measured.frequency[its]
+    ratio = model.value[mine] / measured.value[its]
+    scatter = 0.5 * (measured.band[1] - measured.band[0])[its] / measured.gain[its]
+    octave = np.floor(np.log2(frequency / frequency[0]) + 1e-9).astype(int)
+    result = []
+    for number in np.unique(octave):
+        here = octave == number
+        middle = complex(np.median(ratio[here].real), np.median(ratio[here].imag))
+        gain, phase, wide = abs(middle) - 1.0, math.atan2(middle.imag, middle.real), float(np.median(scatter[here]))
+        agrees = abs(middle - 1.0) <= wide or (abs(gain) <= _CLOSE[0] and abs(phase) <= _CLOSE[1])
+        low, high = float(frequency[here].min()), float(frequency[here].max())
+        sizes = f"the model's gain is {100.0 * gain:+.1f} %, its phase {math.degrees(phase):+.1f} degrees off"
+        said = f"{low:.3g} to {high:.3g} Hz: {'agrees' if agrees else 'differs'}; {sizes}."
+        result.append(Band(low, high, int(here.sum()), gain, phase, wide, agrees, said))
+    return result
+
+
+def _notes(
+    law: FrictionLaw,
+    within: Free,
+    found: Fit,
+    inertance: float | None,
+    check: Record | None,
+    response: ResponseCheck | None,
+) -> list[str]:
+    low, high = (format_quantity(v, "N") for v in law.interval)
+    notes = [
+        f"Friction {format_quantity(law.level, 'N')} ({low} to {high}) from the test without flywheel.",
+        law.sentence,
+    ]
+    profile = found.parameters[_FRICTION]
+    inner = profile.interval
+    if inner[1] < within.lower * 1.0001 or inner[0] > within.upper * 0.9999:
+        notes.append(
+            "The faster test asks for another friction than the slow one: at the end of its interval, "
+            f"{format_quantity(profile.best, 'N')}. The friction may depend on speed or on the load of the flywheel."
+        )
+    notes += [] if inertance is None else [f"The inertance was given: {format_quantity(inertance, 'kg')}."]
+    notes += list(found.notes)
+    if check is not None and saturated(check).any():
+        notes.append(
+            f"The load cell was saturated in {100.0 * float(saturated(check).mean()):.2g} % of the check, which no "
+            f"model's response has in it: move less."
+        )
+    if response is not None:
+        told = [b for b in response.bands if not b.agrees]
+        notes.append(
+            f"The check agrees in all of {len(response.bands)} octaves."
+            if response.bands and not told
+            else f"The check differs in {len(told)} of {len(response.bands)} octaves."
+        )
+    return notes

@@ -20,6 +20,8 @@ EXAMPLES = """Examples:
   inerter run examples/stiffness-sweep.toml -o sweep -j 2
   inerter check my-study.toml
   inerter simulate examples/stick_slip.toml
+  inerter rig examples/rig_fit.toml -o fit.csv
+  inerter identify fit.csv --model ball-screw
   inerter reproduce wang-su-2008 -o paper
 
 Exit codes: 0 done, 1 the work failed or was interrupted, 2 the request was wrong."""
@@ -122,6 +124,33 @@ def simulate(
     from inerter.cli.simulation import simulate as command
 
     return command(file, output, window, force=force, as_json=json)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter rig examples/rig_fit.toml -o fit.csv
+  inerter rig examples/rig_friction.toml -o friction.tdms"""
+)
+def rig(
+    config: Path,
+    /,
+    *,
+    output: Annotated[
+        Path,
+        Parameter(name=["--output", "-o"], help="The file to write: .csv, .tsv, .txt, .tdms, .mf4 or .mat."),
+    ],
+    force: Annotated[bool, Parameter(negative="", show_default=False, help="Replace the file if it exists.")] = False,
+) -> int:
+    """Run a virtual test rig, and write what its sensors read of a device that is known.
+
+    Parameters
+    ----------
+    config
+        The rig file (TOML): a device, a signal, sensors. examples/rig_fit.toml is one.
+    """
+    from inerter.cli.rig import rig as command
+
+    return command(config, output, force=force)
 
 
 @app.command(

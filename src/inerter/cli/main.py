@@ -128,6 +128,66 @@ def simulate(
 
 @app.command(
     help_epilogue="""Examples:
+  inerter identify fit.csv --model ball-screw
+  inerter identify slow.tdms fast.tdms --model friction --unit force=kgf
+  inerter identify bench.csv --config rig.toml -o bench --force"""
+)
+def identify(
+    records: tuple[Path, ...],
+    /,
+    *,
+    model: Annotated[
+        str | None, Parameter(help="What is fitted: ball-screw and others, or choose for the best of them all.")
+    ] = None,
+    config: Annotated[
+        Path | None, Parameter(help="A file (TOML) with [record], [model], [elements] and [fit]; options overrule it.")
+    ] = None,
+    displacement: Annotated[
+        str | None, Parameter(help="The channel of the displacement: name, or number from 0.")
+    ] = None,
+    force_channel: Annotated[str | None, Parameter(help="The channel of the force: name, or number from 0.")] = None,
+    time: Annotated[str | None, Parameter(help="The channel of the times: name, or number from 0.")] = None,
+    unit: Annotated[
+        tuple[str, ...], Parameter(help="A unit where the file has none or a wrong one: force=kgf. Several times.")
+    ] = (),
+    interval: Annotated[str | None, Parameter(help='Between samples, where the file has no times: "1 ms".')] = None,
+    gaps: Annotated[
+        str | None, Parameter(help='What missing samples are: refuse, fill, longest, or filled up to "50 ms".')
+    ] = None,
+    trim: Annotated[str | None, Parameter(help="Seconds to use, FROM:TO.")] = None,
+    resample: Annotated[str | None, Parameter(help='New interval between samples: "1 ms".')] = None,
+    period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None,
+    force_range: Annotated[str | None, Parameter(help='What the load cell can tell: "981 N".')] = None,
+    force_bandwidth: Annotated[str | None, Parameter(help='Of the load cell and its amplifier: "300 Hz".')] = None,
+    seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None,
+    starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None,
+    output: Output = None,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Identify the parameters of a device from measured records, and say what the records cannot tell.
+
+    The folder, by default RECORD-fit, then holds report.html, fit.json,
+    residuals.csv and figures.
+
+    Parameters
+    ----------
+    records
+        Files of force and displacement (.csv .tsv .txt .tdms .mf4 .mdf .mat), fitted together.
+    """
+    from inerter.cli.identify import identify as command
+
+    options = {
+        "displacement": displacement, "force": force_channel, "time": time, "unit": unit, "interval": interval,
+        "gaps": gaps, "trim": trim, "resample": resample, "period": period, "force_range": force_range,
+        "force_bandwidth": force_bandwidth,
+    }  # fmt: skip
+    settings = {"seed": seed, "starts": starts}
+    return command(records, model, config, output, options, settings, force=force, as_json=json)
+
+
+@app.command(
+    help_epilogue="""Examples:
   inerter rig examples/rig_fit.toml -o fit.csv
   inerter rig examples/rig_friction.toml -o friction.tdms"""
 )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from math import floor, log10
 from textwrap import wrap
 
-from inerter.identification.fit import Comparison
+from inerter.identification.fit import Comparison, Told
 from inerter.report.identified_values import elements_block, single, value_and_interval
 from inerter.report.text import WIDTH
 from inerter.study.identification_run import Identified, Reading, model_title
@@ -24,6 +24,7 @@ _AS_OPTIONS = (
     (r"\b(time|displacement)=(?=['\d])", r"--\1 "),
     (r"resample\(record\)", '--resample, such as --resample "1 ms"'),
     (r"remove_offset\(record\)|detrend\(record\)", "detrend = true in [record] of a --config"),
+    (r" Use reverse_force\(record\)\.", ""),
     (r"fill_gaps\(record, longest\)", "--resample"),
     (r"\btrim\b(?=[ .])", "--trim"),
 )
@@ -101,22 +102,27 @@ def _candidates(found: Identified) -> Iterator[str]:
 
 
 def _estimates(found: Identified) -> Iterator[str]:
-    rows = [(p.name, *value_and_interval(p, found.bounds(p.name))) for p in found.fit.parameters.values()]
+    rows = [(name, *value_and_interval(found, name)) for name in found.fit.parameters]
     names, values = (max(len(row[i]) for row in [("estimat", "value"), *rows]) for i in (0, 1))
     yield f"{'estimates':<{names + 2}}  {'value':<{values}}  interval of 95 %"
     for name, value, interval in rows:
-        yield f"  {name:<{names}}  {value:<{values}}  {interval}"
+        yield f"  {name:<{names}}  {value:<{values}}  {interval}".rstrip()
     for c in found.fit.comparisons:
         of = f" of {c.record.source}" if len(found.fit.comparisons) > 1 else ""
         yield from wrap(f"  Offset of the load cell{of}: {single(c.offset, 'N')}", WIDTH, subsequent_indent="    ")
 
 
 def _untold(found: Identified) -> Iterator[str]:
-    said = [told.sentence for told in found.fit.identifiable.values() if not told or "only" in told.sentence]
+    said = [told.sentence for told in found.fit.identifiable.values() if not plainly(told)]
     if said:
         yield "what the records do not tell"
     for sentence in said:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="    ")
+
+
+def plainly(told: Told) -> bool:
+    """Whether a parameter is told, and nothing needs saying about it."""
+    return bool(told) and told.sentence.endswith(": told.")
 
 
 def _goodness(found: Identified) -> Iterator[str]:

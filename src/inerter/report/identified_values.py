@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from math import floor, log10
 
 from inerter.figures.labels import Scale, scale
-from inerter.identification.fit import Parameter
 from inerter.networks.elements import Element, Free
 from inerter.networks.parser import written
 from inerter.study.identification_run import Identified
@@ -27,8 +26,11 @@ def scale_of(value: float, unit: str) -> Scale:
     return scale([value], unit)
 
 
-def value_and_interval(parameter: Parameter, bounds: tuple[float, float] | None) -> tuple[str, str]:
-    """The value, or that it cannot be told, and the interval of 95 %."""
+def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
+    """The value of a parameter, or that it cannot be told, and its interval of 95 %, empty if there is none."""
+    parameter, bounds = found.fit.parameters[name], found.bounds(name)
+    if not found.explains:
+        return UNTOLD, ""
     low, high = parameter.interval
     own = scale_of(parameter.best or high, parameter.unit)
     decimals = _decimals(low * own.factor, high * own.factor)
@@ -53,7 +55,16 @@ def value_and_interval(parameter: Parameter, bounds: tuple[float, float] | None)
 def single(value: float, unit: str, digits: int = 3) -> str:
     """A value alone, with its unit."""
     own = scale_of(value, unit)
-    return f"{value * own.factor:.{digits}g} {own.unit}".rstrip()
+    return f"{plain(value * own.factor, digits)} {own.unit}".rstrip()
+
+
+def plain(number: float, digits: int) -> str:
+    """A number to so many digits, without a power of ten unless it is far from one.
+
+    >>> plain(5000.0, 3), plain(1.234e-7, 2)
+    ('5000', '1.2e-07')
+    """
+    return f"{float(f'{number:.{digits}g}'):.9g}"
 
 
 def _decimals(low: float, high: float) -> int:
@@ -114,5 +125,5 @@ def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
     if not isinstance(free.value, Free):
         return value, "as given"
     name = str(free.value.name)
-    told, interval = value_and_interval(found.fit.parameters[name], found.bounds(name))
-    return value, f"{UNTOLD}: {interval}" if told == UNTOLD else f"95 %: {interval}"
+    told, interval = value_and_interval(found, name)
+    return value, f"{UNTOLD}: {interval}".rstrip(": ") if told == UNTOLD else f"95 %: {interval}"

@@ -81,9 +81,9 @@ class Identified:
         return next(((v.lower, v.upper) for v in free if isinstance(v, Free) and v.name == parameter), None)
 
     @property
-    def warnings(self) -> list[tuple[str, str]]:
-        """What the records warn of: source and sentence."""
-        return [(r.used.source, f.sentence) for r in self.readings for f in r.findings if f.severity == "warning"]
+    def explains(self) -> bool:
+        """Whether the model explains the records, so that its parameters mean anything."""
+        return self.fit.status.ok or any(self.fit.identifiable.values())
 
 
 def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> Reading:

@@ -16,7 +16,7 @@ from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import as_options, identification_text
 from inerter.study.identification_file import IdentificationRequest, RecordRequest, load_identification
 from inerter.study.identification_run import FIT, read, run_identification
-from inerter.study.identification_schema import channel_units, gaps
+from inerter.study.identification_schema import channel_units, gap_treatment
 from inerter.study.run import REPORT, claimed
 from inerter.units import parse_quantity
 
@@ -80,6 +80,8 @@ def _request(
     if model is not None and request.layout is not None:
         raise StudyError(f"Got --model {model} and a layout in [model] of {config}: give one of them.")
     given = {name: value for name, value in settings.items() if value is not None}
+    if given.get("seed", 0) < 0:
+        raise StudyError(f"--seed must be a whole number from 0 on, got {given['seed']}.")
     request = replace(
         request,
         name=model or request.name,
@@ -107,7 +109,7 @@ def _record(asked: RecordRequest, options: Mapping[str, Any]) -> RecordRequest:
         changes["start"], changes["stop"] = _times(given["trim"])
     if "gaps" in given:
         try:
-            changes["gaps"] = gaps(given["gaps"])
+            changes["gaps"] = gap_treatment(given["gaps"])
         except ValueError as error:
             raise StudyError(f"--gaps: {error}") from None
     return replace(asked, **changes)

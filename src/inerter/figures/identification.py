@@ -52,7 +52,7 @@ class ProfileCurve:
     values: Matrix  # increasing, in the unit
     rises: Matrix  # 0 at the best fit, 1 at the ends of the interval
     interval: tuple[float, float]
-    unit: str
+    unit: str  # empty for a ratio
     remark: str = ""  # such as that it cannot be told
 
 
@@ -229,7 +229,7 @@ def draw_profile(ax: Axes, curve: ProfileCurve) -> Axes:
         ax.set_xlim(low - margin, high + margin)
         ax.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
         ax.ticklabel_format(axis="x", useOffset=False)
-    ax.set_xlabel(axis_label(curve.label, curve.unit))
+    ax.set_xlabel(axis_label(curve.label, curve.unit) if curve.unit else curve.label)
     if curve.remark:
         ax.set_title(curve.remark, loc="left")
     return ax

@@ -131,7 +131,7 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
         values=points[:, 0] * own.factor,
         rises=points[:, 1],
         interval=(parameter.interval[0] * own.factor, parameter.interval[1] * own.factor),
-        unit=own.unit or "1",
+        unit=own.unit,
         remark=UNTOLD if value == UNTOLD else "",
     )
 

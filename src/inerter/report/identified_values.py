@@ -43,7 +43,7 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
         )
         value = single(parameter.best, parameter.unit) if far else f"{parameter.best * own.factor:.{decimals}f}"
         return value if far else f"{value} {own.unit}".rstrip(), interval
-    below = bounds is None or low > bounds[0] * (1.0 + 1e-9)
+    below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
     above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
     if above and not below:
         return UNTOLD, f"below {single(high, parameter.unit)}"

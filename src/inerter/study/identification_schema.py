@@ -38,7 +38,7 @@ def channel_units(value: Any) -> dict[str, str]:
     return value
 
 
-def gaps(value: Any) -> str | float:
+def gap_treatment(value: Any) -> str | float:
     """What is done where samples are missing."""
     if isinstance(value, str) and value in GAPS:
         return value
@@ -52,7 +52,7 @@ def gaps(value: Any) -> str | float:
     return seconds
 
 
-def delay(value: Any) -> bool | float:
+def longest_delay(value: Any) -> bool | float:
     """Whether the force may be late, or by how much at most."""
     return value if isinstance(value, bool) else parse_quantity(value, "s")
 
@@ -79,7 +79,7 @@ class RecordShape(Shape):
         default_factory=dict, examples=['units = { force = "kgf" }']
     )
     interval: Annotated[float | None, positive("s")] = None
-    gaps: Annotated[str | float, PlainValidator(gaps)] = "refuse"
+    gaps: Annotated[str | float, PlainValidator(gap_treatment)] = "refuse"
     force_range: Annotated[float | None, positive("N")] = None
     force_bandwidth: Annotated[float | None, positive("Hz")] = None
     period: Annotated[float | None, positive("s")] = None
@@ -103,7 +103,7 @@ class FitShape(Shape):
     starts: Annotated[int | None, whole(8, _MOST_STARTS)] = None
     offset: Annotated[bool, PlainValidator(yes_or_no)] = True
     gain: Annotated[bool, PlainValidator(yes_or_no)] = False
-    delay: Annotated[bool | float, PlainValidator(delay)] = False
+    delay: Annotated[bool | float, PlainValidator(longest_delay)] = False
     check: Annotated[float, PlainValidator(check_part)] = 0.2
     bandwidth: Annotated[float | None, positive("Hz")] = None
     lead: Annotated[float | None, not_negative("s")] = None

@@ -15,6 +15,7 @@ import inerter as it
 from inerter.cli.main import call
 from inerter.identification.fit import Told
 from inerter.study import identification_run
+from inerter.study.identification_file import load_identification
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
 CONFIG = """
@@ -104,8 +105,8 @@ def test_text_says_all_in_80_columns(
         assert words in out.replace("401 samples", "501 samples")
     assert max(map(len, out.splitlines())) <= 80
     assert out.isascii()
-    assert "bench-fit/report.html" in err
-    assert (fitted / "bench-fit" / "report.html").exists()
+    assert "bench-results/report.html" in err
+    assert (fitted / "bench-results" / "report.html").exists()
 
 
 def test_the_elements_can_be_pasted_into_a_study(fitted: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -276,3 +277,16 @@ def test_what_is_wrong_in_a_configuration_is_said(
     assert words in err
     assert err.startswith("inerter: rig.toml: ")
     assert "Traceback" not in err
+
+
+def test_the_python_of_the_page_runs() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "identification.md").read_text(encoding="utf-8")
+    (code,) = [block.partition("```")[0] for block in page.split("```python\n")[1:]]
+    exec(compile(code, "identification.md", "exec"), {})
+
+
+def test_the_configurations_of_the_page_are_sound(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "identification.md").read_text(encoding="utf-8")
+    for block in page.split("```toml\n")[1:]:
+        (tmp_path / "rig.toml").write_text(block.partition("```")[0], encoding="utf-8")
+        assert load_identification(tmp_path / "rig.toml").models()

@@ -78,6 +78,7 @@ def test_nothing_runs_over_the_edge_or_over_anything_else(make):
         assert ax.get_ylabel().endswith("]") or ax.get_ylabel() in (
             "Coherence",
             "Autocorrelation",
+            "",
             "Rise of the misfit",
         )
         labels = [label.get_window_extent() for label in ax.get_xticklabels() if label.get_text()]

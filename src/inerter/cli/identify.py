@@ -43,7 +43,7 @@ def identify(
                 readings.append(read(path, request.record, callback))
         except RecordError as error:
             raise RecordError(as_options(str(error))) from None
-    folder = output or Path(f"{paths[0].stem}-fit")
+    folder = output or Path(f"{paths[0].stem}-results")
     with claimed(folder, own=OWN, resume=None, force=force):
         try:
             with fraction(f"fitting {request.name or 'the model'}") as callback:

@@ -167,7 +167,7 @@ def identify(
 ) -> int:
     """Identify the parameters of a device from measured records, and say what the records cannot tell.
 
-    The folder, by default RECORD-fit, then holds report.html, fit.json,
+    The folder, by default RECORD-results, then holds report.html, fit.json,
     residuals.csv and figures.
 
     Parameters

@@ -9,6 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.figures import identification as figures
+from inerter.figures.curves import thinned
 from inerter.figures.identification import Motion
 from inerter.figures.style import styled
 
@@ -35,6 +36,14 @@ MANY, BROKEN = answered(False, 100), answered(True, 100)
 FEW = it.frequency_response(RECORD)
 LINEAR = it.linear_response(DEVICE, np.geomspace(1.0, 300.0, 50))
 MOTION = Motion("measured", TIME, SINE, FORCE)
+PROFILES = [
+    figures.ProfileCurve("ks", np.array([99.0, 100.0, 101.5]), np.array([1.0, 0.0, 1.0]), (99.0, 101.5), "kN/m"),
+    figures.ProfileCurve(
+        "gap", np.array([0.0, 2.0, 4.0]), np.array([0.0, 0.3, 1.1]), (0.0, 3.8), "um", "cannot be told"
+    ),
+    figures.ProfileCurve("c", np.array([1.0, 9.0, 3e4]), np.array([1.0, 0.0, 0.2]), (1.0, 3e4), "N s/m"),
+    figures.ProfileCurve("sensor gain", np.array([0.998, 1.0, 1.01]), np.array([3.0, 0.0, 4.0]), (0.999, 1.005), ""),
+]
 LAGS = np.arange(200) / RATE
 FIGURES = {
     "response": lambda: figures.response_figure(MANY, MANY, LINEAR),
@@ -44,6 +53,7 @@ FIGURES = {
     "fit": lambda: figures.time_figure(MOTION, Motion("fitted", TIME, SINE, 1.01 * FORCE), (0.0, 2.0)),
     "record": lambda: figures.record_figure(RECORD, RECORD.trim(1.0, 5.0)),
     "residual": lambda: figures.residual_figure(TIME, 0.1 * FORCE, LAGS, np.exp(-9.0 * LAGS), 0.03),
+    "profiles": lambda: figures.profile_figure(PROFILES),
     "loops": lambda: figures.loops_figure(SINE[:500], np.gradient(SINE, TIME)[:500], FORCE[:500], FORCE[:500]),
 }
 
@@ -65,7 +75,12 @@ def test_nothing_runs_over_the_edge_or_over_anything_else(make):
         assert not one.padded(-1.0).overlaps(other)
     for ax in figure.axes:
         assert ax.yaxis.label.get_window_extent().height <= 1.05 * ax.get_window_extent().height
-        assert ax.get_ylabel().endswith("]") or ax.get_ylabel() in ("Coherence", "Autocorrelation")
+        assert ax.get_ylabel().endswith("]") or ax.get_ylabel() in (
+            "Coherence",
+            "Autocorrelation",
+            "",
+            "Rise of the misfit",
+        )
         labels = [label.get_window_extent() for label in ax.get_xticklabels() if label.get_text()]
         inside = [box for box in labels if ax.bbox.x0 <= 0.5 * (box.x0 + box.x1) <= ax.bbox.x1]
         assert not any(one.overlaps(other) for one, other in combinations(inside, 2))
@@ -87,6 +102,21 @@ def test_gain_and_phase_are_those_of_the_result():
     assert phase.lines[0].get_ydata() == pytest.approx(np.degrees(MANY.phase))
     assert coherence.lines[0].get_ydata() == pytest.approx(MANY.coherence)
     assert gain.lines[0].get_xdata() == pytest.approx(MANY.omega / (2.0 * np.pi))
+
+
+def test_a_profile_is_a_parabola_between_its_points_and_the_interval_is_shaded():
+    first, *_ = drawn(FIGURES["profiles"]).axes
+    curve = first.lines[1]
+    at, rise = curve.get_xdata(), curve.get_ydata()
+    assert np.interp(99.5, at, rise) == pytest.approx(0.25, abs=1e-3)
+    assert (first.patches[0].get_x(), first.patches[0].get_width()) == (99.0, 2.5)
+
+
+def test_breaks_stay_breaks_in_long_curves():
+    values = np.where(np.arange(100_000) % 50_000 < 20_000, np.nan, 1.0)
+    _, shown = thinned(np.arange(100_000.0), values)
+    assert 0.3 < np.isnan(shown).mean() < 0.5
+    assert shown.size < 5000
 
 
 def test_the_legend_names_the_measurement_first():

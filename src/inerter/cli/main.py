@@ -20,6 +20,8 @@ EXAMPLES = """Examples:
   inerter run examples/stiffness-sweep.toml -o sweep -j 2
   inerter check my-study.toml
   inerter simulate examples/stick_slip.toml
+  inerter rig examples/rig_fit.toml -o fit.csv
+  inerter identify fit.csv --model ball-screw
   inerter reproduce wang-su-2008 -o paper
 
 Exit codes: 0 done, 1 the work failed or was interrupted, 2 the request was wrong."""
@@ -133,6 +135,93 @@ def simulate(
     from inerter.cli.simulation import simulate as command
 
     return command(file, output, window, force=force, as_json=json)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter identify fit.csv --model ball-screw
+  inerter identify slow.tdms fast.tdms --model friction --unit force=kgf
+  inerter identify bench.csv --config rig.toml -o bench --force"""
+)
+def identify(
+    records: tuple[Path, ...],
+    /,
+    *,
+    model: Annotated[
+        str | None, Parameter(help="What is fitted: ball-screw and others, or choose for the best of them all.")
+    ] = None,
+    config: Annotated[
+        Path | None, Parameter(help="A file (TOML) with [record], [model], [elements] and [fit]; options overrule it.")
+    ] = None,
+    displacement: Annotated[
+        str | None, Parameter(help="The channel of the displacement: name, or number from 0.")
+    ] = None,
+    force_channel: Annotated[str | None, Parameter(help="The channel of the force: name, or number from 0.")] = None,
+    time: Annotated[str | None, Parameter(help="The channel of the times: name, or number from 0.")] = None,
+    unit: Annotated[
+        tuple[str, ...], Parameter(help="A unit where the file has none or a wrong one: force=kgf. Several times.")
+    ] = (),
+    interval: Annotated[str | None, Parameter(help='Between samples, where the file has no times: "1 ms".')] = None,
+    gaps: Annotated[
+        str | None, Parameter(help='What missing samples are: refuse, fill, longest, or filled up to "50 ms".')
+    ] = None,
+    trim: Annotated[str | None, Parameter(help="Seconds to use, FROM:TO.")] = None,
+    resample: Annotated[str | None, Parameter(help='New interval between samples: "1 ms".')] = None,
+    period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None,
+    force_range: Annotated[str | None, Parameter(help='What the load cell can tell: "981 N".')] = None,
+    force_bandwidth: Annotated[str | None, Parameter(help='Of the load cell and its amplifier: "300 Hz".')] = None,
+    seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None,
+    starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None,
+    output: Output = None,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Identify the parameters of a device from measured records, and say what the records cannot tell.
+
+    The folder, by default RECORD-results, then holds report.html, fit.json,
+    residuals.csv and figures.
+
+    Parameters
+    ----------
+    records
+        Files of force and displacement (.csv .tsv .txt .tdms .mf4 .mdf .mat), fitted together.
+    """
+    from inerter.cli.identify import identify as command
+
+    options = {
+        "displacement": displacement, "force": force_channel, "time": time, "unit": unit, "interval": interval,
+        "gaps": gaps, "trim": trim, "resample": resample, "period": period, "force_range": force_range,
+        "force_bandwidth": force_bandwidth,
+    }  # fmt: skip
+    settings = {"seed": seed, "starts": starts}
+    return command(records, model, config, output, options, settings, force=force, as_json=json)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter rig examples/rig_fit.toml -o fit.csv
+  inerter rig examples/rig_friction.toml -o friction.tdms"""
+)
+def rig(
+    config: Path,
+    /,
+    *,
+    output: Annotated[
+        Path,
+        Parameter(name=["--output", "-o"], help="The file to write: .csv, .tsv, .txt, .tdms, .mf4 or .mat."),
+    ],
+    force: Annotated[bool, Parameter(negative="", show_default=False, help="Replace the file if it exists.")] = False,
+) -> int:
+    """Run a virtual test rig, and write what its sensors read of a device that is known.
+
+    Parameters
+    ----------
+    config
+        The rig file (TOML): a device, a signal, sensors. examples/rig_fit.toml is one.
+    """
+    from inerter.cli.rig import rig as command
+
+    return command(config, output, force=force)
 
 
 @app.command(

@@ -12,7 +12,10 @@ _MOST_POINTS = 4000  # of a curve; more are drawn as the range that they cover
 
 
 def thinned(time: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
-    """The same curve to the eye with at most 4000 points: of each piece the lowest and the highest."""
+    """The same curve to the eye with at most 4000 points: of each piece the lowest and the highest.
+
+    Values that are no numbers are breaks in the curve.
+    """
     size = -(-2 * time.size // _MOST_POINTS)
     if size < 3:
         return time, values
@@ -26,4 +29,11 @@ def _pieces(count: int, size: int) -> Iterator[slice]:
 
 def _extremes(values: Matrix, piece: slice) -> list[int]:
     part = values[piece]
+    known = np.flatnonzero(~np.isnan(part))
+    if known.size < part.size:
+        breaks = [piece.start + int(np.argmax(np.isnan(part)))]
+        if not known.size:
+            return breaks
+        ends = {piece.start + int(known[i(part[known])]) for i in (np.argmin, np.argmax)}
+        return sorted({*breaks, *ends})
     return sorted({piece.start + int(np.argmin(part)), piece.start + int(np.argmax(part))})

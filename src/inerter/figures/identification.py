@@ -23,11 +23,15 @@ Matrix = NDArray[np.float64]
 
 _HEIGHT = 1.75  # of a panel over time [inch]
 _MEASURED: dict[str, Any] = {"color": colour(0), "linewidth": 1.1}
+_BELOW: dict[str, Any] = {"color": "#9CC8E6", "linewidth": 2.6}  # a measurement that a model lies upon
 _MODEL: dict[str, Any] = {"color": colour(1), "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
+_ABOVE: dict[str, Any] = {"color": colour(1), "linewidth": 0.9}
 _LINEAR: dict[str, Any] = {"color": "black", "linewidth": 0.9, "linestyle": (0, (1, 1.5))}
 _IDEAL: dict[str, Any] = {"color": "#7A7A7A", "linewidth": 0.9, "linestyle": (0, (5, 1.5, 1, 1.5))}
 _RECEIVED: dict[str, Any] = {"color": "#9A9A9A", "linewidth": 1.1}
 _FEW = 60  # frequencies that are drawn as points with bars, not as a curve with a band
+_HIGHEST_RISE = 2.6  # that is drawn, in thresholds
+_DECADES = 30.0  # ratio of values from which on a profile has a log axis
 _WIDEST = 3.0  # spacings between two frequencies that a curve joins
 
 
@@ -41,10 +45,22 @@ class Motion:
     force: Matrix  # [N]
 
 
-def draw(figure: Figure, folder: Path, name: str) -> list[Path]:
-    """Write a figure into `folder` as SVG, PDF and PNG; returns the files."""
+@dataclass(frozen=True, eq=False)
+class ProfileCurve:
+    """How much worse the best fit gets when one parameter is held at a value, over what an interval of 95 % allows."""
+
+    label: str
+    values: Matrix  # increasing, in the unit
+    rises: Matrix  # 0 at the best fit, 1 at the ends of the interval
+    interval: tuple[float, float]
+    unit: str  # empty for a ratio
+    remark: str = ""  # such as that it cannot be told
+
+
+def draw(figure: Figure, folder: Path, name: str, *, print_too: bool = True) -> list[Path]:
+    """Write a figure into `folder` as SVG and, for print too, as PDF and PNG; returns the files."""
     with styled():
-        return save(figure, folder, name, pdf=True)
+        return save(figure, folder, name, pdf=print_too, png=print_too)
 
 
 def response_figure(
@@ -113,9 +129,9 @@ def time_figure(measured: Motion, model: Motion | None = None, window: tuple[flo
     """Displacement and force over time: Figure 8 of the paper, and with a model Figure 9."""
     with styled():
         figure, axes = new_figure(2, height=_HEIGHT)
-        curves = [(measured, _MEASURED)] + ([] if model is None else [(model, _MODEL)])
+        curves = [(measured, _MEASURED)] if model is None else [(measured, _BELOW), (model, _ABOVE)]
         for ax, name, unit, letter in zip(axes, ("displacement", "force"), ("m", "N"), "ab", strict=True):
-            moved = curves if name == "force" else curves[:1]
+            moved = curves if name == "force" else [(measured, _MEASURED)]
             own = _over_time(ax, [(m.time, getattr(m, name), m.label, style) for m, style in moved], unit)
             ax.set_ylabel(axis_label(name.capitalize(), own.unit))
             ax.set_title(f"({letter}) {name.capitalize()}", loc="left")
@@ -178,15 +194,70 @@ def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: M
             axes, (displacement, velocity), ("Displacement", "Velocity"), ("m", "m/s"), strict=True
         ):
             own = scale([np.abs(along).max()], unit)
-            thin: dict[str, Any] = {"linewidth": 0.7}
-            ax.plot(along * own.factor, force * up.factor, **{**_MEASURED, **thin}, label="measured")
+            style = {**_MEASURED, "linewidth": 0.7} if model is None else {**_BELOW, "linewidth": 1.9}
+            ax.plot(along * own.factor, force * up.factor, **style, label="measured")
             if model is not None:
-                ax.plot(along * own.factor, model * up.factor, **{**_MODEL, **thin}, label="model")
+                ax.plot(along * own.factor, model * up.factor, **{**_ABOVE, "linewidth": 0.7}, label="model")
             ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
             ax.set(xlabel=axis_label(name, own.unit), ylabel=axis_label("Force", up.unit))
         if model is not None:
             add_legend(figure, axes)
     return figure
+
+
+def profile_figure(curves: Sequence[ProfileCurve]) -> Figure:
+    """Profile likelihoods, a panel for each parameter: an interval is where the curve lies below the line."""
+    columns = min(3, len(curves))
+    with styled():
+        figure, axes = new_figure(len(curves), columns, height=1.75)
+        for ax, curve in zip(axes, curves, strict=True):
+            draw_profile(ax, curve)
+        for ax in axes[::columns]:
+            ax.set_ylabel("Rise of the misfit")
+        add_legend(figure, axes)
+    return figure
+
+
+def draw_profile(ax: Axes, curve: ProfileCurve) -> Axes:
+    """One profile; between points that were computed its root is taken as a straight line, as that of a parabola is."""
+    at, rises = _between(curve)
+    ax.axvspan(*curve.interval, color="#DDE9F3", linewidth=0.0, zorder=0.5, label="interval of 95 %")
+    ax.axhline(1.0, color=colour(1), linewidth=0.9, linestyle="--", label="threshold of 95 %")
+    ax.plot(at, rises, **{**_MEASURED, "linewidth": 1.0})
+    inside = curve.rises <= _HIGHEST_RISE
+    ax.plot(curve.values[inside], curve.rises[inside], linestyle="", marker="o", markersize=2.5, color=colour(0))
+    ax.set_ylim(-0.1, _HIGHEST_RISE)
+    low, high = _range_of_view(curve)
+    if 0.0 < _DECADES * low < high:
+        ax.set_xlim(low / 1.2, high * 1.2)
+        log_axis(ax, "x")
+    else:
+        margin = 0.04 * (high - low or abs(high) or 1.0)
+        ax.set_xlim(low - margin, high + margin)
+        ax.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
+        ax.ticklabel_format(axis="x", useOffset=False)
+    ax.set_xlabel(axis_label(curve.label, curve.unit) if curve.unit else curve.label)
+    if curve.remark:
+        ax.set_title(curve.remark, loc="left")
+    return ax
+
+
+def _between(curve: ProfileCurve) -> tuple[Matrix, Matrix]:
+    """The curve on a fine grid; its root changes sign at the best fit."""
+    best = float(curve.values[int(np.argmin(curve.rises))])
+    root = np.sqrt(np.maximum(curve.rises, 0.0)) * np.sign(curve.values - best)
+    at = np.unique(
+        np.concatenate([np.linspace(a, b, 30) for a, b in zip(curve.values, curve.values[1:], strict=False)])
+    )
+    return at, np.interp(at, curve.values, root) ** 2
+
+
+def _range_of_view(curve: ProfileCurve) -> tuple[float, float]:
+    """Somewhat more than the interval on either side, as far as there is a curve."""
+    begin, end = curve.interval
+    low, high = min(float(curve.values[0]), begin), max(float(curve.values[-1]), end)
+    width = end - begin or high - low
+    return max(low, begin - 0.7 * width), min(high, end + 0.7 * width)
 
 
 def _with_band(
@@ -228,7 +299,7 @@ def _with_gaps(response: Response, values: Matrix) -> tuple[Matrix, Matrix]:
 
 def _over_time(ax: Axes, curves: Sequence[tuple[Matrix, Matrix, str, dict[str, Any]]], unit: str) -> Scale:
     """Curves in the unit that suits the largest value of the first; returns that unit."""
-    own = scale([np.abs(curves[0][1]).max()], unit)
+    own = scale([np.nanmax(np.abs(curves[0][1]))], unit)
     for time, values, label, style in curves:
         named: dict[str, Any] = {"label": label} if label else {}
         ax.plot(*thinned(time, values * own.factor), **style, **named)

@@ -159,7 +159,7 @@ def log_axis(ax: Axes, which: str, *, least_ratio: float = _LEAST_RATIO) -> None
     axis.set_tick_params(which="minor", labelsize=7.0, width=0.4)
 
 
-def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False) -> list[Path]:
+def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: bool = True) -> list[Path]:
     """Write the figure as SVG and PNG, on request as PDF too, into `folder`; the same figure gives the same bytes.
 
     >>> from tempfile import TemporaryDirectory
@@ -168,7 +168,8 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False) -> list[
     ['empty.svg', 'empty.png']
     """
     folder.mkdir(parents=True, exist_ok=True)
-    files = [folder / f"{name}.{kind}" for kind in ("svg", "pdf", "png") if pdf or kind != "pdf"]
+    wanted = {"svg": True, "pdf": pdf, "png": png}
+    files = [folder / f"{name}.{kind}" for kind, asked in wanted.items() if asked]
     with styled():
         figure.draw_without_rendering()  # the layout is found once for all files
         figure.set_layout_engine("none")

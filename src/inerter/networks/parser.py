@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import NoReturn
 
 from inerter.errors import NetworkError
-from inerter.networks.elements import Element, Network, check_network
+from inerter.networks.elements import Element, Network, Parallel, Series, check_network
 
 _DEEPEST = 100
 _TOKEN = re.compile(r"\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()\-]))")
@@ -35,6 +35,28 @@ def names(expression: str) -> tuple[str, ...]:
     Raises `NetworkError` where the text has characters that are not part of the syntax.
     """
     return tuple(dict.fromkeys(text for text, _ in _tokens(expression) if text[0].isalpha()))
+
+
+def written(network: Network, names: Iterable[str]) -> str:
+    """The expression of a network whose elements have these names, in the order in which they are written.
+
+    >>> from inerter.networks.elements import Damper, Inerter, Spring
+    >>> written((Spring(1e3) | Damper(10.0)) - Inerter(20.0), ["k", "c", "b"])
+    '(k | c) - b'
+    """
+    rest = iter(names)
+
+    def text(part: Network, inside: str) -> str:
+        match part:
+            case Parallel(parts):
+                joined = " | ".join([text(each, "|") for each in parts])
+                return f"({joined})" if inside else joined
+            case Series(parts):
+                joined = " - ".join([text(each, "-") for each in parts])
+                return f"({joined})" if inside == "-" else joined
+        return next(rest)
+
+    return text(network, "")
 
 
 @dataclass

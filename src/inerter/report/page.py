@@ -52,7 +52,7 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             title=results.attrs["title"],
             swept=swept is not None,
             searched=study.optimise is not None,
-            headlines=[_printed_sentence(sentence) for sentence in headlines(results, printed)],
+            headlines=[printed_sentence(sentence) for sentence in headlines(results, printed)],
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
             layouts=layout_rows(study),
@@ -60,7 +60,7 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             tables=design_tables(results) if swept is None else sweep_tables(results),
             by_method=method_tables(results),
             crossings=[
-                _printed_sentence(f"{sentence}.")
+                printed_sentence(f"{sentence}.")
                 for sentence in (crossing_sentences(results, printed) if swept and results.attrs["baseline"] else [])
             ],
             budgets=budget_tables(budgets, study),
@@ -82,11 +82,15 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    templates.filters |= {"typeset": typeset, "breakable": breakable}
+    templates.filters |= {
+        "typeset": typeset,
+        "breakable": breakable,
+        "sentence": lambda text: typeset(printed_sentence(text)),
+    }
     return templates
 
 
-def _printed_sentence(sentence: str) -> str:
+def printed_sentence(sentence: str) -> str:
     """A sentence with a minus where there is one, and per cent on the line of their number."""
     return sentence.replace(" +- ", " ± ").replace(" -", " −").replace(" %", "\N{NO-BREAK SPACE}%")
 

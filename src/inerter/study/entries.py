@@ -42,6 +42,25 @@ def quantity(unit: str) -> PlainValidator:
     return PlainValidator(lambda text: parse_quantity(text, unit))
 
 
+def not_negative(unit: str) -> PlainValidator:
+    """A quantity of `unit` that may be zero."""
+
+    def check(text: Any) -> float:
+        value = parse_quantity(text, unit)
+        if value < 0.0:
+            raise UnitError(f"Got {shown(text)}: negative; expected 0 {unit} or more.")
+        return value
+
+    return PlainValidator(check)
+
+
+def positive_number(value: Any) -> float:
+    """A number greater than zero, without a unit."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
+        raise ValueError(f"Got {shown(value)}; expected a positive number without quotes, such as 1.02.")
+    return float(value)
+
+
 def yes_or_no(value: Any) -> bool:
     """True or false."""
     if not isinstance(value, bool):

@@ -158,10 +158,11 @@ def layout_problems(model: str, elements: Mapping[str, Element], layouts: Mappin
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
             place = ("layouts", name) if alike else ("layouts", name, mount)
-            yield from (at(place, problem) for problem in _network_problems(expression, elements))
+            yield from (at(place, problem) for problem in network_problems(expression, elements))
 
 
-def _network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:
+def network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:
+    """What is wrong with one network: its syntax, or elements that are not there."""
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:

@@ -1,4 +1,4 @@
-"""What is wrong with a study file, one line a problem: the place, what arrived, what was expected."""
+"""What is wrong with a file, one line a problem: the place, what arrived, what was expected."""
 
 from __future__ import annotations
 
@@ -22,6 +22,10 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _TELLING = {"vehicle": "model", "signal": "kind"}  # the key that decides which others a section has
 _OTHERS = {
     "study": "It is a section of study files, for: inerter run.",
+    "rig": "It is a section of rig files, for: inerter rig.",
+    "record": "It is a section of configurations, for: inerter identify.",
+    "model": "It is a section of configurations, for: inerter identify.",
+    "fit": "It is a section of configurations, for: inerter identify.",
     "signal": "It is a section of simulation files, for: inerter simulate.",
     "simulation": "It is a section of simulation files, for: inerter simulate.",
 }

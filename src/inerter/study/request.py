@@ -35,6 +35,13 @@ class SignalRequest:
         """Of the values; empty for what has none."""
         return {name: key.of(self.unit).unit for name, key in KINDS[self.kind].keys.items()}
 
+    def make(self, speed: float | None = None, roughness: float | None = None) -> Signal:
+        """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
+        kind = KINDS[self.kind]
+        road = None if speed is None or roughness is None else Road(roughness, speed)
+        known = {"road": road, "speed": speed, "unit": self.unit}
+        return kind.make(**self.values, **{name: known[name] for name in kind.given})
+
     def resolved(self) -> dict[str, Any]:
         """How a file says it, in SI units."""
         units = self.units
@@ -74,10 +81,7 @@ class SimulationRequest:
 
     def make_signal(self) -> Signal:
         """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
-        kind = KINDS[self.signal.kind]
-        road = None if self.speed is None or self.roughness is None else Road(self.roughness, self.speed)
-        known = {"road": road, "speed": self.speed, "unit": self.signal.unit}
-        return kind.make(**self.signal.values, **{name: known[name] for name in kind.given})
+        return self.signal.make(self.speed, self.roughness)
 
     def run(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Simulate it; raises what `simulate` raises."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -40,11 +41,8 @@ def load_simulation(path: str | Path) -> SimulationRequest:
 
 
 def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
-    vehicle, signal, settings = shape.vehicle.model_dump(), shape.signal.model_dump(), shape.simulation.model_dump()
+    vehicle, settings = shape.vehicle.model_dump(), shape.simulation.model_dump()
     model = vehicle.pop("model")
-    kind, moved = signal.pop("kind"), signal.pop("input") or MOVED[model]
-    if "file" in signal:
-        signal["file"] = str((path.parent / signal["file"]).absolute())
     layouts = {name: StrutLayout(struts_of(model, entry)) for name, entry in shape.layouts.items()}
     chosen = settings.pop("layout")
     if chosen is None and len(layouts) == 1:
@@ -58,21 +56,34 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
         roughness=None if shape.road is None else shape.road.roughness,
         elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
-        signal=SignalRequest(kind, moved, signal),
+        signal=signal_of(path, model, shape.signal.model_dump()),
         layout="" if chosen is None else chosen,
         **settings,
     )
 
 
+def signal_of(path: Path, model: str, entry: dict[str, Any]) -> SignalRequest:
+    """The signal that a section [signal] asks for; its file is looked for beside that at `path`."""
+    values = dict(entry)
+    kind, moved = values.pop("kind"), values.pop("input") or MOVED[model]
+    if "file" in values:
+        values["file"] = str((path.parent / values["file"]).absolute())
+    return SignalRequest(kind, moved, values)
+
+
+def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[str]:
+    """What is wrong with the layout that a section chooses."""
+    layouts = ", ".join(known)
+    if not layout:
+        yield at((section, "layout"), f"missing, but there are several layouts; expected one of {layouts}.")
+    elif layout not in known:
+        yield at((section, "layout"), f"got {shown(layout)}; expected one of {layouts}.{nearest(layout, known)}")
+
+
 def _names(request: SimulationRequest) -> Iterator[str]:
     """Names that nothing has."""
     yield from layout_problems(request.model, request.elements, request.layouts)
-    layouts = ", ".join(request.layouts)
-    if not request.layout:
-        yield at(("simulation", "layout"), f"missing, but there are several layouts; expected one of {layouts}.")
-    elif request.layout not in request.layouts:
-        hint = nearest(request.layout, request.layouts)
-        yield at(("simulation", "layout"), f"got {shown(request.layout)}; expected one of {layouts}.{hint}")
+    yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
     moved, inputs = request.signal.input, (MOVED[request.model], *FORCES[request.model])
     if moved not in inputs:
         hint = nearest(moved, inputs)

@@ -1,0 +1,150 @@
+"""What `inerter identify` does, in calls of the library."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from inerter.cli.progress import fraction
+from inerter.errors import RecordError, StudyError, UnitError
+from inerter.report.identification import OWN, write_fit, write_identification
+from inerter.report.identification_data import identification_data
+from inerter.report.identification_text import as_options, identification_text
+from inerter.study.identification_file import IdentificationRequest, RecordRequest, load_identification
+from inerter.study.identification_run import FIT, read, run_identification
+from inerter.study.identification_schema import channel_units, gap_treatment
+from inerter.study.run import REPORT, claimed
+from inerter.units import parse_quantity
+
+_QUANTITIES = {"interval": "s", "resample": "s", "period": "s", "force_range": "N", "force_bandwidth": "Hz"}
+
+
+def identify(
+    paths: Sequence[Path],
+    model: str | None,
+    config: Path | None,
+    output: Path | None,
+    options: Mapping[str, Any],
+    settings: Mapping[str, int | None],
+    *,
+    force: bool,
+    as_json: bool,
+) -> int:
+    """Identify a device from records into a folder; returns the exit code."""
+    request = _request(paths, model, config, options, settings)
+    readings = []
+    for path in paths:
+        try:
+            with fraction(f"reading {path.name}") as callback:
+                readings.append(read(path, request.record, callback))
+        except RecordError as error:
+            raise RecordError(as_options(str(error))) from None
+    folder = output or Path(f"{paths[0].stem}-results")
+    with claimed(folder, own=OWN, resume=None, force=force):
+        try:
+            with fraction(f"fitting {request.name or 'the model'}") as callback:
+                found = run_identification(readings, request, callback)
+            write_fit(found, folder)
+            print(json.dumps(identification_data(found), indent=2) if as_json else identification_text(found))
+            sys.stdout.flush()
+            with fraction("drawing") as callback:
+                write_identification(found, folder, callback)
+        except RecordError as error:
+            raise RecordError(as_options(str(error))) from None
+        except KeyboardInterrupt:
+            kept = f"; {folder / FIT} is complete" if (folder / FIT).exists() else ", before there was a fit"
+            print(f"inerter: interrupted{kept}.", file=sys.stderr, flush=True)
+            return 1
+    print(f"inerter: report: {folder / REPORT}", file=sys.stderr, flush=True)
+    if not found.fit.status.ok:
+        print(f"inerter: {found.title}: {found.fit.status}", file=sys.stderr, flush=True)
+        return 1
+    return 0
+
+
+def _request(
+    paths: Sequence[Path],
+    model: str | None,
+    config: Path | None,
+    options: Mapping[str, Any],
+    settings: Mapping[str, int | None],
+) -> IdentificationRequest:
+    """The configuration with what the command line says in place of what the file says."""
+    if not paths:
+        raise StudyError("Give a file of measurements, such as: inerter identify bench.csv --model ball-screw")
+    request = IdentificationRequest() if config is None else load_identification(config)
+    if model is not None and request.layout is not None:
+        raise StudyError(f"Got --model {model} and a layout in [model] of {config}: give one of them.")
+    given = {name: value for name, value in settings.items() if value is not None}
+    if given.get("seed", 0) < 0:
+        raise StudyError(f"--seed must be a whole number from 0 on, got {given['seed']}.")
+    request = replace(
+        request,
+        name=model or request.name,
+        record=_record(request.record, options),
+        settings={**request.settings, **given},
+    )
+    request.models()
+    return request
+
+
+def _record(asked: RecordRequest, options: Mapping[str, Any]) -> RecordRequest:
+    given = {name: value for name, value in options.items() if value is not None}
+    changes: dict[str, Any] = {}
+    channels = {
+        role: int(name) if name.isdigit() else name
+        for role in ("displacement", "force", "time")
+        if (name := given.get(role)) is not None
+    }
+    changes["channels"] = {**asked.channels, **channels}
+    changes["units"] = {**asked.units, **_units(given.get("unit", ()))}
+    for name, unit in _QUANTITIES.items():
+        if name in given:
+            changes[name] = _positive(name, given[name], unit)
+    if "trim" in given:
+        changes["start"], changes["stop"] = _times(given["trim"])
+    if "gaps" in given:
+        try:
+            changes["gaps"] = gap_treatment(given["gaps"])
+        except ValueError as error:
+            raise StudyError(f"--gaps: {error}") from None
+    return replace(asked, **changes)
+
+
+def _units(pairs: Sequence[str]) -> dict[str, str]:
+    units = {}
+    for pair in pairs:
+        role, equals, unit = pair.partition("=")
+        if not equals or not unit.strip():
+            raise StudyError(f'Got --unit "{pair}"; expected a channel and its unit, such as --unit force=kgf.')
+        units[role.strip()] = unit.strip()
+    try:
+        return channel_units(units)
+    except ValueError as error:
+        raise StudyError(f"--unit: {error}") from None
+
+
+def _positive(name: str, text: str, unit: str) -> float:
+    option = f"--{name.replace('_', '-')}"
+    try:
+        value = parse_quantity(text, unit)
+    except UnitError as error:
+        raise StudyError(f"{option}: {error}") from None
+    if value <= 0.0:
+        raise StudyError(f'{option}: Got "{text}": not positive; expected more than 0 {unit}.')
+    return value
+
+
+def _times(text: str) -> tuple[float | None, float | None]:
+    begin, colon, end = text.partition(":")
+    try:
+        times = tuple(float(part) if part.strip() else None for part in (begin, end))
+    except ValueError:
+        colon = ""
+    if not colon:
+        raise StudyError(f'Got --trim "{text}"; expected FROM:TO in seconds, such as --trim 0.5:4.')
+    return times[0], times[1]

@@ -1,0 +1,162 @@
+"""The report of an identification: numbers, residuals, figures and one HTML page that needs no other file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from inerter.figures.identification import draw
+from inerter.networks.parser import written
+from inerter.report.identification_data import identification_data, response_data, write_residuals
+from inerter.report.identification_figures import figures
+from inerter.report.identification_text import about, as_options, done, plainly, share, whiteness
+from inerter.report.identified_values import UNTOLD, elements_block, plain, scale_of, single, value_and_interval
+from inerter.report.page import PageFigure, environment, inline
+from inerter.study.identification_run import FIT, RESIDUALS, Identified, model_title, responses
+from inerter.study.run import FIGURES, REPORT, versions, write_text
+
+RESPONSE = "response.json"
+OWN = (FIT, RESIDUALS, RESPONSE, FIGURES, REPORT)
+_SEVERITIES = {"error": "Errors", "warning": "Warnings", "info": "Good to know"}
+_MOST_FIGURES = 5  # of one record, and two of all
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    """A parameter in the table: what it is, its value and interval, and where it was sought."""
+
+    name: str
+    value: str
+    interval: str
+    error: str
+    bounds: str
+    told: bool
+
+
+@dataclass(frozen=True)
+class RecordText:
+    """A record in words: what was done to it, and what was found, by severity."""
+
+    source: str
+    about: str
+    done: list[str]
+    findings: dict[str, list[str]]
+    number: int
+
+
+def write_fit(found: Identified, folder: Path) -> None:
+    """Write the numbers and the residuals, which is what took time to find, into `folder`."""
+    write_text(folder / FIT, json.dumps(identification_data(found), indent=2) + "\n")
+    write_residuals(found, folder / RESIDUALS)
+
+
+def write_identification(
+    found: Identified, folder: Path, progress: Callable[[float], None] = lambda done: None
+) -> None:
+    """Write the frequency responses, the figures (SVG), and a page that shows all of it, into `folder`."""
+    answered = responses(found)
+    write_text(folder / RESPONSE, json.dumps(response_data(answered), indent=2) + "\n")
+    drawn: dict[str, list[PageFigure]] = {}
+    for count, figure in enumerate(figures(found, answered), 1):
+        (path,) = draw(figure.figure, folder / FIGURES, figure.name, print_too=False)
+        svg = inline(path.read_text(encoding="utf-8"), figure.name, figure.caption)
+        drawn.setdefault(figure.section, []).append(PageFigure(svg, figure.caption))
+        progress(count / (_MOST_FIGURES * len(found.readings) + 2))
+    write_text(folder / REPORT, identification_page(found, drawn, answered.notes))
+
+
+def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], notes: tuple[str, ...] = ()) -> str:
+    """The page as text, with these figures by their section; `notes` are those of the frequency response."""
+    fit = found.fit
+    return (
+        environment()
+        .get_template("identification.html")
+        .render(
+            title=found.title,
+            model=model_title(found),
+            layout=written(found.model, [e.label for e in found.model.elements()]),
+            status="" if fit.status.ok else str(fit.status),
+            answers=list(_answers(found)),
+            rows=list(_rows(found)),
+            told=[name for name, told in fit.identifiable.items() if plainly(told)],
+            sentences=[told.sentence for told in fit.identifiable.values() if not plainly(told)],
+            names=list(fit.parameters),
+            correlation=[[f"{value:+.2f}".replace("-", "−") for value in row] for row in fit.correlation.tolist()],
+            next_experiment=fit.next_experiment,
+            elements=elements_block(found),
+            records=list(_records(found)),
+            goodness=list(_goodness(found)),
+            whiteness=[(c.record.source, whiteness(c)) for c in fit.comparisons],
+            candidates=[
+                (c.name, c.unknowns, f"{c.criterion:.1f}", share(c.explained), c.status)
+                for c in sorted(found.candidates, key=lambda c: c.criterion)
+            ],
+            chosen=found.name,
+            drawn=drawn,
+            notes=notes,
+            computation=_computation(found),
+            versions=", ".join(f"{name} {version}" for name, version in versions().items()),
+        )
+    )
+
+
+def _answers(found: Identified) -> Iterator[str]:
+    for name in found.fit.parameters if found.explains else ():
+        value, interval = value_and_interval(found, name)
+        if value == UNTOLD:
+            yield f"{name} {UNTOLD}: {interval}."
+        else:
+            yield f"{name} = {value}, with 95 % confidence {interval}."
+    parts = [c.explained(bool(c.checked.any())) for c in found.fit.comparisons]
+    where = "of the force that was kept for the check" if found.fit.comparisons[0].checked.any() else "of the force"
+    yield f"The model explains {' and '.join(share(part) for part in parts)} {where}."
+
+
+def _rows(found: Identified) -> Iterator[ParameterRow]:
+    for name, p in found.fit.parameters.items():
+        value, interval = value_and_interval(found, name)
+        bounds = found.bounds(name)
+        sought = "" if bounds is None else f"{single(bounds[0], p.unit)} to {single(bounds[1], p.unit)}"
+        told, own = bool(found.fit.identifiable[name]), scale_of(p.best, p.unit)
+        error = f"{plain(p.standard_error * own.factor, 2)} {own.unit}".rstrip() if told else ""
+        yield ParameterRow(name, value, interval, error, sought, told)
+
+
+def _records(found: Identified) -> Iterator[RecordText]:
+    for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
+        by_severity = {
+            title: [as_options(f.sentence) for f in reading.findings if f.severity == severity]
+            for severity, title in _SEVERITIES.items()
+        }
+        yield RecordText(
+            reading.used.source,
+            about(reading),
+            list(done(found, reading, comparison)),
+            {title: sentences for title, sentences in by_severity.items() if sentences},
+            number,
+        )
+
+
+def _goodness(found: Identified) -> Iterator[tuple[str, ...]]:
+    for c in found.fit.comparisons:
+        for part, mask in (("fitted", c.fitted), ("check", c.checked)):
+            if mask.any():
+                check = part == "check"
+                numbers = (str(int(mask.sum())), share(c.explained(check)), single(c.rms(check), "N"))
+                yield (c.record.source, part, *numbers, "" if check else single(c.offset, "N"))
+
+
+def _computation(found: Identified) -> str:
+    fit = found.fit
+    settings = ", ".join(f"{name} {value}" for name, value in {**fit.settings, **found.settings}.items())
+    agreeing = sum(cost <= 1.01 * fit.costs[0] + 1e-12 for cost in fit.costs) if fit.costs else 0
+    starts = f" {agreeing} of the {len(fit.costs)} best starts found the same fit." if fit.costs else ""
+    text = (
+        f"The model was moved as the displacement was, smoothed, and its force compared with the measured one; no "
+        f"measured motion was differentiated twice. Least squares from many starts, with residuals weighted and "
+        f"whitened; {fit.simulations} simulations.{starts} Intervals of 95 % are from profile likelihoods. Settings: "
+        f"{settings}. Schwarz's criterion (lower is better): {fit.criterion:.1f}."
+    )
+    return text.replace(": -", ": −")

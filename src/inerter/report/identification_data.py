@@ -1,0 +1,125 @@
+"""What an identification found, as data for JSON and as a table of residuals, in SI units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from inerter.identification.fit import Comparison
+from inerter.networks.parser import written
+from inerter.records.result import Response
+from inerter.report.identified_values import elements_block
+from inerter.study.identification_run import Identified, Reading, Responses
+from inerter.study.run import versions
+
+
+def identification_data(found: Identified) -> dict[str, Any]:
+    """All numbers of a fit but its residuals; infinite ones are text, those that cannot be told null."""
+    fit = found.fit
+    data = {
+        "title": found.title,
+        "model": found.name,
+        "layout": written(found.model, [e.label for e in found.model.elements()]),
+        "status": str(fit.status),
+        "explained": fit.explained,
+        "parameters": {
+            name: {
+                "value": p.value,
+                "unit": p.unit,
+                "interval": p.interval,
+                "best": p.best,
+                "standard_error": p.standard_error,
+                "bounds": found.bounds(name),
+                "told": bool(fit.identifiable[name]),
+                "sentence": fit.identifiable[name].sentence,
+                "profile": p.profile,
+            }
+            for name, p in fit.parameters.items()
+        },
+        "correlation": fit.correlation.tolist(),
+        "covariance": fit.covariance.tolist(),
+        "records": [_record(r, c) for r, c in zip(found.readings, fit.comparisons, strict=True)],
+        "next_experiment": fit.next_experiment,
+        "notes": fit.notes,
+        "criterion": fit.criterion,
+        "costs": fit.costs,
+        "simulations": fit.simulations,
+        "candidates": [vars(candidate) for candidate in found.candidates],
+        "settings": {**found.settings, **fit.settings},
+        "elements": elements_block(found),
+        "versions": versions(),
+    }
+    plain: dict[str, Any] = _plain(data)
+    return plain
+
+
+def response_data(found: Responses) -> dict[str, Any]:
+    """The frequency responses: measured, and of the model at the same frequencies."""
+    curves = {"measured": found.measured, "model": found.model}
+    data = {name: _response(curve) for name, curve in curves.items() if curve is not None}
+    plain: dict[str, Any] = _plain({**data, "notes": found.notes})
+    return plain
+
+
+def write_residuals(found: Identified, path: Path) -> None:
+    """A row for every sample of every record: what was measured, what the model answers, and what it was used for."""
+    temporary = path.with_name(f"{path.name}.part")
+    with temporary.open("w", encoding="utf-8", newline="\n") as file:
+        file.write("record,time [s],displacement [m],force [N],model [N],residual [N],part\n")
+        for number, c in enumerate(found.fit.comparisons):
+            parts = np.where(c.fitted, "fit", np.where(c.checked, "check", "left out"))
+            columns = (c.record.time, c.record.displacement, c.record.force, c.model, c.residual)
+            for row, part in zip(np.column_stack(columns).tolist(), parts.tolist(), strict=True):
+                file.write(f"{number},{','.join(map(repr, row))},{part}\n")
+    temporary.replace(path)
+
+
+def _record(reading: Reading, comparison: Comparison) -> dict[str, Any]:
+    record, motion = comparison.record, comparison.experiment.motion
+    return {
+        "source": record.source,
+        "samples": record.time.size,
+        "interval": record.interval,
+        "duration": record.duration,
+        "notes": record.notes,
+        "findings": [vars(finding) for finding in reading.findings],
+        "bandwidth": motion.bandwidth,
+        "highest": motion.highest,
+        "lead": comparison.lead,
+        "offset": comparison.offset,
+        "fitted": {
+            "samples": int(comparison.fitted.sum()),
+            "rms": comparison.rms(),
+            "explained": comparison.explained(),
+        },
+        "checked": {
+            "samples": int(comparison.checked.sum()),
+            "rms": comparison.rms(True),
+            "explained": comparison.explained(True),
+        },
+        "whiteness": comparison.whiteness,
+        "openings": dict(comparison.openings),
+    }
+
+
+def _response(response: Response) -> dict[str, Any]:
+    columns = {name: values.tolist() for name, values in response.columns().items()}
+    return {"frequency": response.frequency.tolist(), **columns}
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no infinity, which is text, and nothing that is no number, which is null."""
+    match value:
+        case Mapping():
+            return {key: _plain(item) for key, item in value.items()}
+        case list() | tuple():
+            return [_plain(item) for item in value]
+        case float():
+            return None if math.isnan(value) else float(value) if math.isfinite(value) else str(value)
+        case np.generic():
+            return _plain(value.item())
+    return value

@@ -1,0 +1,150 @@
+"""The figures of an identification, each with its caption, drawn one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from inerter.figures.identification import (
+    Motion,
+    ProfileCurve,
+    loops_figure,
+    profile_figure,
+    record_figure,
+    residual_figure,
+    response_figure,
+    time_figure,
+)
+from inerter.identification.fit import Comparison
+from inerter.report.identified_values import UNTOLD, scale_of, value_and_interval
+from inerter.study.identification_run import Identified, Responses
+
+Matrix = NDArray[np.float64]
+_PERIODS = 4.0  # of the motion in a window that can be read
+_FEWEST = 30  # samples of a window
+_LAGS = 60
+_WHITE = 1.96  # standard deviations, that 95 % of white noise stay within
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A figure, the name of its file, its section of the page, and its caption."""
+
+    name: str
+    section: str  # "profiles", "response", or "record" and "fit" with the number of the record
+    figure: Figure
+    caption: str
+
+
+def figures(found: Identified, answered: Responses) -> Iterator[Drawn]:
+    """All figures, one after the other."""
+    names = found.fit.parameters if found.explains else ()
+    curves = [c for name in names if (c := _profile(found, name)) is not None]
+    if curves:
+        yield Drawn("profiles", "profiles", profile_figure(curves), _PROFILES)
+    for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
+        end = f"-{number + 1}" if len(found.readings) > 1 else ""
+        source = comparison.record.source
+        received = record_figure(reading.received, comparison.record)
+        yield Drawn(f"record{end}", f"record{number}", received, f"{source}, as received and as used.")
+        for name, figure, caption in _of_fit(comparison):
+            yield Drawn(f"{name}{end}", f"fit{number}", figure, f"{source}: {caption}")
+    if answered.measured is not None:
+        figure = response_figure(answered.measured, answered.model, answered.linear)
+        yield Drawn("response", "response", figure, _response_caption(answered))
+
+
+def window(comparison: Comparison) -> tuple[int, int]:
+    """The samples of a few periods of the motion at the end of what was fitted."""
+    used = np.flatnonzero(comparison.fitted)
+    first, last = int(used[0]), int(used[-1])
+    x = comparison.experiment.motion.displacement[first : last + 1]
+    above = x > 0.5 * (x.max() + x.min())
+    turns = max(int(np.count_nonzero(above[1:] != above[:-1])), 1)
+    length = max(int(_PERIODS * 2.0 * (last - first) / turns), _FEWEST)
+    return max(first, last - length), last
+
+
+def _of_fit(c: Comparison) -> Iterator[tuple[str, Figure, str]]:
+    record, (first, last) = c.record, window(c)
+    measured = Motion("measured", record.time, record.displacement, record.force)
+    model = Motion("model", record.time, record.displacement, c.model)
+    part = (float(record.time[first]), float(record.time[last]))
+    yield "fit", time_figure(measured, model), f"the model over the measurement, {_checked(c)}."
+    inside = slice(max(first - 1, 0), last + 2)
+    near = [Motion(m.label, m.time[inside], m.displacement[inside], m.force[inside]) for m in (measured, model)]
+    yield "window", time_figure(near[0], near[1], part), f"{part[0]:.4g} to {part[1]:.4g} s of it."
+    used = np.flatnonzero(c.fitted | c.checked)
+    whole = slice(int(used[0]), int(used[-1]) + 1)
+    lags, correlation, bound = _autocorrelation(c.whitened)
+    yield (
+        "residuals",
+        residual_figure(
+            record.time[whole],
+            np.where(c.fitted | c.checked, c.residual, np.nan)[whole],
+            lags * record.interval,
+            correlation,
+            min(bound, 1.0),
+        ),
+        "what the model leaves of the force; on the right the autocorrelation of the fitted part after weighting and "
+        "whitening, on which the intervals rest.",
+    )
+    loop = slice(first, last + 1)
+    yield (
+        "loops",
+        loops_figure(record.displacement[loop], c.experiment.motion.velocity[loop], record.force[loop], c.model[loop]),
+        f"the force over displacement and velocity, {part[0]:.4g} to {part[1]:.4g} s; the velocity is that of the "
+        f"displacement smoothed to {c.experiment.motion.bandwidth:.4g} Hz.",
+    )
+
+
+def _checked(c: Comparison) -> str:
+    if not c.checked.any():
+        return "all of it fitted"
+    start = float(c.record.time[int(np.flatnonzero(c.checked)[0])])
+    return f"which was fitted up to {start:.4g} s and is checked from there on"
+
+
+def _autocorrelation(white: Matrix) -> tuple[Matrix, Matrix, float]:
+    """Lags in samples, the autocorrelation there, and what that of white noise stays within."""
+    x = np.clip(white - np.median(white), -4.0, 4.0)
+    count = min(_LAGS, x.size // 4)
+    square = max(float(x @ x), 1e-300)
+    lags = np.arange(count + 1)
+    return lags.astype(float), np.array([float(x[k:] @ x[: x.size - k]) / square for k in lags]), _WHITE / x.size**0.5
+
+
+def _profile(found: Identified, name: str) -> ProfileCurve | None:
+    parameter = found.fit.parameters[name]
+    if len(parameter.profile) < 2:
+        return None
+    points = np.array(sorted(parameter.profile))
+    ends = (points[0, 0], points[-1, 0])
+    own = scale_of(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
+    value, _ = value_and_interval(found, name)
+    return ProfileCurve(
+        label=name,
+        values=points[:, 0] * own.factor,
+        rises=points[:, 1],
+        interval=(parameter.interval[0] * own.factor, parameter.interval[1] * own.factor),
+        unit=own.unit,
+        remark=UNTOLD if value == UNTOLD else "",
+    )
+
+
+def _response_caption(answered: Responses) -> str:
+    assert answered.measured is not None
+    size = f"{1e3 * answered.measured.amplitude:.3g} mm"
+    model = "" if answered.model is None else f", the model's at the same amplitude ({size} r.m.s.)"
+    return f"Force over displacement: as measured, with the sensors put right as the fit found them{model}, and linear."
+
+
+_PROFILES = (
+    "Profile likelihoods: how much worse the best fit gets when one parameter is held at a value and all others follow,"
+    " over what an interval of 95 % allows. Dots were computed. A curve that stays below the line on one side tells no "
+    "end there."
+)

@@ -1,0 +1,129 @@
+"""Identified values in words and numbers: with as many digits as their intervals bear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import floor, log10
+
+from inerter.figures.labels import Scale, scale
+from inerter.networks.elements import Element, Free
+from inerter.networks.parser import written
+from inerter.study.identification_run import Identified
+from inerter.units import format_quantity
+
+UNTOLD = "cannot be told"
+_FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
+_MOST_DIGITS = 6
+_SMALL: dict[str, Scale] = {"m": Scale(1e6, "um"), "s": Scale(1e3, "ms")}
+
+
+def scale_of(value: float, unit: str) -> Scale:
+    """The unit in which a value is a number of handy size; micrometres and milliseconds among them."""
+    if not unit:
+        return Scale(1.0, "")
+    if (unit == "m" and 0.0 < abs(value) < 1e-5) or (unit == "s" and abs(value) < 0.1):
+        return _SMALL[unit]
+    return scale([value], unit)
+
+
+def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
+    """The value of a parameter, or that it cannot be told, and its interval of 95 %, empty if there is none."""
+    parameter, bounds = found.fit.parameters[name], found.bounds(name)
+    if not found.explains:
+        return UNTOLD, ""
+    low, high = parameter.interval
+    own = scale_of(parameter.best or high, parameter.unit)
+    decimals = _decimals(low * own.factor, high * own.factor)
+    if parameter.value == parameter.value:
+        far = low <= 0.0 or high > _FAR * low
+        interval = (
+            f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
+            if far
+            else f"{low * own.factor:.{decimals}f} to {high * own.factor:.{decimals}f} {own.unit}".rstrip()
+        )
+        value = single(parameter.best, parameter.unit) if far else f"{parameter.best * own.factor:.{decimals}f}"
+        return value if far else f"{value} {own.unit}".rstrip(), interval
+    below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
+    above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
+    if above and not below:
+        return UNTOLD, f"below {single(high, parameter.unit)}"
+    if below and not above:
+        return UNTOLD, f"above {single(low, parameter.unit)}"
+    return UNTOLD, f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
+
+
+def single(value: float, unit: str, digits: int = 3) -> str:
+    """A value alone, with its unit."""
+    own = scale_of(value, unit)
+    return f"{plain(value * own.factor, digits)} {own.unit}".rstrip()
+
+
+def plain(number: float, digits: int) -> str:
+    """A number to so many digits, without a power of ten unless it is far from one.
+
+    >>> plain(5000.0, 3), plain(1.234e-7, 2)
+    ('5000', '1.2e-07')
+    """
+    return f"{float(f'{number:.{digits}g}'):.9g}"
+
+
+def _decimals(low: float, high: float) -> int:
+    """So many that half of the interval has two digits, within reason."""
+    half, size = 0.5 * (high - low), max(abs(low), abs(high))
+    if not half > 0.0 or not size > 0.0:
+        return 3
+    most = max(_MOST_DIGITS - 1 - floor(log10(size)), 0)
+    return min(max(1 - floor(log10(half)), 0), most)
+
+
+def elements_block(found: Identified) -> str:
+    """The identified device as sections of a study or simulation file: elements with their best values, one layout.
+
+    What the records do not tell has its best value too, so that the layout can be computed, and says so.
+    """
+    rows, expression = _rows(found)
+    keys = max(len(name) for name in rows)
+    values = max(len(value) for value, _ in rows.values())
+    lines = [f"# {found.name}, identified from {_sources(found)}"]
+    if not found.fit.status.ok:
+        lines.append(f"# not to be relied on: {found.fit.status.kind}")
+    lines.append("[elements]")
+    lines += [f"{name:<{keys}} = {value:<{values}}  # {remark}" for name, (value, remark) in rows.items()]
+    return "\n".join([*lines, "", "[layouts]", f'device = "{expression}"'])
+
+
+def _sources(found: Identified) -> str:
+    names = list(dict.fromkeys(reading.used.source for reading in found.readings))
+    text = ", ".join(names)
+    return text if len(text) < 50 else f"{len(names)} records"
+
+
+def _rows(found: Identified) -> tuple[dict[str, tuple[str, str]], str]:
+    """What stands behind each name, and the expression."""
+    rows: dict[str, tuple[str, str]] = {}
+    order = []
+    for free, best in zip(found.model.elements(), found.fit.device.elements(), strict=True):
+        value, remark = _entry(found, free, best)
+        for name in _possible(free):
+            if rows.setdefault(name, (value, remark)) == (value, remark):
+                order.append(name)
+                break
+    return rows, written(found.fit.device, order)
+
+
+def _possible(element: Element) -> Iterator[str]:
+    """Names of an element in a file: that of its free value, its own, or with a number where that is taken."""
+    label = element.value.name if isinstance(element.value, Free) and element.value.name else element.label
+    yield label
+    yield from (f"{label}{count}" for count in range(2, 1000))
+
+
+def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
+    number = best.value
+    assert not isinstance(number, Free)
+    value = f'"{format_quantity(number, best.unit, _MOST_DIGITS)}"'
+    if not isinstance(free.value, Free):
+        return value, "as given"
+    name = str(free.value.name)
+    told, interval = value_and_interval(found, name)
+    return value, f"{UNTOLD}: {interval}".rstrip(": ") if told == UNTOLD else f"95 %: {interval}"

@@ -1,0 +1,30 @@
+"""What a virtual rig measured, in a few lines of at most 80 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from textwrap import wrap
+
+import numpy as np
+
+from inerter.figures.labels import quantity
+from inerter.records.record import Record
+from inerter.report.text import WIDTH
+from inerter.study.rig_file import RigRequest
+
+
+def rig_text(request: RigRequest, record: Record) -> str:
+    """The title, the signal, the samples, the largest displacement and force, and whether the load cell saturated."""
+    text = "\n".join(line for part in _lines(request, record) for line in wrap(part, WIDTH, subsequent_indent="  "))
+    return text.encode("ascii", "replace").decode()
+
+
+def _lines(request: RigRequest, record: Record) -> Iterator[str]:
+    peak, limit = float(np.abs(record.force).max()), request.rig.force_range
+    yield request.title
+    yield f"{record.source}"
+    yield f"{record.time.size} samples over {record.duration:.6g} s, at {1.0 / record.interval:.6g} Hz"
+    yield f"displacement up to {quantity(float(np.abs(record.displacement).max()), 'm')}"
+    full = float(np.mean(np.abs(record.force) >= 0.999 * limit))
+    told = f"saturated in {100.0 * full:.2g} % of the samples" if full else "not saturated"
+    yield f"force up to {quantity(peak, 'N')} of the {quantity(limit, 'N')} that the load cell can tell: {told}"

@@ -1,0 +1,173 @@
+"""From files of measurements to an identified device: reading, looking over, preparing, fitting, responses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from inerter.errors import InerterError, RecordError, StudyError
+from inerter.identification.fit import Comparison, Fit
+from inerter.identification.identify import identify
+from inerter.identification.response import linear_response, model_response
+from inerter.identification.space import DELAY, GAIN
+from inerter.networks.elements import Free, Network
+from inerter.records.finding import Finding
+from inerter.records.findings import findings
+from inerter.records.prepare import detrend, resample, shift_force
+from inerter.records.readers import read_record
+from inerter.records.record import Record
+from inerter.records.response import frequency_response
+from inerter.records.result import Response
+from inerter.study.identification_file import CUSTOM, IdentificationRequest, RecordRequest
+from inerter.vehicle.cars import Rig
+
+Progress = Callable[[float], None]
+FIT, RESIDUALS = "fit.json", "residuals.csv"
+_CHOICE = "inerter.identification.choice"
+_LINEAR_POINTS = 300
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A record as it was received and as it is used, and what is worth knowing about it."""
+
+    received: Record
+    used: Record
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One model of several, and how well it does."""
+
+    name: str
+    criterion: float
+    explained: float  # of the part for the check
+    unknowns: int
+    status: str
+
+
+@dataclass(frozen=True, eq=False)
+class Responses:
+    """Force over displacement as measured, of the model at the same amplitude, and of the linear model."""
+
+    measured: Response | None
+    model: Response | None = None
+    linear: Response | None = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """A fit with all that a report of it tells."""
+
+    title: str
+    name: str  # of the model
+    model: Network  # with its free values named
+    readings: tuple[Reading, ...]
+    fit: Fit
+    settings: dict[str, Any]
+    candidates: tuple[Candidate, ...] = ()
+
+    def bounds(self, parameter: str) -> tuple[float, float] | None:
+        """Between which a parameter of the device was sought; None for one of the sensors."""
+        free = (e.value for e in self.model.elements())
+        return next(((v.lower, v.upper) for v in free if isinstance(v, Free) and v.name == parameter), None)
+
+    @property
+    def explains(self) -> bool:
+        """Whether the model explains the records, so that its parameters mean anything."""
+        return self.fit.status.ok or any(self.fit.identifiable.values())
+
+
+def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> Reading:
+    """The record of a file, prepared as the request says, with its findings.
+
+    Raises `RecordError` for a file that cannot be used, or a record that nothing can be fitted to.
+    """
+    channels: dict[str, Any] = dict(asked.channels)
+    received = read_record(
+        path,
+        **channels,
+        units=asked.units or None,
+        interval=asked.interval,
+        gaps=asked.gaps,
+        force_range=asked.force_range,
+        period=asked.period,
+        progress=progress,
+    )
+    if asked.force_bandwidth is not None:
+        received = received.noted(force_bandwidth=asked.force_bandwidth)
+    used = received
+    if asked.start is not None or asked.stop is not None:
+        used = used.trim(asked.start, asked.stop)
+    if asked.resample is not None:
+        used = resample(used, asked.resample)
+    if asked.detrend:
+        used = detrend(used)
+    found = tuple(findings(used))
+    if found and found[0].severity == "error":
+        raise RecordError(f"{used.source}: {found[0].sentence}")
+    return Reading(received, used, found)
+
+
+def run_identification(
+    readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None = None
+) -> Identified:
+    """Fit the model, or choose one, to the records.
+
+    Raises what `identify` raises, and `StudyError` where a choice is not to be had.
+    """
+    models, records = request.models(), [r.used for r in readings]
+    settings = dict(request.settings)
+    title = request.title or ", ".join(dict.fromkeys(r.source for r in records))
+    if len(models) == 1:
+        ((name, model),) = models.items()
+        fit = identify(records, model, **settings, progress=progress)
+        return Identified(title, name, Rig(model).device, tuple(readings), fit, settings)
+    if find_spec(_CHOICE) is None:
+        raise StudyError("This version cannot choose between models. Name one with --model.")
+    choice = import_module(_CHOICE).choose(records, models=models, **settings)
+    candidates = tuple(
+        Candidate(row.name, row.criterion, row.explained, row.unknowns, str(row.status)) for row in choice.table
+    )
+    name, model = choice.best, Rig(models[choice.best]).device
+    return Identified(title, name, model, tuple(readings), choice.fits[name], settings, candidates)
+
+
+def responses(found: Identified) -> Responses:
+    """The frequency responses of the records, their sensors put right as the fit found them, and of the model."""
+    values = {name: p.best for name, p in found.fit.parameters.items()}
+    records = [_corrected(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
+    try:
+        measured = frequency_response(records)
+    except InerterError as error:
+        return Responses(None, notes=(str(error),))
+    if not measured.omega.size:
+        return Responses(None, notes=measured.notes)
+    notes, model, linear = list(measured.notes), None, None
+    try:
+        model = model_response(found.fit.device, records)
+        notes += [note for note in model.notes if note not in notes]
+        low, high = measured.omega[0], measured.omega[-1]
+        reach = 1.3 if high > 2.0 * low else 2.0
+        linear = linear_response(found.fit.device, np.geomspace(low / reach, high * reach, _LINEAR_POINTS))
+    except InerterError as error:
+        notes.append(str(error))
+    return Responses(measured, model, linear, tuple(notes))
+
+
+def model_title(found: Identified) -> str:
+    """The model in words."""
+    return "the model of the configuration" if found.name == CUSTOM else f"the model {found.name}"
+
+
+def _corrected(comparison: Comparison, gain: float, delay: float) -> Record:
+    record = comparison.record.noted(force=(comparison.record.force - comparison.offset) / gain)
+    return shift_force(record, delay) if delay else record

@@ -1,0 +1,173 @@
+"""The report of an identification holds every number, needs no other file, and bears what is filled in."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+import inerter as it
+from inerter.errors import Status, StatusKind
+from inerter.identification.fit import Told
+from inerter.networks.parser import written
+from inerter.records.finding import Finding
+from inerter.report.identification import write_fit, write_identification
+from inerter.report.identification_data import identification_data
+from inerter.report.identification_figures import window
+from inerter.report.identification_text import identification_text, share
+from inerter.report.identified_values import elements_block, single, value_and_interval
+from inerter.study.identification_run import Candidate, Identified, Reading, responses
+
+VOID = {"meta", "wbr", "br"}
+SHAFT = it.Spring(1e6, name="ks") | it.Damper(3200.0, name="cs")
+MODEL = SHAFT - (it.Inerter(it.free(1.0, 500.0), name="b") | it.Friction(it.free(0.0, 100.0), name="f"))
+
+
+class Page(HTMLParser):
+    """The text of a page, and whether every tag is closed in its turn."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.words: list[str] = []
+        self.tags: list[str] = []
+        self.links: list[str] = []
+        self.feed(page)
+        assert self.open == []
+        self.text = re.sub(r"\s+", " ", "".join(self.words))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.links += [str(value) for name, value in attrs if name in ("src", "href") and value]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        pass
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.words.append(data)
+
+
+@pytest.fixture(scope="session")
+def found() -> Identified:
+    rig = it.VirtualRig(SHAFT - (it.Inerter(113.0) | it.Friction(10.0)), seed=1, sampling=400.0)
+    record = rig.run(it.cosine(amplitude=1e-3, frequency=4.0), duration=1.0)
+    fit = it.identify(record, MODEL, seed=0, starts=8)
+    warned = Finding("hum", "warning", "The force holds hum & <more>: 0.3 N at -50 Hz.")
+    return Identified("a <b>", "custom", it.Rig(MODEL).device, (Reading(record, record, (warned,)),), fit, {"seed": 0})
+
+
+def untold(found: Identified, name: str, interval: tuple[float, float]) -> Identified:
+    fit = found.fit
+    changed = replace(fit.parameters[name], value=math.nan, interval=interval)
+    sentence = f"{name}: cannot be told from 0 N below 3 N."
+    told = {**fit.identifiable, name: Told(False, sentence)}
+    return replace(found, fit=replace(fit, parameters={**fit.parameters, name: changed}, identifiable=told))
+
+
+def test_the_page_holds_the_numbers_and_every_figure(found: Identified, tmp_path) -> None:
+    write_fit(found, tmp_path)
+    done: list[float] = []
+    write_identification(found, tmp_path, done.append)
+    page = Page((tmp_path / "report.html").read_text(encoding="utf-8"))
+    for name in ("b", "f"):
+        value, interval = value_and_interval(found, name)
+        assert value in page.text
+        assert interval in page.text
+    assert "a <b>" in page.text
+    assert "hum & <more>: 0.3 N at −50 Hz" in page.text
+    assert elements_block(found).replace("\n", " ").replace("  ", " ")[:60] in page.text.replace("  ", " ")
+    assert page.tags.count("svg") == len(list((tmp_path / "figures").glob("*.svg"))) == 7
+    assert all(link.startswith("#") for link in page.links)
+    assert done == sorted(done)
+    assert done[-1] == pytest.approx(1.0)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "fit.json",
+        "residuals.csv",
+        "response.json",
+        "report.html",
+        "figures",
+    }
+    assert "measured" in json.loads((tmp_path / "response.json").read_text())
+
+
+def test_data_are_json_to_the_last_number(found: Identified) -> None:
+    data = json.loads(json.dumps(identification_data(untold(found, "f", (0.0, 3.0))), allow_nan=False))
+    assert data["parameters"]["f"]["value"] is None
+    assert data["parameters"]["b"]["value"] == found.fit.parameters["b"].value
+    assert data["parameters"]["b"]["bounds"] == [1.0, 500.0]
+    assert data["records"][0]["findings"][0]["kind"] == "hum"
+
+
+def test_what_cannot_be_told_is_said_everywhere(found: Identified) -> None:
+    less = untold(found, "f", (0.0, 3.0))
+    assert value_and_interval(less, "f") == ("cannot be told", "below 3 N")
+    assert value_and_interval(untold(found, "f", (2.0, 100.0)), "f") == ("cannot be told", "above 2 N")
+    assert "# cannot be told: below 3 N" in elements_block(less)
+    text = identification_text(less)
+    assert "f: cannot be told from 0 N below 3 N." in text
+    assert "b: told." not in text
+
+
+def test_a_model_that_explains_nothing_has_no_intervals(found: Identified) -> None:
+    fit = found.fit
+    told = {name: Told(False, f"{name}: cannot be told, since ...") for name in fit.parameters}
+    parameters = {name: replace(p, value=math.nan) for name, p in fit.parameters.items()}
+    status = Status(StatusKind.INACCURATE, "the model explains 3 % of the force only")
+    poor = replace(found, fit=replace(fit, status=status, identifiable=told, parameters=parameters))
+    assert value_and_interval(poor, "b") == ("cannot be told", "")
+    assert "not to be relied on" in elements_block(poor)
+
+
+def test_several_models_are_listed_best_first(found: Identified) -> None:
+    rows = (Candidate("ideal", 900.0, 0.9, 1, "ok"), Candidate("friction", -20.0, 0.99991, 2, "ok"))
+    text = identification_text(replace(found, candidates=rows))
+    assert text.index("friction ") < text.index("ideal ")
+    assert "99.991 %" in text or "99.99" in text
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_digits_are_those_that_the_interval_bears(found: Identified) -> None:
+    fit = found.fit
+    p = replace(fit.parameters["b"], value=113.0271, best=113.0271, interval=(112.9, 113.16))
+    one = replace(found, fit=replace(fit, parameters={**fit.parameters, "b": p}))
+    assert value_and_interval(one, "b") == ("113.03 kg", "112.90 to 113.16 kg")
+
+
+def test_single_values_and_shares() -> None:
+    assert single(9.5e-9, "m") == "0.0095 um"
+    assert single(0.0021, "s") == "2.1 ms"
+    assert single(5000.0, "kg") == "5000 kg"
+    assert share(0.5) == "50.0 %"
+    assert share(1.0) == "100.0 %"
+
+
+@pytest.mark.parametrize("text", ["b", "k | c", "(ks | cs) - gap - (b | f)", "k | c - (a - b | f)", "(a | b) - c | d"])
+def test_expressions_are_read_back_as_they_were(text: str) -> None:
+    parts = {name: it.Damper(1.0 + i) for i, name in enumerate(("a", "b", "c", "d", "k", "f", "gap", "ks", "cs"))}
+    device = it.network(text, **parts)
+    again = written(device, [element.label for element in device.elements()])
+    assert it.network(again, **parts) == device
+
+
+def test_the_window_is_a_few_periods_of_what_was_fitted(found: Identified) -> None:
+    (comparison,) = found.fit.comparisons
+    first, last = window(comparison)
+    assert comparison.fitted[last]
+    assert last - first <= 1.2 * 400
+
+
+def test_the_response_is_of_the_force_without_its_offset(found: Identified) -> None:
+    answered = responses(found)
+    assert answered.measured is not None
+    assert answered.model is not None
+    assert abs(answered.model.value / answered.measured.value - 1.0).max() < 0.05

@@ -5,18 +5,68 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from inerter.networks.elements import Damper, Friction, Gap, Inerter, Network, Spring, free
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Spring, free
 from inerter.networks.parser import network
+from inerter.networks.transform import map_elements
+
+VISCOUS = "-viscous"
+_ELEMENTS: dict[str, Network] = {
+    "ks": Spring(free(1e4, 1e8, name="ks")),
+    "cs": Damper(free(10.0, 2e5, name="cs")),
+    "gap": Gap(free(0.0, 2e-3, name="gap")),
+    "b": Inerter(free(0.5, 5000.0, name="b")),
+    "f": Friction(free(0.0, 500.0, name="f")),
+    "c": Damper(free(1.0, 2e4, name="c")),
+}
+# before the inerter, and beside it: Wang and Su (2008), Figure 6b, and its parts
+_ROWS = {
+    "ideal": ("", "b"),
+    "friction": ("", "b | f"),
+    "elastic": ("(ks | cs) - ", "b"),
+    "elastic-friction": ("(ks | cs) - ", "b | f"),
+    "backlash": ("(ks | cs) - gap - ", "b"),
+    "ball-screw": ("(ks | cs) - gap - ", "b | f"),
+}
+
+
+def _model(before: str, beside: str) -> Network:
+    text = f"{before}({beside})"
+    return network(text, **{name: element for name, element in _ELEMENTS.items() if name in _names(text)})
+
+
+def _names(text: str) -> list[str]:
+    return "".join(letter if letter.isalpha() else " " for letter in text).split()
+
 
 MODELS: Mapping[str, Network] = MappingProxyType(
     {
-        "ball-screw": network(
-            "(ks | cs) - gap - (b | f)",
-            ks=Spring(free(1e4, 1e8, name="ks")),
-            cs=Damper(free(10.0, 2e5, name="cs")),
-            gap=Gap(free(0.0, 2e-3, name="gap")),
-            b=Inerter(free(0.5, 5000.0, name="b")),
-            f=Friction(free(0.0, 500.0, name="f")),
-        ),
+        name + suffix: _model(before, beside + more)
+        for suffix, more in (("", ""), (VISCOUS, " | c"))
+        for name, (before, beside) in _ROWS.items()
     }
 )
+"""From the ideal inerter to the ball screw of Wang and Su (2008): shaft `ks` [N/m] beside `cs` [N s/m], backlash `gap`
+[m] to each side, inertance `b` [kg], friction `f` [N]; each also `-viscous`, with a damper `c` [N s/m] beside the
+inerter. Shorter chains are parts of longer ones, so that a fit can be compared with those of its parts."""
+MOUNT = Spring(1e9, name="mount_k") | Damper(1e5, name="mount_c")  # gives way by 1 um under 1 kN: no sensor tells it
+
+
+def mounted(model: Network) -> Network:
+    """`model` as it can stand on a motion table: if nothing in it gives way, with a very stiff mount in series.
+
+    The force of a rigid device would be that of the acceleration of the measured displacement, which no encoder
+    tells, and the force of dry friction that sticks on a table would not be determined.
+
+    >>> mounted(Inerter(113.0)) == MOUNT - Inerter(113.0), mounted(MOUNT - Inerter(113.0)) == MOUNT - Inerter(113.0)
+    (True, True)
+    """
+    low, high = (complex(abs(map_elements(model, _midway).admittance(1j * omega))) for omega in _FAST)
+    return MOUNT - model if abs(high) > _RISES * abs(low) or not abs(high) < float("inf") else model
+
+
+_FAST, _RISES = (1e9, 1e10), 3.0  # [rad/s]; an admittance that still grows there is that of an inerter without a spring
+
+
+def _midway(element: Element) -> Network:
+    value = element.value
+    return element.with_value(0.5 * (value.lower + value.upper)) if isinstance(value, Free) else element

@@ -63,7 +63,8 @@ def found() -> Identified:
     record = rig.run(it.cosine(amplitude=1e-3, frequency=4.0), duration=1.0)
     fit = it.identify(record, MODEL, seed=0, starts=8)
     warned = Finding("hum", "warning", "The force holds hum & <more>: 0.3 N at -50 Hz.")
-    return Identified("a <b>", "custom", it.Rig(MODEL).device, (Reading(record, record, (warned,)),), fit, {"seed": 0})
+    reading = Reading(record, record, (warned,))
+    return Identified("a <b>", "custom", it.Rig(MODEL).device, fit.device, (reading,), fit, {"seed": 0})
 
 
 def untold(found: Identified, name: str, interval: tuple[float, float]) -> Identified:
@@ -129,10 +130,15 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: Identified) -> No
 
 
 def test_several_models_are_listed_best_first(found: Identified) -> None:
-    rows = (Candidate("ideal", 900.0, 0.9, 1, "ok"), Candidate("friction", -20.0, 0.99991, 2, "ok"))
-    text = identification_text(replace(found, candidates=rows))
-    assert text.index("friction ") < text.index("ideal ")
-    assert "99.991 %" in text or "99.99" in text
+    rows = (
+        Candidate("friction", 2, 1.01, 0.0, 0.0, True, "ok"),
+        Candidate("custom", 1, 1.02, 0.01, 0.02, True, "ok"),
+        Candidate("ideal", 1, 7.5, 6.5, 0.3, False, "inaccurate: it explains little"),
+    )
+    text = identification_text(replace(found, candidates=rows, choice=("The choice is clear.",)))
+    assert text.index("friction ") < text.index("* custom ") < text.index("ideal ")
+    for words in ("best", "0.01 +- 0.02, as good", "6.5 +- 0.3  inaccurate", "The choice is clear."):
+        assert words in text
     assert max(map(len, text.splitlines())) <= 80
 
 

@@ -159,7 +159,12 @@ def identify(
     force_channel: Annotated[str | None, Parameter(help="The channel of the force: name, or number from 0.")] = None,
     time: Annotated[str | None, Parameter(help="The channel of the times: name, or number from 0.")] = None,
     unit: Annotated[
-        tuple[str, ...], Parameter(help="A unit where the file has none or a wrong one: force=kgf. Several times.")
+        tuple[str, ...],
+        Parameter(
+            negative="",
+            show_default=False,
+            help="A unit where the file has none or a wrong one: force=kgf. Several times.",
+        ),
     ] = (),
     interval: Annotated[str | None, Parameter(help='Between samples, where the file has no times: "1 ms".')] = None,
     gaps: Annotated[

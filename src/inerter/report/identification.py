@@ -11,7 +11,7 @@ from inerter.figures.identification import draw
 from inerter.networks.parser import written
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
-from inerter.report.identification_text import about, as_options, done, plainly, share, whiteness
+from inerter.report.identification_text import about, as_options, behind, done, plainly, share, whiteness
 from inerter.report.identified_values import UNTOLD, elements_block, plain, scale_of, single, value_and_interval
 from inerter.report.page import PageFigure, environment, inline
 from inerter.study.identification_run import FIT, RESIDUALS, Identified, model_title, responses
@@ -89,10 +89,8 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             records=list(_records(found)),
             goodness=list(_goodness(found)),
             whiteness=[(c.record.source, whiteness(c)) for c in fit.comparisons],
-            candidates=[
-                (c.name, c.unknowns, f"{c.criterion:.1f}", share(c.explained), c.status)
-                for c in sorted(found.candidates, key=lambda c: c.criterion)
-            ],
+            candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), c.status) for c in found.candidates],
+            choice=found.choice,
             chosen=found.name,
             drawn=drawn,
             notes=notes,

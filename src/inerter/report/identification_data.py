@@ -49,6 +49,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "costs": fit.costs,
         "simulations": fit.simulations,
         "candidates": [vars(candidate) for candidate in found.candidates],
+        "choice": found.choice,
         "settings": {**found.settings, **fit.settings},
         "elements": elements_block(found),
         "versions": versions(),

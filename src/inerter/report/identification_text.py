@@ -10,7 +10,7 @@ from textwrap import wrap
 from inerter.identification.fit import Comparison, Told
 from inerter.report.identified_values import elements_block, single, value_and_interval
 from inerter.report.text import WIDTH
-from inerter.study.identification_run import Identified, Reading, model_title
+from inerter.study.identification_run import Candidate, Identified, Reading, model_title
 
 INDEPENDENT = 1e-3  # a p-value above tells residuals without pattern
 # What the library calls by the names of Python's arguments, in the words of the command line.
@@ -93,12 +93,22 @@ def _records(found: Identified) -> Iterator[str]:
 def _candidates(found: Identified) -> Iterator[str]:
     if not found.candidates:
         return
-    yield "models, best first"
     width = max(len(c.name) for c in found.candidates)
-    yield f"  {'':<{width}}  unknowns   criterion  explained on check"
-    for c in sorted(found.candidates, key=lambda c: c.criterion):
+    yield f"{'models':<{width + 2}}  unknowns  loss on check  over the best"
+    for c in found.candidates:
+        mark = "*" if c.name == found.name else " "
         state = "" if c.status == "ok" else f"  {c.status.partition(':')[0]}"
-        yield f"  {c.name:<{width}}  {c.unknowns:>8}  {c.criterion:>10.1f}  {100.0 * c.explained:>8.3f} %{state}"
+        yield f"{mark} {c.name:<{width}}  {c.unknowns:>8}  {c.loss:>13.4g}  {behind(c)}{state}"
+    for sentence in found.choice:
+        yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="  ")
+
+
+def behind(candidate: Candidate) -> str:
+    """How much worse a model predicts than the best one, with the standard error of that."""
+    if candidate.behind == 0.0:
+        return "best"
+    known = f"{candidate.behind:.2g} +- {candidate.error:.1g}"
+    return f"{known}, as good" if candidate.as_good else known
 
 
 def _estimates(found: Identified) -> Iterator[str]:

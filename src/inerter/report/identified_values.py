@@ -102,13 +102,13 @@ def _rows(found: Identified) -> tuple[dict[str, tuple[str, str]], str]:
     """What stands behind each name, and the expression."""
     rows: dict[str, tuple[str, str]] = {}
     order = []
-    for free, best in zip(found.model.elements(), found.fit.device.elements(), strict=True):
+    for free, best in zip(found.model.elements(), found.device.elements(), strict=True):
         value, remark = _entry(found, free, best)
         for name in _possible(free):
             if rows.setdefault(name, (value, remark)) == (value, remark):
                 order.append(name)
                 break
-    return rows, written(found.fit.device, order)
+    return rows, written(found.device, order)
 
 
 def _possible(element: Element) -> Iterator[str]:

@@ -52,6 +52,11 @@ class IdentificationRequest:
     elements: dict[str, Element] = field(default_factory=dict)
     settings: dict[str, Any] = field(default_factory=dict)  # of `identify`
 
+    @property
+    def chooses(self) -> bool:
+        """Whether there is a choice between models."""
+        return self.layout is None and self.name == CHOOSE
+
     def models(self) -> dict[str, Network]:
         """The models to fit, by name: one, or the whole catalogue for "choose".
 

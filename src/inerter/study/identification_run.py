@@ -14,9 +14,11 @@ import numpy as np
 from inerter.errors import InerterError, RecordError, StudyError
 from inerter.identification.fit import Comparison, Fit
 from inerter.identification.identify import identify
+from inerter.identification.models import VISCOUS, mounted
 from inerter.identification.response import linear_response, model_response
 from inerter.identification.space import DELAY, GAIN
 from inerter.networks.elements import Free, Network
+from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
 from inerter.records.findings import findings
 from inerter.records.prepare import detrend, resample, shift_force
@@ -44,12 +46,14 @@ class Reading:
 
 @dataclass(frozen=True)
 class Candidate:
-    """One model of several, and how well it does."""
+    """One model of several, and how well it predicts the part of the records that it was not fitted to."""
 
     name: str
-    criterion: float
-    explained: float  # of the part for the check
     unknowns: int
+    loss: float  # mean square of whitened residuals there, about 1 at best
+    behind: float  # the loss over the least
+    error: float  # standard error of that difference
+    as_good: bool  # as the best
     status: str
 
 
@@ -70,10 +74,12 @@ class Identified:
     title: str
     name: str  # of the model
     model: Network  # with its free values named
+    device: Network  # the same with its best values
     readings: tuple[Reading, ...]
     fit: Fit
     settings: dict[str, Any]
-    candidates: tuple[Candidate, ...] = ()
+    candidates: tuple[Candidate, ...] = ()  # the best first
+    choice: tuple[str, ...] = ()  # what there is to say of the choice between them
 
     def bounds(self, parameter: str) -> tuple[float, float] | None:
         """Between which a parameter of the device was sought; None for one of the sensors."""
@@ -124,21 +130,42 @@ def run_identification(
 
     Raises what `identify` raises, and `StudyError` where a choice is not to be had.
     """
-    models, records = request.models(), [r.used for r in readings]
+    records = [r.used for r in readings]
     settings = dict(request.settings)
     title = request.title or ", ".join(dict.fromkeys(r.source for r in records))
-    if len(models) == 1:
-        ((name, model),) = models.items()
-        fit = identify(records, model, **settings, progress=progress)
-        return Identified(title, name, Rig(model).device, tuple(readings), fit, settings)
+    if request.chooses:
+        return _chosen(title, readings, request, settings, progress)
+    ((name, model),) = request.models().items()
+    fit = identify(records, mounted(model), **settings, progress=progress)
+    named = Rig(model).device
+    return Identified(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
+
+
+def _chosen(
+    title: str,
+    readings: Sequence[Reading],
+    request: IdentificationRequest,
+    settings: dict[str, Any],
+    progress: Progress | None,
+) -> Identified:
     if find_spec(_CHOICE) is None:
         raise StudyError("This version cannot choose between models. Name one with --model.")
-    choice = import_module(_CHOICE).choose(records, models=models, **settings)
+    models = request.models()
+    choose = import_module(_CHOICE).choose
+    given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
+    choice = choose([r.used for r in readings], models=given, **settings, progress=progress)
     candidates = tuple(
-        Candidate(row.name, row.criterion, row.explained, row.unknowns, str(row.status)) for row in choice.table
+        Candidate(c.name, c.unknowns, c.loss, c.behind, c.error, c.as_good, str(choice.fits[c.name].status))
+        for c in choice.candidates
     )
-    name, model = choice.best, Rig(models[choice.best]).device
-    return Identified(title, name, model, tuple(readings), choice.fits[name], settings, candidates)
+    named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
+    return Identified(
+        title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings, candidates, choice.notes
+    )
+
+
+def _with_best(model: Network, fit: Fit) -> Network:
+    return with_values(model, {name: p.best for name, p in fit.parameters.items()})
 
 
 def responses(found: Identified) -> Responses:

@@ -66,7 +66,7 @@ def choose(
     seed: int = 0,
     offset: bool = True,
     gain: bool = False,
-    delay: bool | float = False,
+    delay: bool | float | None = None,
     check: float = 0.2,
     bandwidth: float | None = None,
     lead: float | None = None,

@@ -46,7 +46,7 @@ def identify(
     seed: int = 0,
     offset: bool = True,
     gain: bool = False,
-    delay: bool | float = False,
+    delay: bool | float | None = None,
     check: float = 0.2,
     bandwidth: float | None = None,
     lead: float | None = None,
@@ -58,7 +58,8 @@ def identify(
     The model is moved as the record's displacement was, smoothed below `bandwidth` [Hz] (by default as far as it
     stands out of its noise), and its force compared; no measured motion is differentiated twice. Sensors may have an
     `offset` of their own in each record, and one `gain` and one `delay` (up to a number of seconds) of the force in
-    all. The last part `check` of each record is not fitted but kept to check the fit on; `lead` [s] at the start,
+    all; by default a delay is sought where the bandwidth of a load cell is not known, because that is what its filter
+    does to slow forces. The last part `check` of each record is not fitted but kept to check the fit on; `lead` [s] at the start,
     or as much as the start of the device matters, are not compared either.
 
     `starts` points from a Sobol sequence with `seed`, and a first guess without simulation for devices that are a
@@ -70,7 +71,8 @@ def identify(
     records that cannot be used.
     """
     given, rig = _checked(records, model, check, starts)
-    longest = LONGEST_DELAY if delay is True else float(delay)
+    sought = any(r.force_bandwidth is None for r in given) if delay is None else delay
+    longest = LONGEST_DELAY if sought is True else float(sought)
     if not is_number(longest) or not 0.0 <= longest < 0.5 * min(r.duration for r in given):
         raise IdentificationError(f"A delay is True, False or its largest size in s, got {delay!r}.")
     space = space_of(rig, gain, longest)

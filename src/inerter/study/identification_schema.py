@@ -103,7 +103,7 @@ class FitShape(Shape):
     starts: Annotated[int | None, whole(8, _MOST_STARTS)] = None
     offset: Annotated[bool, PlainValidator(yes_or_no)] = True
     gain: Annotated[bool, PlainValidator(yes_or_no)] = False
-    delay: Annotated[bool | float, PlainValidator(longest_delay)] = False
+    delay: Annotated[bool | float | None, PlainValidator(longest_delay)] = None
     check: Annotated[float, PlainValidator(check_part)] = 0.2
     bandwidth: Annotated[float | None, positive("Hz")] = None
     lead: Annotated[float | None, not_negative("s")] = None

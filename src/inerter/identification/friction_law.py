@@ -161,7 +161,7 @@ def _solved(y: Matrix, columns: list[Matrix], blocks: NDArray[np.int64]) -> tupl
     scores = X * (weight * residual)[:, None]
     sums = np.stack([scores[blocks == block].sum(axis=0) for block in range(_BLOCKS)])
     together = inverse @ (sums.T @ sums) @ inverse * _BLOCKS / (_BLOCKS - 1)
-    covariance = _larger(inverse * float(np.mean(weight * residual**2)), together)
+    covariance = _larger(np.asarray(inverse * float(np.mean(weight * residual**2)), dtype=float), together)
     scale = np.where(size > 0.0, size, 1.0)
     return solution / scale, covariance / np.outer(scale, scale), residual
 

@@ -17,7 +17,8 @@ from inerter.identification.encoder import lean, scattered
 from inerter.identification.experiment import Experiment, experiment_of, forgotten, reading_of, saturated
 from inerter.identification.fit import Comparison, Fit, Parameter
 from inerter.identification.guess import chain_of, guess_of, sign_of
-from inerter.identification.intervals import Optimum, Profile, optimum_of, profiles, steps_of
+from inerter.identification.intervals import Optimum, Profile, optimum_of, profiles, robust_cost, steps_of
+from inerter.identification.models import mounted, unmounted
 from inerter.identification.noise import plain, whitening_of
 from inerter.identification.problem import Problem
 from inerter.identification.search import POINTS, search, soft
@@ -59,8 +60,9 @@ def identify(
     stands out of its noise), and its force compared; no measured motion is differentiated twice. Sensors may have an
     `offset` of their own in each record, and one `gain` and one `delay` (up to a number of seconds) of the force in
     all; by default a delay is sought where the bandwidth of a load cell is not known, because that is what its filter
-    does to slow forces. The last part `check` of each record is not fitted but kept to check the fit on; `lead` [s] at the start,
-    or as much as the start of the device matters, are not compared either.
+    does to slow forces. The last part `check` of each record is not fitted but kept to check the fit on; `lead` [s]
+    at the start, or as much as the start of the device matters, are not compared either. A device in which nothing
+    gives way is fitted on a very stiff mount.
 
     `starts` points from a Sobol sequence with `seed`, and a first guess without simulation for devices that are a
     chain, are improved by least squares; errors are weighted and whitened as the residuals ask; intervals are from
@@ -126,7 +128,7 @@ def _checked(records: Record | Sequence[Record], model: Network, check: float, s
         raise IdentificationError(
             f"identify(...) takes a record or a list of records, such as [read_record('bench.csv')], got {records!r}."
         )
-    rig = Rig(model)
+    rig = Rig(mounted(model))
     if not rig.free_values():
         raise IdentificationError(
             "The model has no free values: there is nothing to identify. Write Spring(free(1e5, 1e7, name='ks')), ..."
@@ -209,9 +211,15 @@ def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile
 def _straightened(
     problem: Problem, optimum: Optimum, found: Sequence[Profile], lean_by: Matrix
 ) -> tuple[Optimum, list[Profile]]:
-    """The best fit and its profiles without what the sensors' errors did to them."""
+    """The best fit and its profiles without what the sensors' errors did to them.
+
+    Where a record tells a value on one side only, or not at all, the curvature says nothing of how far that is.
+    """
     lower, upper = problem.space.bounds
-    point = np.clip(optimum.point - lean_by, lower, upper)
+    told_on_both_sides = np.array([p.lower.told and p.upper.told for p in found])
+    point = np.clip(optimum.point - np.where(told_on_both_sides, lean_by, 0.0), lower, upper)
+    if robust_cost(problem.residual(point)) > optimum.cost + 2.0 * float(np.max(optimum.threshold)):
+        return optimum, list(found)
     by = point - optimum.point
     return replace(optimum, point=point), [p.moved(float(d)) for p, d in zip(found, by, strict=True)]
 
@@ -229,7 +237,7 @@ def _fit(
     space = problem.space
     comparisons = _comparisons(problem, optimum, whole, leads)
     values = space.named(optimum.point)
-    device = with_values(problem.rig.device, values)
+    device = unmounted(with_values(problem.rig.device, values))
     draft = Fit(
         parameters={}, identifiable={}, correlation=_correlation(optimum.covariance),
         covariance=optimum.covariance * np.outer(space.slopes(optimum.point), space.slopes(optimum.point)),

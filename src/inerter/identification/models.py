@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import reduce
+from operator import sub
 from types import MappingProxyType
 
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Spring, free
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Series, Spring, free
 from inerter.networks.parser import network
 from inerter.networks.transform import map_elements
 
@@ -62,6 +64,12 @@ def mounted(model: Network) -> Network:
     """
     low, high = (complex(abs(map_elements(model, _midway).admittance(1j * omega))) for omega in _FAST)
     return MOUNT - model if abs(high) > _RISES * abs(low) or not abs(high) < float("inf") else model
+
+
+def unmounted(model: Network) -> Network:
+    """The device without the mount that `mounted` gave it."""
+    parts = model.parts if isinstance(model, Series) else ()
+    return reduce(sub, parts[1:]) if len(parts) > 1 and parts[0] == MOUNT else model
 
 
 _FAST, _RISES = (1e9, 1e10), 3.0  # [rad/s]; an admittance that still grows there is that of an inerter without a spring

@@ -76,11 +76,25 @@ def model_response(
             found = exact(found.omega, found.value, found.amplitude)
     notes = [note for record, _ in answered for note in record.notes]
     status = next((status for _, status in answered if not status.ok), found.status)
-    return replace(found, source="model", status=status, notes=tuple(dict.fromkeys(notes)))
+    found = replace(found, source="model", status=status, notes=tuple(dict.fromkeys(notes)))
+    bands = {record.force_bandwidth for record in chosen}
+    return as_read(found, bands.pop()) if len(bands) == 1 else found
 
 
-def linear_response(model: Network | Rig, omega: ArrayLike) -> Response:
+def as_read(response: Response, bandwidth: float | None) -> Response:
+    """A model's response as a load cell of this bandwidth [Hz] reads it: Butterworth, of second order."""
+    if bandwidth is None:
+        return response
+    s = 1j * response.frequency / bandwidth
+    read = exact(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude)
+    note = f"As read by a load cell of {bandwidth:g} Hz."
+    return replace(read, source=response.source, status=response.status, notes=(*response.notes, note))
+
+
+def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: float | None = None) -> Response:
     """The linear response of a device, j omega times its admittance: friction left out, gaps closed.
+
+    As read by a load cell of `cell_bandwidth` [Hz], if that is given.
 
     Raises `DesignError` if a value is free, `RecordError` unless omega holds positive frequencies [rad/s].
     """
@@ -95,7 +109,7 @@ def linear_response(model: Network | Rig, omega: ArrayLike) -> Response:
     left_out = linearise(device)
     notes = [f"Friction left out: {', '.join(left_out.frictions)}."] if left_out.frictions else []
     notes += [f"Gaps closed: {', '.join(left_out.gaps)}."] if left_out.gaps else []
-    return replace(exact(frequencies, value), source="linear model", notes=tuple(notes))
+    return as_read(replace(exact(frequencies, value), source="linear model", notes=tuple(notes)), cell_bandwidth)
 
 
 def smoothed(record: Record, cutoff: float) -> Record:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from inerter.networks.elements import Element, Free, Inerter, Network, free
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
-from inerter.records.result import Response, exact
+from inerter.records.result import Response
 from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
@@ -185,27 +185,14 @@ def _friction_test(device: Network, record: Record, law: FrictionLaw, shaft_iner
 
 
 def _response(device: Network, record: Record) -> ResponseCheck:
-    measured, model = frequency_response(record), _read(model_response(device, record), record)
+    measured, model = frequency_response(record), model_response(device, record)
     inertances = [e for e in device.elements() if isinstance(e, Inerter) and e.label == _INERTANCE]
     return ResponseCheck(
         measured=measured,
         model=model,
-        linear=_read(linear_response(device, measured.omega), record),
-        ideal=_read(linear_response(inertances[0], measured.omega), record),
+        linear=linear_response(device, measured.omega, record.force_bandwidth),
+        ideal=linear_response(inertances[0], measured.omega, record.force_bandwidth),
         bands=tuple(_bands(measured, model)),
-    )
-
-
-def _read(response: Response, record: Record) -> Response:
-    """A model's response as the load cell of the record reads it: Butterworth, of second order."""
-    if record.force_bandwidth is None:
-        return response
-    s = 1j * response.frequency / record.force_bandwidth
-    return replace(
-        exact(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude),
-        source=response.source,
-        status=response.status,
-        notes=(*response.notes, f"As read by a load cell of {record.force_bandwidth:g} Hz."),
     )
 
 

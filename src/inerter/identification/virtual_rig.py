@@ -11,6 +11,7 @@ from scipy.signal import cont2discrete, lfilter, lfilter_zi
 
 from inerter.checks import check_positive, is_number
 from inerter.errors import IdentificationError
+from inerter.identification.models import mounted
 from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.signals.signal import Signal
@@ -28,9 +29,10 @@ class VirtualRig:
     """A rig whose device is known, so that what is identified from its records can be compared with the truth.
 
     The command goes through a motion table of second order, which follows up to `table_bandwidth` [Hz] and does not
-    yield to the device. The encoder and the load cell are sampled `sampling` times a second; both have normal noise
-    (r.m.s.) before they are rounded to their resolution. The load cell has a bandwidth (Butterworth, second order), a
-    range beyond which it saturates, an offset, a gain and a delay; it counts tension as positive unless `reversed`.
+    yield to the device; a device in which nothing gives way stands on a very stiff mount (`models.MOUNT`). The encoder
+    and the load cell are sampled `sampling` times a second; both have normal noise (r.m.s.) before they are rounded to
+    their resolution. The load cell has a bandwidth (Butterworth, second order), a range beyond which it saturates, an
+    offset, a gain and a delay; it counts tension as positive unless `reversed`.
 
     The defaults are those of the rig of Wang and Su (2008), section 4: a load cell of 100 kg with a resolution of
     0.02 kg, an encoder of 1 um; what the paper does not print is an assumption.
@@ -95,7 +97,7 @@ class VirtualRig:
             position - position[0],
         )  # the device is at rest where the table starts
         table = Signal.sampled(time, moved, derivative=velocity, label=command.label)
-        rig = Rig(self.device, self.force_bandwidth)
+        rig = Rig(mounted(self.device), self.force_bandwidth)
         run = simulate(rig, displacement=table, duration=steps * step, step=step)
         if not run.status.ok:
             raise IdentificationError(f"The virtual rig cannot be simulated: {run.status}.")

@@ -184,7 +184,9 @@ def responses(found: Identified) -> Responses:
         notes += [note for note in model.notes if note not in notes]
         low, high = measured.omega[0], measured.omega[-1]
         reach = 1.3 if high > 2.0 * low else 2.0
-        linear = linear_response(found.fit.device, np.geomspace(low / reach, high * reach, _LINEAR_POINTS))
+        linear = linear_response(
+            found.fit.device, np.geomspace(low / reach, high * reach, _LINEAR_POINTS), records[0].force_bandwidth
+        )
     except InerterError as error:
         notes.append(str(error))
     return Responses(measured, model, linear, tuple(notes))

@@ -137,7 +137,7 @@ def test_several_models_are_listed_best_first(found: Identified) -> None:
     )
     text = identification_text(replace(found, candidates=rows, choice=("The choice is clear.",)))
     assert text.index("friction ") < text.index("* custom ") < text.index("ideal ")
-    for words in ("best", "0.01 +- 0.02, as good", "6.5 +- 0.3  inaccurate", "The choice is clear."):
+    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30  inaccurate", "The choice is clear."):
         assert words in text
     assert max(map(len, text.splitlines())) <= 80
 

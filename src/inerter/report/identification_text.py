@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from math import floor, log10
 from textwrap import wrap
 
+from inerter.figures.labels import measured
 from inerter.identification.fit import Comparison, Told
 from inerter.report.identified_values import elements_block, single, value_and_interval
 from inerter.report.text import WIDTH
@@ -107,7 +108,7 @@ def behind(candidate: Candidate) -> str:
     """How much worse a model predicts than the best one, with the standard error of that."""
     if candidate.behind == 0.0:
         return "best"
-    known = f"{candidate.behind:.2g} +- {candidate.error:.1g}"
+    known = measured(candidate.behind, candidate.error)
     return f"{known}, as good" if candidate.as_good else known
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError
-from inerter.networks.elements import Damper, Gap, Spring
+from inerter.networks.elements import Damper, Friction, Gap, Spring
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, noise_of, smooth_displacement
 from inerter.signals.signal import Signal
@@ -21,6 +22,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and tell nothing new
+_PACE, _MOST_PARTS = 2.0, 7  # steps over the time in which the device answers; parts of an interval, as a power of 2
 _AT_REST = 0.02  # of the largest velocity
 
 
@@ -36,20 +38,23 @@ class Experiment:
     kept: NDArray[np.bool_]
     table: InputTable  # of the motion, without delay
     noise: float  # [N] r.m.s. of the noise of the force
+    finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
 
     @property
     def size(self) -> int:
         return int(self.record.time.size)
 
-    def delayed(self, delay: float) -> InputTable:
-        """The motion `delay` [s] later: what a force that arrives late answers to."""
+    def moved(self, parts: int, delay: float) -> InputTable:
+        """The motion in `parts` steps an interval, and `delay` [s] later: what a force that is late answers to."""
+        if parts > 1 and parts not in self.finer:
+            self.finer[parts] = _table(self.motion, parts)
+        table = self.table if parts == 1 else self.finer[parts]
         if delay == 0.0:
-            return self.table
-        time = np.clip(self.table.time - delay, 0.0, self.table.time[-1])
-        signal = _signal(self.motion)
-        value, slope = (column[:, None] for column in signal.sample(time))
-        slope[self.table.time < delay] = 0.0
-        return replace(self.table, value=value, slope=slope, value_before=value, slope_before=slope)
+            return table
+        time = np.clip(table.time - delay, 0.0, table.time[-1])
+        value, slope = (column[:, None] for column in _signal(self.motion).sample(time))
+        slope[table.time < delay] = 0.0
+        return replace(table, value=value, slope=slope, value_before=value, slope_before=slope)
 
     def force(self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None) -> Matrix | None:
         """The force that the load cell would read of this device at the first `samples` samples; None if it fails."""
@@ -60,12 +65,13 @@ class Experiment:
         self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None, moving: bool = False
     ) -> Trajectory | None:
         """The motion of the device, from rest or (`moving`) carried along with the table; None if it fails."""
-        table = self.delayed(delay)
-        if samples is not None and samples < self.size:
-            table = _shortened(table, samples - 1)
-        state = initial_state(system, table.value[0], "rest")
+        state = initial_state(system, self.table.value[0], "rest")
         if moving:
-            state = _carried(system, state, table.slope[0])
+            state = _carried(system, state, self.table.slope[0])
+        parts = parts_for(event_driven.start(system, self.table, state))
+        table = self.moved(parts, delay)
+        if samples is not None and samples < self.size:
+            table = _shortened(table, (samples - 1) * parts)
         integration = event_driven.start(system, table, state)
         integration.advance(table.time.size - 1)
         if not integration.status.ok:
@@ -123,7 +129,7 @@ def disturbed(experiment: Experiment, noise: Matrix) -> Experiment:
     record = replace(experiment.record, displacement=experiment.record.displacement + noise)
     motion = smooth_displacement(record, experiment.motion.bandwidth)
     table = _table(motion)
-    return replace(experiment, motion=motion, table=table)
+    return replace(experiment, motion=motion, table=table, finer={})
 
 
 def saturated(record: Record) -> NDArray[np.bool_]:
@@ -144,9 +150,27 @@ def forgotten(experiment: Experiment, system: PiecewiseSystem, level: float) -> 
     return int(np.flatnonzero(apart)[-1]) + 1 if apart.any() else 0
 
 
-def _table(motion: Motion) -> InputTable:
+def parts_for(integration: event_driven.Integration) -> int:
+    """Into how many steps to part an interval so that whole steps serve where the device answers much faster.
+
+    Else each of them would be gone through in as many pieces, which take a hundred times as long.
+    """
+    kinds = [integration.system.graph.branches[i].element for i in integration.system.nonlinear]
+    reach = np.inf
+    for friction in (0, 1):  # sticks, slips; gaps touch
+        states = [friction if isinstance(e, Friction) and e.value != 0.0 else 1 for e in kinds]
+        try:
+            integration.mode(np.array(states, dtype=np.int64))
+        except InerterError:
+            continue
+        reach = min(reach, float(integration.modes.reach[integration.count - 1]))
+    wanted = integration.table.step / (_PACE * reach)
+    return 1 << min(max(math.ceil(math.log2(max(wanted, 1e-9))), 0), _MOST_PARTS)
+
+
+def _table(motion: Motion, parts: int = 1) -> InputTable:
     duration = float(motion.time[-1] - motion.time[0])
-    return tabulate([_signal(motion)], [0.0], duration, duration / (motion.time.size - 1))
+    return tabulate([_signal(motion)], [0.0], duration, duration / (motion.time.size - 1) / parts, every=parts)
 
 
 def _signal(motion: Motion) -> Signal:

@@ -1,9 +1,10 @@
-"""What the sensors' own errors do to the estimates: how far they scatter them, and how far they move them.
+"""What the errors of the encoder do to the estimates: how far they scatter them, and how far they move them.
 
 **Scatter.** An encoder reads in steps. Near the turning points of a motion that repeats, its rounding is the same
-each time and does not average out, so the residuals do not tell what it did to the estimates. Its errors, and those
-of the load cell, are therefore drawn anew along the motion as it was measured and followed to the estimates,
-linearised: their mean is taken away, and their spread is the least that an interval has.
+each time and does not average out, so the residuals do not tell what it did to the estimates. Its errors are
+therefore drawn anew along the motion as it was measured and followed to the estimates,
+linearised: their mean is taken away, and their variance added to that which the residuals tell. What is random in
+them is then counted twice, so intervals are rather too wide than too narrow.
 
 **Lean.** The noise that the smoothed displacement still has passes through the model into its force, so values that
 let less of it through seem to fit better. How far this leads is found by adding as much noise again and seeing how
@@ -31,7 +32,7 @@ _HARMONICS = 60  # of a motion that repeats, at most
 
 
 def scattered(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS) -> tuple[Optimum, Matrix]:
-    """The same optimum with intervals at least as wide as the errors of the sensors make them, and their mean effect.
+    """The same optimum with intervals that know of the errors of the encoders, and what those do on the average.
 
     That is how far, in coordinates, the rounding of the encoder moves the best fit each time, at most two standard
     errors. Half of it counts as scatter, because it is known no better.
@@ -40,12 +41,10 @@ def scattered(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS)
     gain = optimum.covariance / optimum.variance @ optimum.jacobian.T
     before = problem.residual(optimum.point)
 
-    def moved(errors: list[tuple[Matrix, Matrix]]) -> Matrix:
-        disturbances = [disturbed(e, z) for e, (z, _) in zip(problem.experiments, errors, strict=True)]
+    def moved(errors: list[Matrix]) -> Matrix:
+        disturbances = [disturbed(e, z) for e, z in zip(problem.experiments, errors, strict=True)]
         residual = replace(problem, experiments=disturbances).residual(optimum.point)
-        white = [w(f) for w, (_, f) in zip(problem.whitenings, errors, strict=True)]
-        change = np.clip(residual - before, -ROBUST, ROBUST) - np.concatenate(white)
-        return np.asarray(-gain @ change)
+        return np.asarray(-gain @ np.clip(residual - before, -ROBUST, ROBUST))
 
     errors = [[_errors(e, random) for e in problem.experiments] for _ in range(draws)]
     steps = np.array(list(problem.pool.map(moved, errors)))
@@ -53,7 +52,7 @@ def scattered(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS)
     mean = np.mean(steps, axis=0)
     square = np.var(steps, axis=0, ddof=1) + (0.5 * mean) ** 2
     ratio = square / np.maximum(np.diag(optimum.covariance), 1e-300)
-    wider = replace(optimum, widening=np.maximum(optimum.widening, np.clip(ratio, 1.0, 1e4)))
+    wider = replace(optimum, widening=optimum.widening + np.clip(ratio, 0.0, 1e4))
     return wider, np.asarray(np.clip(mean, -2.0 * wider.errors, 2.0 * wider.errors))
 
 
@@ -69,7 +68,7 @@ def lean(problem: Problem, optimum: Optimum, seed: int, pairs: int = PAIRS) -> M
 
     disturbances = []
     for _ in range(pairs):
-        noises = [_errors(e, random)[0] for e in problem.experiments]
+        noises = [_errors(e, random) for e in problem.experiments]
         for sign in (-1.0, 1.0):
             disturbances.append([disturbed(e, sign * n) for e, n in zip(problem.experiments, noises, strict=True)])
     gradients = [gradient(replace(problem, experiments=moved)) for moved in disturbances]
@@ -79,8 +78,8 @@ def lean(problem: Problem, optimum: Optimum, seed: int, pairs: int = PAIRS) -> M
     return np.asarray(np.clip(moved_by, -limit, limit))
 
 
-def _errors(experiment: Experiment, random: np.random.Generator) -> tuple[Matrix, Matrix]:
-    """Errors of the encoder [m] and of the load cell [N] like those of the record: noise, then rounding to a step."""
+def _errors(experiment: Experiment, random: np.random.Generator) -> Matrix:
+    """Errors of the encoder [m] like those of the record: noise, then rounding to a step."""
     motion, record = experiment.motion, experiment.record
     step = resolution(record.displacement)
     taken = float(np.std((record.displacement - motion.displacement)[experiment.kept]))
@@ -88,7 +87,7 @@ def _errors(experiment: Experiment, random: np.random.Generator) -> tuple[Matrix
     moved = _repeated(experiment)
     read = moved + math.sqrt(max(noise**2 - step**2 / 12.0, 0.0)) * random.standard_normal(moved.size)
     rounded = step * np.rint(read / step) if step > 0.0 else read
-    return rounded - moved, experiment.noise * random.standard_normal(moved.size)
+    return np.asarray(rounded - moved)
 
 
 def _repeated(experiment: Experiment) -> Matrix:

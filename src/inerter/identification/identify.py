@@ -201,9 +201,8 @@ def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile
         better = min((p.better for p in found if p.better is not None), key=lambda b: b[0], default=None)
         if better is None:
             break
-        widening = optimum.widening
-        optimum = optimum_of(problem, better[1], steps_of(optimum))
-        optimum = replace(optimum, widening=np.maximum(optimum.widening, widening))
+        nearer = optimum_of(problem, better[1], steps_of(optimum))
+        optimum = replace(nearer, widening=np.maximum(nearer.widening, optimum.widening))
         found = profiles(problem, optimum)
     return optimum, found
 

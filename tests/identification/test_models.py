@@ -47,7 +47,7 @@ def test_only_rigid_devices_get_a_mount_that_no_sensor_tells():
         assert (mounted(model) != model) == (name.split("-viscous")[0] in ("ideal", "friction"))
     s = 2j * math.pi * 30.0
     rigid = with_values(MODELS["ideal-viscous"], VALUES)
-    assert with_values(mounted(rigid), VALUES).admittance(s) == pytest.approx(rigid.admittance(s), rel=0.01)
+    assert with_values(mounted(rigid), VALUES).admittance(s) == pytest.approx(rigid.admittance(s), rel=0.03)
     assert mounted(it.Gap(1e-4) - it.Inerter(5.0)) == MOUNT - it.Gap(1e-4) - it.Inerter(5.0)
     assert mounted(it.Spring(1e4)) == it.Spring(1e4)
 

@@ -67,7 +67,7 @@ def _widening(jacobian: Matrix, residual: Matrix, variance: float) -> Matrix:
 
     Source: the sandwich estimator for dependent data, with blocks as clusters (Liang and Zeger 1986).
     """
-    scores = jacobian * np.clip(residual, -ROBUST, ROBUST)[:, None]
+    scores = jacobian * (residual * (1.0 + (residual / ROBUST) ** 2) ** 0.25)[:, None]  # its rows are weighted already
     blocks = np.array([part.sum(axis=0) for part in np.array_split(scores, _BLOCKS)])
     inverse = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14, hermitian=True)
     sandwich = np.diag(inverse @ (blocks.T @ blocks) @ inverse)

@@ -22,12 +22,12 @@ _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 _UNIT = re.compile(r"(?:[^\W\d_]++(?:(?:\^|\*\*)-?\d|[²³])?+|[()\s*/·.])+")
 _LONGEST = 100
 
-_PREFIXES: dict[str, tuple[tuple[float, str], ...]] = {
-    "N/m": ((1e6, "MN/m"), (1e3, "kN/m"), (1.0, "N/m")),
-    "N s/m": ((1e6, "MN s/m"), (1e3, "kN s/m"), (1.0, "N s/m")),
-    "N": ((1e6, "MN"), (1e3, "kN"), (1.0, "N")),
-    "m": ((1.0, "m"), (1e-3, "mm")),
-    "m/N": ((1.0, "m/N"), (1e-3, "mm/N"), (1e-6, "um/N")),
+_PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # from which size on, scale, unit
+    "N/m": ((1e6, 1e6, "MN/m"), (1e3, 1e3, "kN/m"), (0.0, 1.0, "N/m")),
+    "N s/m": ((1e6, 1e6, "MN s/m"), (1e3, 1e3, "kN s/m"), (0.0, 1.0, "N s/m")),
+    "N": ((1e6, 1e6, "MN"), (1e3, 1e3, "kN"), (0.0, 1.0, "N")),
+    "m": ((1.0, 1.0, "m"), (1e-5, 1e-3, "mm"), (0.0, 1e-6, "um")),  # 0.1 mm is a gap, 5 um a bearing's play
+    "m/N": ((1.0, 1.0, "m/N"), (1e-3, 1e-3, "mm/N"), (0.0, 1e-6, "um/N")),
 }
 
 
@@ -77,10 +77,8 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     rounded = float(f"{value:.{digits}g}")
     if rounded == 0.0 or not math.isfinite(rounded):
         return f"{rounded:g} {unit}"
-    choices = _PREFIXES.get(unit, ((1.0, unit),))
-    if unit == "m" and abs(rounded) < 1e-5:  # 0.1 mm is a gap, 5 um a bearing's play
-        choices = ((1e-6, "um"),)
-    scale, name = next((choice for choice in choices if abs(rounded) >= choice[0]), choices[-1])
+    choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
+    _, scale, name = next(choice for choice in choices if abs(rounded) >= choice[0])
     return f"{rounded / scale:.12g} {name}"
 
 

@@ -68,12 +68,12 @@ class Experiment:
         state = initial_state(system, self.table.value[0], "rest")
         if moving:
             state = _carried(system, state, self.table.slope[0])
-        parts = parts_for(event_driven.start(system, self.table, state))
-        table = self.moved(parts, delay)
-        if samples is not None and samples < self.size:
-            table = _shortened(table, (samples - 1) * parts)
-        integration = event_driven.start(system, table, state)
-        integration.advance(table.time.size - 1)
+        count = self.size if samples is None else min(samples, self.size)
+        integration = event_driven.start(system, _shortened(self.moved(1, delay), count - 1), state)
+        parts = parts_for(integration)
+        if parts > 1:
+            integration = event_driven.start(system, _shortened(self.moved(parts, delay), (count - 1) * parts), state)
+        integration.advance(integration.table.time.size - 1)
         if not integration.status.ok:
             return None
         return trajectory_of(integration, None, self.record.source, state)
@@ -181,6 +181,8 @@ def _signal(motion: Motion) -> Signal:
 
 def _shortened(table: InputTable, segments: int) -> InputTable:
     end = segments + 1
+    if end == table.time.size:
+        return table
     special = np.append(table.special[table.special < segments], end).astype(np.int64)
     samples = int(np.sum(table.slot[:end] >= 0))
     value, slope = table.value[:end], table.slope[:end]

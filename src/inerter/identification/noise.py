@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ class Whitening:
     weight: Matrix  # (samples,) 1/N, zero where samples are not compared
     centre: Matrix  # (bands,) frequencies in cycles a sample, and ...
     density: Matrix  # ... the spectrum of the weighted residuals there, 1 if they were white and of size one
+    offsets: dict[int, Matrix] = field(default_factory=dict)  # remembered, by size
 
     def __call__(self, residual: Matrix) -> Matrix:
         """Whitened residuals (samples,) or (samples, columns), zero where samples are not compared."""
@@ -39,6 +40,12 @@ class Whitening:
             divided /= spectrum if residual.ndim == 1 else spectrum[:, None]
             white = np.fft.irfft(divided, padded, axis=0)[:size]
         return np.asarray(np.where(weight > 0.0, white, 0.0))
+
+    def of_offset(self, size: int) -> Matrix:
+        """What becomes of an offset of 1 N over the first `size` samples."""
+        if size not in self.offsets:
+            self.offsets[size] = self(np.ones(size))
+        return self.offsets[size]
 
 
 def plain(kept: NDArray[np.bool_], level: float) -> Whitening:

@@ -78,7 +78,7 @@ class Problem:
                 continue
             white = w(force - e.record.force[:size])
             if self.offset:
-                column = w(np.ones(size))
+                column = w.of_offset(size)
                 white = white - column * (column @ white / max(float(column @ column), 1e-300))
             parts.append(white)
         return np.concatenate(parts)
@@ -113,7 +113,7 @@ class Problem:
                 result.append(0.0)
                 continue
             size = self.samples(e)
-            column, white = w(np.ones(size)), w(e.record.force[:size] - force)
+            column, white = w.of_offset(size), w(e.record.force[:size] - force)
             result.append(float(column @ white / max(float(column @ column), 1e-300)))
         return result
 

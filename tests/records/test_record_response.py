@@ -10,8 +10,9 @@ from scipy import signal
 
 import inerter as it
 from inerter.errors import LinearSystemError, RecordError
-from inerter.records.periods import period_of, resolution
+from inerter.records.periods import period_of
 from inerter.records.response import ESTIMATORS
+from inerter.records.smoothing import resolution
 
 RATE = 500.0
 OMEGA = 2.0 * np.pi

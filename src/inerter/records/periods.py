@@ -83,18 +83,6 @@ def whole_periods(record: Record, period: float) -> Periods:
     return Periods(period, x, force, tuple(notes))
 
 
-def resolution(values: Matrix) -> float:
-    """The step of a channel whose samples all lie on a grid, such as an encoder's; 0.0 where there is none."""
-    levels = np.unique(values)
-    steps = np.diff(levels)
-    steps = steps[steps > 1e-9 * (levels[-1] - levels[0])]
-    if levels.size > 0.5 * values.size or not steps.size:
-        return 0.0
-    step = float(steps.min())
-    at = (levels - levels[0]) / step
-    return step if bool(np.all(np.abs(at - np.round(at)) < 1e-2)) else 0.0
-
-
 def common_periods(records: Sequence[Record]) -> list[float] | None:
     """The period [s] of each record, known or found; None if no record repeats.
 

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
-from inerter.records.periods import Periods, resolution
+from inerter.records.periods import Periods
 from inerter.records.record import Record
+from inerter.records.smoothing import resolution
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]

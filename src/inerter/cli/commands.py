@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import progress, steps
 from inerter.errors import StatusKind, StudyError
 from inerter.figures.study import draw_study
@@ -32,7 +33,7 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
     folder = output or Path(f"{study.stem}-results")
     processes = _processes(jobs)
     try:
-        with progress(study.stem, "designs and budgets" if loaded.budgets else "designs") as callback:
+        with interruptible(), progress(study.stem, "designs and budgets" if loaded.budgets else "designs") as callback:
             result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback)
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with: inerter run {study} -o {folder} --resume")
@@ -80,7 +81,7 @@ def reproduce(
     folder = output or Path(f"{KEY}-results")
     processes = _processes(jobs)
     try:
-        with steps(KEY) as callback:
+        with interruptible(), steps(KEY) as callback:
             found = paper.reproduce(folder, only=only, jobs=processes, resume=resume, force=force, progress=callback)
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.report.identification import OWN, write_fit, write_identification
@@ -46,12 +47,12 @@ def identify(
     folder = output or Path(f"{paths[0].stem}-results")
     with claimed(folder, own=OWN, resume=None, force=force):
         try:
-            with fraction(f"fitting {request.name or 'the model'}") as callback:
+            with interruptible(), fraction(f"fitting {request.name or 'the model'}") as callback:
                 found = run_identification(readings, request, callback)
             write_fit(found, folder)
             print(json.dumps(identification_data(found), indent=2) if as_json else identification_text(found))
             sys.stdout.flush()
-            with fraction("drawing") as callback:
+            with interruptible(), fraction("drawing") as callback:
                 write_identification(found, folder, callback)
         except RecordError as error:
             raise RecordError(as_options(str(error))) from None

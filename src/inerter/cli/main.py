@@ -13,6 +13,7 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
+from inerter.cli.interrupts import interruptible
 from inerter.errors import InerterError, WorkError
 
 EXAMPLES = """Examples:
@@ -270,7 +271,8 @@ def main() -> None:
 def call(arguments: list[str]) -> int:
     """Run the command line with `arguments`; returns the exit code."""
     try:
-        code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        with interruptible():
+            code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
         return code if isinstance(code, int) else 0
     except CycloptsError as error:

@@ -6,7 +6,8 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
-from threading import Lock
+from itertools import count as count_from
+from threading import Event, Lock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -74,7 +75,8 @@ def simulate_many(
     """Simulate every vehicle on every signal, and keep the mean squares of `outputs` from `settled` [s] on.
 
     Sequences of signals are gone through together: the j-th run of a vehicle takes the j-th of each. `jobs` threads
-    (all cores by default) share the work; results do not depend on how many. See `simulate` for the rest.
+    (all cores by default) share the work; results do not depend on how many. Each calls `progress` with the part that
+    is done, one at a time. See `simulate` for the rest.
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
     """
@@ -92,29 +94,42 @@ def simulate_many(
     events, status = np.zeros((len(cars), count), np.int64), np.empty((len(cars), count), dtype=object)
     systems: list[PiecewiseSystem | None] = [None] * len(cars)
     tables = [_Tables(len(cars)) for _ in range(count)]
+    preparing = Lock()  # much of it holds the interpreter: threads that pass that to and fro lose a quarter of the time
 
     def run(i: int, j: int) -> None:
-        system = systems[i] = systems[i] or _system(cars[i], names)
         moved, pushed, shaken = (None if g is None else g[j] for g in (road, forces, displacement))
-        signals, delays = assign(system.mechanism, moved, pushed, shaken, speed)
-        check_holds(system, signals)
+        with preparing:
+            system = systems[i] = systems[i] or _system(cars[i], names)
+            signals, delays = assign(system.mechanism, moved, pushed, shaken, speed)
+            check_holds(system, signals)
         table = tables[j].take(signals, delays, duration, step)
-        state = initial_state(system, table.value[0], initial)
-        integration = event_driven.start(system, table, state, names, keep=False, settled=skipped)
+        with preparing:
+            state = initial_state(system, table.value[0], initial)
+            integration = event_driven.start(system, table, state, names, keep=False, settled=skipped)
         integration.advance(table.time.size - 1)
         events[i, j], status[i, j] = integration.place[EVENTS], integration.status
         if integration.status.ok:
             squares[i, j] = integration.record.sums[0] / (knots - skipped)
 
-    pool = ThreadPoolExecutor(jobs or os.cpu_count() or 1)
-    try:
-        under_way = [pool.submit(run, i, j) for j in range(count) for i in range(len(cars))]
-        for done, future in enumerate(as_completed(under_way), 1):
-            future.result()
+    runs = [(i, j) for j in range(count) for i in range(len(cars))]
+    waiting, done, stopping = iter(runs), count_from(1), Event()
+
+    def work() -> None:
+        for i, j in waiting:
+            if stopping.is_set():
+                return
+            run(i, j)
             if progress is not None:
-                progress(done / len(under_way))
-    finally:
-        pool.shutdown(cancel_futures=True)
+                with preparing:
+                    progress(next(done) / len(runs))
+
+    threads = min(jobs or os.cpu_count() or 1, len(runs))
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            for thread in as_completed([pool.submit(work) for _ in range(threads)]):
+                thread.result()
+        finally:
+            stopping.set()
     system = systems[0]
     assert system is not None
     units = tuple(system.outputs[name].unit for name in names)

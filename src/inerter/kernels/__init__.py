@@ -26,6 +26,7 @@ from numba.core.registry import CPUDispatcher, cpu_target
 
 F = TypeVar("F", bound=Callable[..., Any])
 _ALONE = RLock()
+_FUSED = {"contract"}
 
 _IMPORTED = re.compile(r"^from inerter\.kernels\.(\w+) import", re.MULTILINE)
 
@@ -86,7 +87,7 @@ def _compiled(function: F, signature: Any, fused: bool, borrowing: bool) -> F:
     try:
         options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
         if fused:  # a product and a sum in one instruction, with one rounding, and four of them side by side
-            options["fastmath"] = {"contract"}
+            options["fastmath"] = _FUSED
             settings.SLP_VECTORIZE = 1
         if borrowing:  # no reference counts, which took half of the time
             options["_nrt"] = False
@@ -108,27 +109,33 @@ def typed(signature: str, *, borrowing: bool = False) -> Callable[[F], F]:
     return lambda function: compiled(function, signature, borrowing=borrowing)
 
 
-def part(signature: Any = None, *, borrowing: bool = False, apart: bool = False) -> Callable[[F], F]:
+def part(
+    signature: Any = None, *, borrowing: bool = False, apart: bool = False, inside: bool = False
+) -> Callable[[F], F]:
     """Compile as a part of the compiled code that calls it, and only there: from elsewhere it is plain Python.
 
     The compiler would make every function ready to be called from Python, optimise it and keep it on disk, for itself
     and once more in everything that calls it; that took half of the time. `apart` parts are not copied into what calls
-    them: right for long ones that are called in many places. Calls with constants share the one `signature` given.
+    them: right for long ones that are called in many places. `inside` ones always are, fused: what calls them with
+    constants becomes code for these, and yet they are read and typed only once. Calls with constants share the one
+    `signature` given.
     """
 
     def declared(function: F) -> F:
-        made: Any = _Part(function, signature, borrowing, apart)
+        made: Any = _Part(function, signature, borrowing, _Apart if apart else _Inside if inside else _Within)
         return cast("F", made)
 
     return declared
 
 
 class _Part(CPUDispatcher):
-    def __init__(self, function: Callable[..., Any], signature: Any, borrowing: bool, apart: bool) -> None:
-        options = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
+    def __init__(self, function: Callable[..., Any], signature: Any, borrowing: bool, library: Any) -> None:
+        options: dict[str, Any] = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
         options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        if library is _Inside:
+            options["fastmath"] = _FUSED
         super().__init__(function, targetoptions=options | ({"_nrt": False} if borrowing else {}))
-        self.wanted, self.library = signature, _Apart if apart else _Within
+        self.wanted, self.library = signature, library
 
     def get_call_template(self: Any, args: Any, kws: Any) -> Any:
         codegen = cpu_target.target_context.codegen()  # the compiler's lock is held here
@@ -159,6 +166,14 @@ class _Within(JITCodeLibrary):
 
     def _finalize_final_module(self) -> None:
         self._finalized = True
+
+
+class _Inside(_Within):
+    def add_llvm_module(self, module: Any) -> None:
+        for function in module.functions:
+            if not function.is_declaration:
+                function.add_function_attribute("alwaysinline")
+        super().add_llvm_module(module)  # type: ignore[no-untyped-call]
 
 
 class _Apart(_Within):

@@ -5,11 +5,12 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+import numpy as np
 from numba import types
 from numba.experimental import function_type
 from numba.extending import typeof_impl
 
-from inerter.kernels import compiled
+from inerter.kernels import compiled, part
 from inerter.kernels.arrays import SHARP
 
 _FLOATS, _INTS = types.Array(types.float64, 1, "C"), types.Array(types.int64, 1, "C")
@@ -35,6 +36,7 @@ SIGNATURE = types.int64(
 )
 
 TYPE: Any = types.FunctionType(SIGNATURE)
+_SIZES = (types.int64,) * 6 + (types.boolean, types.Array(types.int64, 1, "C", readonly=True))
 
 
 class March(types.WrapperAddressProtocol):
@@ -68,6 +70,95 @@ def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp
     return n + inputs + 1, padded(rows), padded(elements)
 
 
+@part(SIGNATURE.return_type(*SIGNATURE.args, *_SIZES), borrowing=True, inside=True)
+def go_on(  # type: ignore[no-untyped-def]
+    steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
+    h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
+):  # fmt: skip
+    """Go on while no guard can be crossed within the step; the first segment that needs more care."""
+    columns, sways = n + inputs + 1, (elements + 3) // 4 * 4
+    bends = n + 2 * elements + outputs * (2 if jumps else 1)  # rows of the sway's first terms
+    terms = SHARP if sharp else 0
+    at_end, at_start = n + 2 * elements, n + 2 * elements + outputs  # rows of outputs
+    v, y, before = work[:columns], work[columns : columns + rows + sways], work[columns + rows + sways :]
+    for i in range(n):
+        v[i] = x[i]
+    v[columns - 1] = 1.0
+    k = first
+    while k < stop:
+        leaps = False
+        for c in range(jumps):
+            leaps = leaps or value[k, c] != value_before[k, c]
+        if leaps:
+            for i in range(n):
+                before[i] = v[i]
+            for c in range(jumps):
+                rise = value[k, c] - value_before[k, c]
+                for i in range(n):
+                    v[i] += steps[columns + c, i] * rise
+        for j in range(inputs):
+            c, number = numbers[j] // 4, numbers[j] % 4
+            if number == 0:
+                v[n + j] = value[k, c]
+            elif number == 1:
+                v[n + j] = value_before[k + 1, c] - value[k, c]
+            elif number == 2:
+                v[n + j] = h * slope[k, c]
+            else:
+                v[n + j] = h * slope_before[k + 1, c]
+        for i in range(0, rows, 4):  # four rows at once, which one instruction does
+            y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
+            for j in range(columns - 1, -1, -1):  # the inputs first, which need not wait for the state
+                y0 += steps[j, i] * v[j]
+                y1 += steps[j, i + 1] * v[j]
+                y2 += steps[j, i + 2] * v[j]
+                y3 += steps[j, i + 3] * v[j]
+            y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
+        for i in range(rows, rows + sways, 4):
+            y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
+            for j in range(columns):
+                size = abs(v[j])
+                y0 += steps[j, i] * size
+                y1 += steps[j, i + 1] * size
+                y2 += steps[j, i + 2] * size
+                y3 += steps[j, i + 3] * size
+            y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
+        safe = True
+        for e in range(elements):
+            end, start, sway = y[n + e], y[n + elements + e], y[rows + e]
+            for term in range(terms):
+                sway += abs(y[bends + term * elements + e])
+            if not (min(start, end) - sway > limits[e, 0] and max(start, end) + sway < limits[e, 1]):
+                safe = False
+        if not safe:
+            if leaps:
+                for i in range(n):
+                    v[i] = before[i]
+            break
+        if leaps and slot[k] >= 0:  # the sample and its squares are those after the jump
+            if slot[k] < states.shape[0]:
+                for i in range(n):
+                    states[slot[k], i] = v[i]
+            if k > settled:
+                for o in range(outputs):
+                    sums[0, o] += y[at_start + o] ** 2 - sums[1, o]
+        if k >= settled and slot[k + 1] >= 0:
+            for o in range(outputs):
+                sums[1, o] = y[at_end + o] ** 2
+                sums[0, o] += sums[1, o]
+        for i in range(n):
+            v[i] = y[i]
+        k += 1
+        sample = slot[k]
+        if sample >= 0 and sample < states.shape[0]:
+            visited[sample] = mode
+            for i in range(n):
+                states[sample, i] = y[i]
+    for i in range(n):
+        x[i] = v[i]
+    return k
+
+
 @cache
 def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: int, sharp: bool) -> March:
     """The march for systems of n states, these of `flow.knot_numbers`, so many nonlinear elements and squared outputs.
@@ -77,92 +168,16 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
     terms of the guards' sway are values, not sums of sizes, which sees that large motions cancel in them.
     """
     inputs = len(used)
-    columns, rows, sways = lines_of(n, inputs, elements, outputs, jumps, sharp)
-    bends = n + 2 * elements + outputs * (2 if jumps else 1)  # rows of the sway's first terms
-    terms = SHARP if sharp else 0
-    at_end, at_start = n + 2 * elements, n + 2 * elements + outputs  # rows of outputs
-    numbers = used or (0,)  # an empty tuple cannot be compiled, even if it is never looked into
+    _, rows, _ = lines_of(n, inputs, elements, outputs, jumps, sharp)
+    numbers = np.array(used or (0,), np.int64)
 
     def march(  # type: ignore[no-untyped-def]
         steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
         h, mode, first, stop, settled,
     ):  # fmt: skip
-        v, y, before = work[:columns], work[columns : columns + rows + sways], work[columns + rows + sways :]
-        for i in range(n):
-            v[i] = x[i]
-        v[columns - 1] = 1.0
-        k = first
-        while k < stop:
-            leaps = False
-            for c in range(jumps):
-                leaps = leaps or value[k, c] != value_before[k, c]
-            if leaps:
-                for i in range(n):
-                    before[i] = v[i]
-                for c in range(jumps):
-                    rise = value[k, c] - value_before[k, c]
-                    for i in range(n):
-                        v[i] += steps[columns + c, i] * rise
-            for j in range(inputs):
-                c, number = numbers[j] // 4, numbers[j] % 4
-                if number == 0:
-                    v[n + j] = value[k, c]
-                elif number == 1:
-                    v[n + j] = value_before[k + 1, c] - value[k, c]
-                elif number == 2:
-                    v[n + j] = h * slope[k, c]
-                else:
-                    v[n + j] = h * slope_before[k + 1, c]
-            for i in range(0, rows, 4):  # four rows at once, which one instruction does
-                y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
-                for j in range(columns - 1, -1, -1):  # the inputs first, which need not wait for the state
-                    y0 += steps[j, i] * v[j]
-                    y1 += steps[j, i + 1] * v[j]
-                    y2 += steps[j, i + 2] * v[j]
-                    y3 += steps[j, i + 3] * v[j]
-                y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
-            for i in range(rows, rows + sways, 4):
-                y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
-                for j in range(columns):
-                    size = abs(v[j])
-                    y0 += steps[j, i] * size
-                    y1 += steps[j, i + 1] * size
-                    y2 += steps[j, i + 2] * size
-                    y3 += steps[j, i + 3] * size
-                y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
-            safe = True
-            for e in range(elements):
-                end, start, sway = y[n + e], y[n + elements + e], y[rows + e]
-                for term in range(terms):
-                    sway += abs(y[bends + term * elements + e])
-                if not (min(start, end) - sway > limits[e, 0] and max(start, end) + sway < limits[e, 1]):
-                    safe = False
-            if not safe:
-                if leaps:
-                    for i in range(n):
-                        v[i] = before[i]
-                break
-            if leaps and slot[k] >= 0:  # the sample and its squares are those after the jump
-                if slot[k] < states.shape[0]:
-                    for i in range(n):
-                        states[slot[k], i] = v[i]
-                if k > settled:
-                    for o in range(outputs):
-                        sums[0, o] += y[at_start + o] ** 2 - sums[1, o]
-            if k >= settled and slot[k + 1] >= 0:
-                for o in range(outputs):
-                    sums[1, o] = y[at_end + o] ** 2
-                    sums[0, o] += sums[1, o]
-            for i in range(n):
-                v[i] = y[i]
-            k += 1
-            sample = slot[k]
-            if sample >= 0 and sample < states.shape[0]:
-                visited[sample] = mode
-                for i in range(n):
-                    states[sample, i] = y[i]
-        for i in range(n):
-            x[i] = v[i]
-        return k
+        return go_on(  # type: ignore[no-untyped-call]
+            steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
+            h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
+        )  # fmt: skip
 
     return March(compiled(march, SIGNATURE, fused=True, borrowing=True))

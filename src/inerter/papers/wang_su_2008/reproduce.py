@@ -211,6 +211,7 @@ def _run(
     """The numbers of all tasks; each is in the journal as soon as it is there."""
     found = _read(journal) if resume else {}
     pending = [task for task in tasks if task.key not in found]
+    pending = pending[::2] + pending[1::2]  # neighbours are alike: two processes would compile the same
     if not found:
         write_text(journal, json.dumps({"inerter": inerter.__version__}) + "\n")
     if tasks:

@@ -56,8 +56,7 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:
     """
     branches, coordinates = system.graph.branches, system.mechanism.coordinates
     nodes = len(system.graph.nodes)
-    at_rest = not (np.any(road) or np.any(force) or any(isinstance(b.element, Gap) for b in branches))
-    if nodes == 0 or at_rest:
+    if nodes == 0 or not (np.any(road) or np.any(force)):
         return np.zeros(nodes)
     E = np.array([b.nodes for b in branches]).reshape(-1, nodes)
     offset = np.array([b.roads for b in branches]).reshape(len(branches), -1) @ road

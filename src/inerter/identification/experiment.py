@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from inerter.errors import IdentificationError, InerterError
 from inerter.networks.elements import Damper, Friction, Gap, Spring
 from inerter.records.record import Record
-from inerter.records.smoothing import Motion, noise_of, smooth_displacement
+from inerter.records.smoothing import Motion, noise_of, resolution, smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import InputTable, tabulate
@@ -23,6 +23,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and tell nothing new
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the time in which the device answers; parts of an interval, as a power of 2
+_MAD = 1.4826  # standard deviations in a median absolute deviation
 _AT_REST = 0.02  # of the largest velocity
 
 
@@ -38,6 +39,7 @@ class Experiment:
     kept: NDArray[np.bool_]
     table: InputTable  # of the motion, without delay
     noise: float  # [N] r.m.s. of the noise of the force
+    told: Matrix  # (samples,) how much of the squared force of all samples kept lies up to each
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
 
     @property
@@ -116,7 +118,23 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         raise IdentificationError(
             f"Of {record.source!r} only {kept.sum()} samples can be used; a fit needs 50 or more."
         )
-    return Experiment(record, motion, kept, table, max(noise_of(record.force, interval).rms, 1e-9))
+    return Experiment(record, motion, kept, table, _noise(record), _told(record.force, kept))
+
+
+def _noise(record: Record) -> float:
+    """R.m.s. of the noise of the force [N]: as its spectrum tells, or less where impacts now and then are all of that.
+
+    Sixth differences leave little of any force, and their median little of what is not there most of the time.
+    """
+    sixth = _MAD * float(np.median(np.abs(np.diff(record.force, 6)))) / math.sqrt(math.comb(12, 6))
+    intermittent = max(sixth, resolution(record.force) / math.sqrt(12.0))
+    return max(min(noise_of(record.force, record.interval).rms, intermittent), 1e-9)
+
+
+def _told(force: Matrix, kept: NDArray[np.bool_]) -> Matrix:
+    square = np.where(kept, (force - np.median(force[kept])) ** 2, 0.0)
+    total = np.cumsum(square)
+    return np.asarray(total / total[-1])
 
 
 def reading_of(record: Record) -> str:

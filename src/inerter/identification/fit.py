@@ -94,6 +94,7 @@ class Fit:
     criterion: float  # Bayesian information criterion, lower is better
     costs: tuple[float, ...]  # of the best starts, sorted: equal ones found the same fit
     simulations: int
+    predicted: float  # part of the variance of the force that errors as small as those of the encoder leave as it is
     status: Status = OK
     notes: tuple[str, ...] = ()
     next_experiment: tuple[str, ...] = ()

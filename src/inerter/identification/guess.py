@@ -73,7 +73,7 @@ def _role(element: object, inertial: bool) -> str | None:
 
 
 def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[float, float]]:
-    """Values of the free elements by name, each with the half-width of the range in which to look for it."""
+    """Values of free elements, all but the gap, by name, each with the half-width of the range to look in."""
     best: dict[str, tuple[float, float]] = {}
     for experiment in experiments:
         for element, value, width in _solved(chain, experiment):
@@ -149,13 +149,13 @@ def _solved(chain: Chain, experiment: Experiment) -> list[tuple[Element | None, 
     rest = p[2:]
     f = b * rest.pop(0) if chain.friction is not None else 0.0
     drag = b * rest.pop(0) if chain.drag is not None else 0.0
-    gap = rest.pop(0) if chain.gap is not None else 0.0
+    if chain.gap is not None:
+        rest.pop(0)  # serves the others; as an estimate of its own it may be wrong by a factor
     k = 1.0 / max(rest.pop(0), 1e-15) if chain.spring is not None else np.inf
     return [
         (chain.inerter, b, _WELL * b),
         (chain.friction, f, _WELL * f + 3.0 * experiment.noise),
         (chain.drag, drag, _POORLY * drag),
-        (chain.gap, gap, _POORLY * gap + 10.0 * motion.noise),
     ] + ([(chain.spring, k, _POORLY * k)] if chain.gap is None else [])
 
 

@@ -13,7 +13,6 @@ from scipy.stats import chi2
 
 from inerter.checks import is_number
 from inerter.errors import OK, IdentificationError, Status, StatusKind
-from inerter.identification.encoder import lean, scattered
 from inerter.identification.experiment import Experiment, experiment_of, forgotten, reading_of, saturated
 from inerter.identification.fit import Comparison, Fit, Parameter
 from inerter.identification.guess import chain_of, guess_of, sign_of
@@ -21,7 +20,8 @@ from inerter.identification.intervals import Optimum, Profile, optimum_of, profi
 from inerter.identification.models import mounted, unmounted
 from inerter.identification.noise import plain, whitening_of
 from inerter.identification.problem import Problem
-from inerter.identification.search import POINTS, search, soft
+from inerter.identification.redrawing import redrawn, unavoidable
+from inerter.identification.search import POINTS, QUICK, THOROUGH, search, soft, wander
 from inerter.identification.space import DELAY, GAIN, Space, space_of
 from inerter.identification.telling import suggestions, told
 from inerter.networks.elements import Gap, Network
@@ -34,7 +34,8 @@ Matrix = NDArray[np.float64]
 LONGEST_DELAY = 0.02  # [s] that is looked for when a delay is free
 _ROUGH = 0.003  # of the r.m.s. force: what a residual counts as until the errors are known
 _ROUNDS = 3
-_ATTEMPTS, _FINE = 3, 10.0  # searches at most, and the whitened residual (its last tenth) that needs no further one
+_FINE, _POOR = 2.0, 20.0  # whitened residual (its last tenth) that needs no further search, and that which always does
+_FAIR = 1.5  # between them: over what the errors of the sensors leave
 _ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
 _LAGS = 20
 _INDEPENDENT = 1e-3  # p-value below which residuals still hang together
@@ -94,14 +95,14 @@ def identify(
         guess = {} if chain is None else guess_of(chain, list(problem.experiments))
         point, costs = _searched(problem, guess, seed, starts, _part(progress, 0.0, 0.6))
         problem.experiments, leads = _leads(problem, point, lead)
-        optimum, rounding = scattered(problem, _refined(problem, point), seed)
+        anew = redrawn(problem, _refined(problem, point), seed)
         if progress is not None:
             progress(0.7)
-        optimum, found = _profiled(problem, optimum)
-        optimum, found = _straightened(problem, optimum, found, rounding + lean(problem, optimum, seed))
+        optimum, found = _profiled(problem, anew.optimum)
+        optimum, found = _straightened(problem, optimum, found, anew.lean)
         if progress is not None:
             progress(1.0)
-        return _fit(problem, optimum, found, experiments, leads, tuple(costs), tuple(notes), seed)
+        return _fit(problem, optimum, found, experiments, leads, tuple(costs), tuple(notes), anew.predicted, seed)
 
 
 def _searched(
@@ -111,15 +112,18 @@ def _searched(
     starts: int,
     progress: Callable[[float], None] | None,
 ) -> tuple[Matrix, list[float]]:
-    """The best of a search, or of further ones with more points while even the best leaves more than noise."""
-    found: list[tuple[Matrix, list[float]]] = []
+    """The best of a search; while it leaves more than the sensors' errors, of more thorough ones."""
     kept = np.concatenate([e.kept for e in problem.experiments])
-    for attempt in range(_ATTEMPTS):
-        found.append(search(problem, guess, seed + attempt, starts << attempt, progress))
-        point, costs = min(found, key=lambda f: soft(problem.residual(f[0])))
-        if np.quantile(np.abs(problem.residual(point)[kept]), 0.9) < _FINE:
+    found: list[tuple[Matrix, list[float]]] = []
+    for attempt, (stages, points) in enumerate(((QUICK, starts), (THOROUGH, starts), (THOROUGH, 2 * starts))):
+        point, costs = search(problem, guess, seed + attempt, points, stages, progress)
+        if stages is THOROUGH:
+            point = wander(problem, point, seed)
+        found.append((point, costs))
+        left = float(np.quantile(np.abs(problem.residual(point)[kept]), 0.9))
+        if left < _FINE or left < min(_FAIR * unavoidable(problem, point, seed), _POOR):
             break
-    return point, costs
+    return min(found, key=lambda f: soft(problem.residual(f[0])))
 
 
 def _checked(records: Record | Sequence[Record], model: Network, check: float, starts: int) -> tuple[list[Record], Rig]:
@@ -208,7 +212,7 @@ def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile
 
 
 def _straightened(
-    problem: Problem, optimum: Optimum, found: Sequence[Profile], lean_by: Matrix
+    problem: Problem, optimum: Optimum, found: Sequence[Profile], lean: Matrix
 ) -> tuple[Optimum, list[Profile]]:
     """The best fit and its profiles without what the sensors' errors did to them.
 
@@ -216,7 +220,7 @@ def _straightened(
     """
     lower, upper = problem.space.bounds
     told_on_both_sides = np.array([p.lower.told and p.upper.told for p in found])
-    point = np.clip(optimum.point - np.where(told_on_both_sides, lean_by, 0.0), lower, upper)
+    point = np.clip(optimum.point - np.where(told_on_both_sides, lean, 0.0), lower, upper)
     if robust_cost(problem.residual(point)) > optimum.cost + 2.0 * float(np.max(optimum.threshold)):
         return optimum, list(found)
     by = point - optimum.point
@@ -231,6 +235,7 @@ def _fit(
     leads: Sequence[float],
     costs: tuple[float, ...],
     notes: tuple[str, ...],
+    predicted: float,
     seed: int,
 ) -> Fit:
     space = problem.space
@@ -241,11 +246,11 @@ def _fit(
         parameters={}, identifiable={}, correlation=_correlation(optimum.covariance),
         covariance=optimum.covariance * np.outer(space.slopes(optimum.point), space.slopes(optimum.point)),
         device=device, comparisons=comparisons, criterion=_criterion(problem, optimum), costs=costs,
-        simulations=problem.simulations, notes=notes, settings={"seed": seed},
+        simulations=problem.simulations, notes=notes, predicted=predicted, settings={"seed": seed},
     )  # fmt: skip
     status = _status(draft)
     parameters = {name: _parameter(space, i, optimum, found[i], values[name]) for i, name in enumerate(space.names)}
-    explains = draft.explained >= _ENOUGH
+    explains = min(draft.explained, predicted) >= _ENOUGH
     identifiable = {
         name: told(space.kinds[i], p, found[i], space, i, comparisons, values, explains)
         for i, (name, p) in enumerate(parameters.items())
@@ -341,6 +346,13 @@ def _status(fit: Fit) -> Status:
             StatusKind.INACCURATE,
             f"the model explains {100.0 * max(fit.explained, 0.0):.1f} % of the force only, so none of its parameters "
             f"is that of the device; try a model with other elements, or a record in which the device rattles less",
+        )
+    if fit.predicted < _ENOUGH:
+        changed = 100.0 * min(1.0 - fit.predicted, 1.0)
+        return Status(
+            StatusKind.INACCURATE,
+            f"errors as small as those of the encoder change {changed:.1f} % of the force of this device, so none of "
+            f"its parameters can be told; try a record in which it rattles less",
         )
     lost = sum(float(saturated(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
     if lost > 0.2:

@@ -21,6 +21,7 @@ from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
+_FEWEST = 100  # samples that are compared
 FAILED = 1e3  # whitened residual of a simulation that cannot go on
 
 
@@ -33,7 +34,7 @@ class Problem:
     experiments: Sequence[Experiment]
     whitenings: Sequence[Whitening]
     offset: bool = True  # whether the load cell may have one, its own in each record
-    horizon: float = 1.0  # part of each record that is compared
+    horizon: float = 1.0  # part of each record that is compared, as its force counts
     simulations: int = 0
     systems: dict[tuple[object, ...], PiecewiseSystem] = field(default_factory=dict)  # by load cell and zeros
     pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(os.cpu_count() or 1))
@@ -66,7 +67,10 @@ class Problem:
         return result
 
     def samples(self, experiment: Experiment) -> int:
-        return max(4, round(self.horizon * experiment.size))
+        """How many samples of a record hold this part of all that its force tells."""
+        if self.horizon == 1.0:
+            return experiment.size
+        return min(max(_FEWEST, int(np.searchsorted(experiment.told, self.horizon))), experiment.size)
 
     def residual(self, coordinates: Matrix) -> Matrix:
         """Whitened residuals of all records, one after the other."""

@@ -1,4 +1,8 @@
-"""From anywhere within the bounds to the best fit: many points, then the best of them improved on longer horizons."""
+"""From anywhere within the bounds to the best fit: many points on the first part of the records, fewer on ever more.
+
+A device that rattles forgets in a few impacts where it came from, so over a whole record the cost has a valley beside
+every value. Over the first moments it has one, which leads into the right one of the next longer part.
+"""
 
 from __future__ import annotations
 
@@ -13,9 +17,15 @@ from scipy.stats import qmc
 from inerter.identification.problem import Problem
 
 Matrix = NDArray[np.float64]
-POINTS, KEPT = 128, 5
-FIRST_HORIZON = 0.4
+POINTS = 128
+Stages = tuple[tuple[float, int, int], ...]  # horizon, candidates, and evaluations of each
+QUICK: Stages = ((1 / 16, 12, 6), (1 / 8, 8, 6), (1 / 4, 5, 6), (1 / 2, 3, 6), (1.0, 2, 12))
+THOROUGH: Stages = ((1 / 16, 24, 10), (1 / 8, 12, 8), (1 / 4, 6, 8), (1 / 2, 4, 8), (1.0, 2, 12))
+_ROUGH, _SAME = 1e-3, 3e-3  # accuracy on parts of the records, and coordinates that are taken to be equal
 STEP = 1e-3  # of a coordinate, before its uncertainty is known
+_HOPS, _PATIENCE, _EVALUATIONS = 12, 4, 8
+_REACH = (1.0, 0.3, 2.0)  # of hops, over the distance at which the linearised cost would double
+_FARTHEST = 0.3  # in a coordinate
 
 
 def search(
@@ -23,36 +33,51 @@ def search(
     guess: Mapping[str, tuple[float, float]],
     seed: int,
     points: int = POINTS,
+    stages: Stages = QUICK,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Matrix, list[float]]:
-    """The best coordinates, and the costs that the starts came to on the first part of the records.
+    """The best coordinates, and the costs that the last candidates came to on half of the records.
 
     `guess`: values that are known in advance, each with the half-width of the range to look in.
     """
-    short = replace(problem, horizon=FIRST_HORIZON)
     candidates = starts(problem, guess, seed, points)
-    costs = np.array([soft(r) for r in short.residuals(candidates)])
-    if progress is not None:
-        progress(0.3)
-    found = []
-    for done, i in enumerate(np.argsort(costs)[:KEPT]):
-        found.append(improve(short, candidates[i], 20))
+    first = replace(problem, horizon=stages[0][0])
+    costs = [soft(r) for r in first.residuals(candidates)]
+    problem.simulations += first.simulations
+    halfway: list[float] = []
+    for stage, (horizon, kept, evaluations) in enumerate(stages):
+        part = replace(problem, horizon=horizon, simulations=0)
+        accuracy = 1e-9 if horizon == 1.0 else _ROUGH
+        candidates = _distinct(candidates, costs)[:kept]
+        found = [improve(part, candidate, evaluations, accuracy=accuracy) for candidate in candidates]
+        candidates, costs = [f[0] for f in found], [f[1] for f in found]
+        halfway = sorted(costs) if horizon < 1.0 else halfway
+        problem.simulations += part.simulations
         if progress is not None:
-            progress(0.3 + 0.5 * (done + 1) / KEPT)
-    best = min(found, key=lambda f: f[1])
-    final = improve(problem, best[0], 30)
-    problem.simulations += short.simulations
-    return final[0], sorted(f[1] for f in found)
+            progress((stage + 1) / len(stages))
+    return candidates[int(np.argmin(costs))], halfway
+
+
+def _distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:
+    """From the best on, without those that came to where a better one is."""
+    result: list[Matrix] = []
+    for i in np.argsort(costs):
+        if all(np.abs(candidates[i] - other).max() > _SAME for other in result):
+            result.append(candidates[i])
+    return result
 
 
 def starts(problem: Problem, guess: Mapping[str, tuple[float, float]], seed: int, count: int) -> list[Matrix]:
-    """Points of a Sobol sequence: half of them around the guess, if there is one, and a quarter without backlash."""
+    """Points of a Sobol sequence: three quarters of them around the guess, if there is one, and some without backlash.
+
+    A value that may be zero is drawn as the cube of an even one, for its order of magnitude is not known.
+    """
     space = problem.space
     lower, upper = space.bounds
     draws = qmc.Sobol(len(space.names), seed=seed).random(1 << (count - 1).bit_length())[:count]
     result = []
     for n, draw in enumerate(draws):
-        point = lower + draw * (upper - lower)
+        point = lower + np.where(space.lower == 0.0, draw**3, draw) * (upper - lower)
         if guess and n % 4 != 3:
             for i, name in enumerate(space.names):
                 if name in guess:
@@ -67,17 +92,47 @@ def starts(problem: Problem, guess: Mapping[str, tuple[float, float]], seed: int
     return result
 
 
+def wander(problem: Problem, start: Matrix, seed: int) -> Matrix:
+    """The best fit that can be reached from `start` by hops to nearby points, each improved.
+
+    Hops go as far as the linearised cost would rise by about itself: far along valleys, and far from bad fits.
+    Source: basin hopping (Wales and Doye 1997), here without steps upwards.
+    """
+    random = np.random.default_rng([seed, 3])
+    lower, upper = problem.space.bounds
+    point, cost, _, jacobian = improve(problem, start, _EVALUATIONS)
+    failures = 0
+    for hop in range(_HOPS):
+        _, size, axes = np.linalg.svd(jacobian, full_matrices=False)
+        reach = _REACH[hop % len(_REACH)] * np.sqrt(2.0 * cost / point.size)
+        move = axes.T @ (reach / np.maximum(size, 1e-6 * size[0] + 1e-300) * random.standard_normal(point.size))
+        move *= min(1.0, _FARTHEST / max(float(np.abs(move).max()), 1e-300))
+        found = improve(problem, np.clip(point + move, lower, upper), _EVALUATIONS)
+        failures = 0 if found[1] < 0.95 * cost else failures + 1
+        if found[1] < cost:
+            point, cost, _, jacobian = found
+        if failures == _PATIENCE:
+            break
+    return point
+
+
 def soft(residual: Matrix) -> float:
     """Sum of squares that grow like their roots beyond 10: far from the best fit every residual is an outlier."""
     return float(np.sum(2.0 * (np.sqrt(1.0 + (residual / 10.0) ** 2) - 1.0)) * 100.0)
 
 
 def improve(
-    problem: Problem, start: Matrix, evaluations: int, steps: Matrix | None = None, scale: float = 10.0
+    problem: Problem,
+    start: Matrix,
+    evaluations: int,
+    steps: Matrix | None = None,
+    scale: float = 10.0,
+    accuracy: float = 1e-9,
 ) -> tuple[Matrix, float, Matrix, Matrix]:
     """Trust-region least squares from `start`: coordinates, cost, residuals and their derivatives.
 
-    `scale`: residuals beyond it count less than their square (soft l1).
+    `scale`: residuals beyond it count less than their square (soft l1). It ends where a step changes the cost or the
+    coordinates by less than `accuracy`.
     """
     space = problem.space
     lower, upper = space.bounds
@@ -95,7 +150,7 @@ def improve(
         loss="soft_l1",
         f_scale=scale,
         max_nfev=evaluations,
-        xtol=1e-9,
-        ftol=1e-9,
+        xtol=accuracy,
+        ftol=accuracy,
     )
     return np.clip(result.x, lower, upper), float(result.cost), np.asarray(result.fun), np.asarray(result.jac)

@@ -48,6 +48,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "criterion": fit.criterion,
         "costs": fit.costs,
         "simulations": fit.simulations,
+        "predicted": fit.predicted,
         "candidates": [vars(candidate) for candidate in found.candidates],
         "choice": found.choice,
         "settings": {**found.settings, **fit.settings},

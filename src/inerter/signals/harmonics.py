@@ -62,10 +62,14 @@ class Harmonics(Signal):
         """One Fourier transform for a grid of `length` points a period; harmonics beyond its band fold back exactly."""
         orders = len(self.coefficient)
         rows = self._rows * self._waves(np.array([start]))[:, 0]
-        padded = np.pad(rows, ((0, 0), (1, -(orders + 1) % length)))
-        spectrum = padded.reshape(2, -1, length).sum(axis=1)
-        mirrored = np.roll(spectrum[:, ::-1], 1, axis=1).conj()
-        half = 0.5 * (spectrum + mirrored)[:, : length // 2 + 1]
+        half = np.zeros((2, length // 2 + 1), complex)
+        if orders < length / 2:
+            half[:, 1 : orders + 1] = 0.5 * rows
+        else:
+            padded = np.pad(rows, ((0, 0), (1, -(orders + 1) % length)))
+            spectrum = padded.reshape(2, -1, length).sum(axis=1)
+            mirrored = np.roll(spectrum[:, ::-1], 1, axis=1).conj()
+            half[:] = 0.5 * (spectrum + mirrored)[:, : length // 2 + 1]
         value, slope = np.fft.irfft(half, length, norm="forward")
         return np.resize(value, count), np.resize(slope, count)
 

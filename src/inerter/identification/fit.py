@@ -92,7 +92,7 @@ class Fit:
     device: Network  # the model with the best values
     comparisons: tuple[Comparison, ...]
     criterion: float  # Bayesian information criterion, lower is better
-    costs: tuple[float, ...]  # of the best starts, sorted: equal ones found the same fit
+    costs: tuple[float, ...]  # of the different fits to half of the records that the best starts came to, sorted
     simulations: int
     predicted: float  # part of the variance of the force that errors as small as those of the encoder leave as it is
     status: Status = OK

@@ -149,12 +149,13 @@ def _goodness(found: Identified) -> Iterator[tuple[str, ...]]:
 def _computation(found: Identified) -> str:
     fit = found.fit
     settings = ", ".join(f"{name} {value}" for name, value in {**fit.settings, **found.settings}.items())
-    agreeing = sum(cost <= 1.01 * fit.costs[0] + 1e-12 for cost in fit.costs) if fit.costs else 0
-    starts = f" {agreeing} of the {len(fit.costs)} best starts found the same fit." if fit.costs else ""
+    ended = f"{len(fit.costs)} different fits" if len(fit.costs) > 1 else "one and the same fit"
+    starts = f" On half of the records the best starts came to {ended}."
     text = (
         f"The model was moved as the displacement was, smoothed, and its force compared with the measured one; no "
         f"measured motion was differentiated twice. Least squares from many starts, with residuals weighted and "
-        f"whitened; {fit.simulations} simulations.{starts} Intervals of 95 % are from profile likelihoods. Settings: "
-        f"{settings}. Schwarz's criterion (lower is better): {fit.criterion:.1f}."
+        f"whitened; {fit.simulations} simulations.{starts} Intervals of 95 % are from profile likelihoods and "
+        f"from records drawn anew from the fit. Settings: {settings}. Schwarz's criterion (lower is better): "
+        f"{fit.criterion:.1f}."
     )
     return text.replace(": -", ": −")

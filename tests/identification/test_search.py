@@ -124,3 +124,20 @@ def test_a_device_that_nobody_can_predict_has_no_parameters() -> None:
     assert not fit.status.ok
     assert not any(told for told in fit.identifiable.values())
     assert all(np.isnan(parameter.value) for parameter in fit.parameters.values())
+
+
+def test_progress_never_goes_back() -> None:
+    """Also where a record asks for further searches."""
+    told: list[float] = []
+    record = rattle(seed=1)
+    noisy = it.Record(
+        time=record.time,
+        displacement=record.displacement,
+        force=record.force * (1.0 + 0.2 * np.sin(40.0 * record.time)),  # what no model explains
+        source="modulated",
+        force_bandwidth=record.force_bandwidth,
+    )
+    it.identify(noisy.trim(0.0, 1.5), BALL_SCREW, seed=0, starts=8, progress=told.append)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    assert len(told) > 10  # more than one search

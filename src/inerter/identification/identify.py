@@ -116,7 +116,8 @@ def _searched(
     kept = np.concatenate([e.kept for e in problem.experiments])
     found: list[tuple[Matrix, list[float]]] = []
     for attempt, (stages, points) in enumerate(((QUICK, starts), (THOROUGH, starts), (THOROUGH, 2 * starts))):
-        point, costs = search(problem, guess, seed + attempt, points, stages, progress)
+        part = _part(progress, attempt / 3.0, (attempt + 1) / 3.0)
+        point, costs = search(problem, guess, seed + attempt, points, stages, part)
         if stages is THOROUGH:
             point = wander(problem, point, seed)
         found.append((point, costs))

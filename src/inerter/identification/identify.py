@@ -67,8 +67,8 @@ def identify(
 
     `starts` points from a Sobol sequence with `seed`, and a first guess without simulation for devices that are a
     chain, are improved by least squares; errors are weighted and whitened as the residuals ask; intervals are from
-    profile likelihoods at 95 %. A parameter that the records cannot tell has the value nan, with a sentence in
-    `fit.identifiable`. See docs/identification.md.
+    profile likelihoods at 95 %, at least as wide as fits to records drawn anew scatter. A parameter that the records
+    cannot tell has the value nan, with a sentence in `fit.identifiable`. See docs/identification.md.
 
     Raises `IdentificationError` for a model without free values or a request that cannot be, and `RecordError` for
     records that cannot be used.

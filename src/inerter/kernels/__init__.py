@@ -168,20 +168,24 @@ class _Within(JITCodeLibrary):
         self._finalized = True
 
 
-class _Inside(_Within):
+class _Marked(_Within):
+    """Code whose functions carry an attribute that tells the optimiser what to do with calls of them."""
+
+    attribute: str
+
     def add_llvm_module(self, module: Any) -> None:
         for function in module.functions:
             if not function.is_declaration:
-                function.add_function_attribute("alwaysinline")
+                function.add_function_attribute(self.attribute)
         super().add_llvm_module(module)  # type: ignore[no-untyped-call]
 
 
-class _Apart(_Within):
-    def add_llvm_module(self, module: Any) -> None:
-        for function in module.functions:
-            if not function.is_declaration:
-                function.add_function_attribute("noinline")
-        super().add_llvm_module(module)  # type: ignore[no-untyped-call]
+class _Inside(_Marked):
+    attribute = "alwaysinline"
+
+
+class _Apart(_Marked):
+    attribute = "noinline"
 
 
 def compiling_beside(module: str) -> Callable[[], None]:

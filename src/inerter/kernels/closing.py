@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels import part
-from inerter.kernels.linalg import factor, solve, solve_transposed
+from inerter.kernels.linalg import copy, factor, solve, solve_transposed
 
 Array = Any
 
@@ -73,7 +73,8 @@ def close_in(space: Array, p: Array, descriptor: Array) -> bool:
     contract(p, Y_eta, Y)
     contract(p, Y_x, C)
     contract(p, Y_u, D)
-    A[:, :], B[:, :] = X_x, X_u
+    copy(X_x, A)
+    copy(X_u, B)
     even_out(LU, T, size)
     if not factor(LU, pivots):
         return False

@@ -9,7 +9,7 @@ import numpy as np
 from inerter.kernels import compiled, part
 from inerter.kernels.closing import close, pull_back
 from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, solve, solve_transposed
+from inerter.kernels.linalg import factor, solve, solve_transposed, sort
 
 Array = Any
 _GOLDEN = 0.6180339887498949
@@ -74,7 +74,9 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
                 G_A[i, j] = (h * left[i] * r[j]).real
             G_B[i, 0], G_C[0, i] = (h * left[i]).real, (h * r[i]).real
         G_D[0, 0] = h.real
-        gradients[k] = pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D)
+        gradient = pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D)
+        for i in range(p.size):
+            gradients[k, i] = gradient[i]
     return values, gradients
 
 
@@ -111,31 +113,50 @@ def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> fl
 
 
 @part()
+def farthest(poles: Array) -> float:
+    """The largest distance of a pole from zero; infinite where one is not finite."""
+    size = 0.0
+    for pole in poles:
+        here = abs(pole)
+        if not here < np.inf:
+            return np.inf
+        size = max(size, here)
+    return size
+
+
+@part()
 def frequencies(poles: Array) -> Array:
     """Zero, a logarithmic grid over all time scales, and points on and around every resonance, in order."""
-    n = poles.size
-    slowest, fastest = np.inf, 0.0
-    for k in range(n):
-        size = abs(poles[k])
-        slowest, fastest = min(slowest, max(size, 1e-300)), max(fastest, size)
+    n, fastest = poles.size, farthest(poles)
+    slowest = np.inf
+    for pole in poles:
+        slowest = min(slowest, max(abs(pole), 1e-300))
     slowest = max(slowest, 1e-30 * fastest)
+    near, count = np.empty(14 * n), 0
+    for pole in poles:
+        if pole.imag >= 0.0:
+            for offset in (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0):
+                omega = pole.imag + offset * abs(pole.real)
+                if omega > 0.0:
+                    near[count] = omega
+                    count += 1
+            near[count] = abs(pole)
+            count += 1
+    near = near[:count]
+    sort(near)
     low, high = 0.01 * slowest, 10.0 * fastest  # a static maximum may rise to a peak close to zero first
     steps = 1 + int(24.0 * np.log10(high / low))
-    grid = np.empty(steps + 1 + 14 * n)
+    grid, i = np.empty(steps + 1 + count), 0
     grid[0] = 0.0
     for k in range(steps):
-        grid[1 + k] = low * (high / low) ** (k / (steps - 1))
-    count = steps + 1
-    for k in range(n):
-        if poles[k].imag >= 0.0:
-            for offset in (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0):
-                omega = poles[k].imag + offset * abs(poles[k].real)
-                if omega > 0.0:
-                    grid[count] = omega
-                    count += 1
-            grid[count] = abs(poles[k])
-            count += 1
-    return np.sort(grid[:count])
+        omega = low * (high / low) ** (k / (steps - 1))
+        while i < count and near[i] < omega:
+            grid[1 + k + i] = near[i]
+            i += 1
+        grid[1 + k + i] = omega
+    for k in range(i, count):
+        grid[1 + steps + k] = near[k]
+    return grid
 
 
 @part()
@@ -166,7 +187,7 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
     """
     scale, direct = units(A), D[0, 0]
     poles, residues, good = partial_fractions(A, B, C, scale)
-    if not good or not np.isfinite(np.abs(poles).sum()):
+    if not good or not farthest(poles) < np.inf:
         return np.zeros(0), np.zeros(0)
     grid = frequencies(poles)
     values = np.empty(grid.size)
@@ -191,25 +212,24 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
 
 
 @compiled
-def peaks_at(p: Array, descriptor: Array) -> Any:
-    """`peaks` of the system at the values p."""
-    A, B, C, D, _, _, good = close(p, descriptor)
-    if not good:
-        return np.zeros(0), np.zeros(0)
-    return peaks(A, B, C, D)
+def peaks_of(points: Array, descriptor: Array) -> Any:
+    """`peaks` at each row of `points`: frequencies and values (designs, order + 2), those of each design in a row.
 
-
-@compiled
-def largest_gains(points: Array, descriptor: Array) -> Array:
-    """Largest gain at each row of `points`; nan where it could not be found."""
-    result = np.full(points.shape[0], np.nan)
+    The last place is that of an infinite frequency; places without a peak have the frequency nan and the value 0.
+    Everything of a design that has no peaks is nan.
+    """
+    places = descriptor[1].shape[2] + 2
+    omegas, values = np.full((points.shape[0], places), np.nan), np.full((points.shape[0], places), np.nan)
     for i in range(points.shape[0]):
         A, B, C, D, _, _, good = close(points[i], descriptor)
-        if good:
-            _, found = peaks(A, B, C, D)
-            largest = abs(D[0, 0])
-            for value in found:
-                largest = value if value > largest or np.isnan(value) else largest
-            if found.size > 0 and np.isfinite(largest) and not np.isnan(found.sum()):
-                result[i] = largest
-    return result
+        if not good:
+            continue
+        where, found = peaks(A, B, C, D)
+        if found.size == 0 or found.size >= places:  # there are never more than order + 1
+            continue
+        for k in range(places):
+            values[i, k] = 0.0
+        for k in range(found.size):
+            omegas[i, k], values[i, k] = where[k], found[k]
+        omegas[i, -1], values[i, -1] = np.inf, abs(D[0, 0])
+    return omegas, values

@@ -13,7 +13,7 @@ import numpy as np
 
 from inerter.kernels import compiled, part
 from inerter.kernels.closing import close_in, closing_space, pull_back
-from inerter.kernels.linalg import exponential, factor, matmul, solve, solve_transposed
+from inerter.kernels.linalg import copy, exponential, factor, matmul, solve, solve_transposed
 
 Array = Any
 _LARGEST_ERROR = 1e-9  # relative change of a squared norm by one step of refinement, which tells its rounding error
@@ -83,13 +83,18 @@ def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
 
 
 @part()
-def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, direct: float) -> Array:
-    """exp(A time) u, or its Pade approximant where poles are given."""
+def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, direct: float, out: Array) -> None:
+    """Fill `out` with exp(A time) u, or its Pade approximant where poles are given."""
     n = A.shape[0]
     if poles.size == 0:
         E, _ = exponential(A * time, A, False)
-        return E @ u
-    out = direct * u
+        for i in range(n):
+            out[i] = 0.0
+            for j in range(n):
+                out[i] += E[i, j] * u[j]
+        return
+    for i in range(n):
+        out[i] = direct * u[i]
     M, pivots, z = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
     for k in range(poles.size):
         for i in range(n):
@@ -101,14 +106,13 @@ def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, d
         solve(M, pivots, z)
         for i in range(n):
             out[i] -= (residues[k] * z[i]).real
-    return out
 
 
 @part()
 def propagated_adjoint(
-    A: Array, time: float, u: Array, bar: Array, poles: Array, residues: Array, direct: float, G_A: Array
-) -> Array:
-    """The adjoint of `propagated`: adds d(bar' E u)/dA to G_A and returns E' bar."""
+    A: Array, time: float, u: Array, bar: Array, poles: Array, residues: Array, direct: float, G_A: Array, out: Array
+) -> None:
+    """The adjoint of `propagated`: adds d(bar' E u)/dA to G_A and fills `out` with E' bar."""
     n = A.shape[0]
     if poles.size == 0:
         N = np.empty((n, n))
@@ -119,8 +123,12 @@ def propagated_adjoint(
         for i in range(n):
             for j in range(n):
                 G_A[i, j] += L[i, j]
-        return E @ bar
-    out = direct * bar
+            out[i] = 0.0
+            for j in range(n):
+                out[i] += E[i, j] * bar[j]
+        return
+    for i in range(n):
+        out[i] = direct * bar[i]
     M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
     z, y = np.empty(n, np.complex128), np.empty(n, np.complex128)
     for k in range(poles.size):
@@ -136,7 +144,6 @@ def propagated_adjoint(
             out[i] -= (residues[k] * y[i]).real
             for j in range(n):
                 G_A[i, j] += time * (residues[k] * y[i] * z[j]).real
-    return out
 
 
 @part()
@@ -144,8 +151,14 @@ def high_passed(A: Array, B: Array, C: Array, D: Array, corner: float) -> Any:
     """The system with each output filtered by s/(s + corner)."""
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
     A2, B2, C2 = np.zeros((n + o, n + o)), np.zeros((n + o, m)), np.zeros((o, n + o))
-    A2[:n, :n], A2[n:, :n], B2[:n], B2[n:], C2[:, :n] = A, C, B, D, C
+    copy(A, A2)
+    copy(B, B2)
+    copy(C, C2)
     for i in range(o):
+        for j in range(n):
+            A2[n + i, j] = C[i, j]
+        for j in range(m):
+            B2[n + i, j] = D[i, j]
         A2[n + i, n + i] = -corner
         C2[i, n + i] = -corner
     return A2, B2, C2
@@ -202,8 +215,11 @@ def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner:
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
     if not lyapunov_factors(A, lyapunov):
         return False
-    for j in range(1, m):
-        met[j] = propagated(A, gaps[j - 1], met[j - 1] + B[:, j - 1], poles, residues, direct)
+    u = np.empty(n)
+    for c in range(1, m):
+        for i in range(n):
+            u[i] = met[c - 1, i] + B[i, c - 1]
+        propagated(A, gaps[c - 1], u, poles, residues, direct, met[c])
     for i in range(n):
         for j in range(n):
             W[i, j] = 0.0
@@ -234,21 +250,15 @@ def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner:
     return True
 
 
-@compiled
-def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array) -> Any:
-    """Norm of each output, gradient of their weighted sum over p, and whether all went well.
-
-    `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the next, and the Pade
-    approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
-    """
-    space = norms_space(descriptor, corner)
+@part()
+def gradient_in(
+    space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array, result: Array
+) -> Array:
+    """Gradient over p of the weighted sum of the norms that `norms_in` has filled `result` with."""
     closing, lyapunov, met, CC, P, Q, CP = space
     A0, B0, C0, D0, T, factors, _, _ = closing
     gaps, poles, residues, direct = arrivals
     o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
-    result, gradient = np.full(o, np.nan), np.full(p.size, np.nan)
-    if not norms_in(space, p, descriptor, arrivals, corner, result):
-        return result, gradient, False
     A, B, C = A0, B0, C0
     if corner > 0.0:
         A, B, C = high_passed(A0, B0, C0, D0, corner)
@@ -262,38 +272,50 @@ def norms(p: Array, descriptor: Array, arrivals: Array, corner: float, weights: 
             for j in range(n):
                 CC[i, j] += share * C[k, i] * C[k, j]
     solve_symmetric(lyapunov, CC, True, Q)
-    G_A, G_B = np.empty((n, n)), np.zeros((n, m))
+    G_A, G_B, G_D = np.empty((n, n)), np.zeros((n, m)), np.zeros((o, m))
     matmul(Q, P, G_A)
-    G_A *= 2.0
+    for i in range(n):
+        for j in range(n):
+            G_A[i, j] *= 2.0
     carry = np.zeros(n)  # what later arrivals make of the state that this one leaves
+    u, bar = np.empty(n), np.empty(n)
     for c in range(m - 1, -1, -1):
-        QB, Qmet = np.zeros(n), np.zeros(n)
         for i in range(n):
+            here, before = 0.0, 0.0
             for j in range(n):
-                QB[i] += Q[i, j] * B[j, c]
-                Qmet[i] += Q[i, j] * met[c, j]
-        for i in range(n):
-            G_B[i, c] += 2.0 * (QB[i] + Qmet[i]) + carry[i]
+                here += Q[i, j] * B[j, c]
+                before += Q[i, j] * met[c, j]
+            G_B[i, c] += 2.0 * (here + before) + carry[i]
+            bar[i] = 2.0 * here + carry[i]
         if c > 0:
-            bar = 2.0 * QB + carry
-            u = met[c - 1] + B[:, c - 1]
-            carry = propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A)
-    G_D = np.zeros((o, m))
+            for i in range(n):
+                u[i] = met[c - 1, i] + B[i, c - 1]
+            propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A, carry)
     if corner > 0.0:  # the filter's states repeat C and D in its A and B
         for i in range(o):
             for j in range(m):
                 G_D[i, j] = G_B[n0 + i, j]
-        G_C = G_C[:, :n0] + G_A[n0:, :n0]
-        G_A, G_B = G_A[:n0, :n0].copy(), G_B[:n0].copy()
-    return result, pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D), True
+            for j in range(n0):
+                G_C[i, j] += G_A[n0 + i, j]
+    return pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D)
 
 
 @compiled
-def norms_of_many(points: Array, descriptor: Array, arrivals: Array, corner: float) -> Any:
-    """Norms (designs, outputs) at each row of `points`, and whether each went well."""
+def norms(points: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array) -> Any:
+    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each went well.
+
+    The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights.
+    `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the next, and the Pade
+    approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
+    """
     space = norms_space(descriptor, corner)
-    result = np.full((points.shape[0], descriptor[7].shape[1]), np.nan)
-    good = np.empty(points.shape[0], np.bool_)
-    for i in range(points.shape[0]):
+    count = points.shape[0]
+    result, good = np.full((count, descriptor[7].shape[1]), np.nan), np.empty(count, np.bool_)
+    gradients = np.full((count if weights.size > 0 else 0, points.shape[1]), np.nan)
+    for i in range(count):
         good[i] = norms_in(space, points[i], descriptor, arrivals, corner, result[i])
-    return result, good
+        if good[i] and weights.size > 0:
+            gradient = gradient_in(space, points[i], descriptor, arrivals, corner, weights, result[i])
+            for j in range(gradient.size):
+                gradients[i, j] = gradient[j]
+    return result, gradients, good

@@ -12,9 +12,9 @@ import numpy as np
 
 from inerter.kernels import compiled, part
 from inerter.kernels.closing import close
-from inerter.kernels.gain import frequencies, resolve
+from inerter.kernels.gain import farthest, frequencies, resolve
 from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, solve
+from inerter.kernels.linalg import factor, solve, sort
 
 Array = Any
 _GOLDEN = 0.6180339887498949
@@ -81,7 +81,8 @@ def reflect(Z: Array, velocity: Array, damper: Array, limit: Array, extra: Array
             new[j] = force - 0.5 * wave + 0.5 * extra[j]
             change = max(change, abs(new[j] - extra[j]))
             largest = max(largest, abs(new[j]), limit[j])
-        extra[:] = new
+        for j in range(count):
+            extra[j] = new[j]
         if change <= _SETTLED * largest:
             return True
     return False
@@ -97,21 +98,30 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
     damps, averaged reflections of those waves do.
     """
     count = limit.size
-    Z, velocity, damper = -G[1:, 1:], G[1:, 0] * amplitude, np.full(count, reference)
+    Z, M = np.empty((count, count), np.complex128), np.empty((count, count), np.complex128)
+    velocity, damper = np.empty(count, np.complex128), np.empty(count)
+    for j in range(count):
+        velocity[j], damper[j] = G[1 + j, 0] * amplitude, reference
+        for k in range(count):
+            Z[j, k] = -G[1 + j, 1 + k]
     if count > 1:
         for k in range(count):
             if abs(velocity[k]) > 0.0:
                 damper[k] = limit[k] / abs(velocity[k])
-        M, pivots = Z * (damper - reference), np.empty(count, np.int64)
-        for k in range(count):
-            M[k, k] += 1.0
+        pivots, column = np.empty(count, np.int64), np.empty(count, np.complex128)
+        for j in range(count):
+            for k in range(count):
+                M[j, k] = Z[j, k] * (damper[k] - reference)
+            M[j, j] += 1.0
         if not factor(M, pivots):
             return np.nan, False
         solve(M, pivots, velocity)
         for k in range(count):
-            column = Z[:, k].copy()
+            for j in range(count):
+                column[j] = Z[j, k]
             solve(M, pivots, column)
-            Z[:, k] = column
+            for j in range(count):
+                Z[j, k] = column[j]
     extra = np.zeros(count, np.complex128)  # force of each friction beyond that of its damper
     settled = count == 0
     for _ in range(_SWEEPS):
@@ -158,7 +168,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
 
     The lowest is far below the slowest motion.
     """
-    found = np.empty(0)
+    found, near, count = np.empty(0), np.empty(4 * 7 * descriptor[1].shape[2]), 0
     floor = 0.0
     point = row.copy()
     for exponent in (0, -4, -1, 1, 4):
@@ -173,17 +183,16 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
             for j in range(A.shape[0]):
                 scaled[i, j] = A[i, j] * scale[j] / scale[i]
         poles = np.linalg.eigvals(scaled)
-        if not np.isfinite(np.abs(poles).sum()):
+        size = farthest(poles)
+        if not size < np.inf:
             continue
         if exponent == 0:
             found = frequencies(poles)
-            floor = np.abs(poles).max()
+            floor = size
             for pole in poles:
-                if abs(pole) > 1e-9 * np.abs(poles).max():
+                if abs(pole) > 1e-9 * size:
                     floor = min(floor, 0.01 * abs(pole))
             continue
-        near = np.empty(7 * poles.size)
-        count = 0
         for pole in poles:
             if pole.imag > 0.0:
                 for offset in (-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0):
@@ -191,15 +200,17 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
                     if omega > 0.0:
                         near[count] = omega
                         count += 1
-        found = np.concatenate((found, near[:count]))
-    grid, count = np.empty(found.size), 0
-    for omega in found:  # by insertion: the library's sort would take seconds to compile
-        if omega >= floor:
-            at = count
-            while at > 0 and grid[at - 1] > omega:
-                grid[at] = grid[at - 1]
-                at -= 1
-            grid[at] = omega
+    near = near[:count]
+    sort(near)
+    grid, count, i = np.empty(found.size + near.size), 0, 0
+    for k in range(found.size + 1):
+        while i < near.size and (k == found.size or near[i] < found[k]):
+            if near[i] >= floor:
+                grid[count] = near[i]
+                count += 1
+            i += 1
+        if k < found.size and found[k] >= floor:
+            grid[count] = found[k]
             count += 1
     return grid[:count]
 
@@ -262,17 +273,21 @@ def finer(grid: Array, values: Array) -> Array:
     return extra[:count]
 
 
-@compiled
-def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude: float, reference: float) -> Any:
+@part()
+def peaks(
+    system: Array,
+    row: Array,
+    limit: Array,
+    dampers: Array,
+    descriptor: Array,
+    amplitude: float,
+    reference: float,
+    G: Array,
+) -> Any:
     """Frequencies and values of the local maxima of the gain, 0 standing for the limit of low frequencies; all well.
 
-    None is found where the system cannot be closed; the value is infinite where the gain grows without bound.
+    The value is infinite where the gain grows without bound.
     """
-    A, B, C, D, _, _, good = close(row, descriptor)
-    if not good:
-        return np.zeros(0), np.zeros(0), False
-    system = (A, B, C, D, units(A))
-    G = np.empty((C.shape[0], B.shape[1]), np.complex128)
     grid = grid_of(row, dampers, reference, descriptor)
     if grid.size < 2:
         return np.zeros(0), np.zeros(0), False
@@ -312,30 +327,28 @@ def peaks(row: Array, limit: Array, dampers: Array, descriptor: Array, amplitude
 
 
 @compiled
-def largest_gains(
-    rows: Array, limits: Array, dampers: Array, descriptor: Array, amplitude: float, reference: float
-) -> Array:
-    """Largest gain at each row of values; nan where it could not be found."""
-    result = np.full(rows.shape[0], np.nan)
-    for i in range(rows.shape[0]):
-        _, found, fine = peaks(rows[i], limits[i], dampers, descriptor, amplitude, reference)
-        if fine and found.size > 0:
-            result[i] = found.max()
-    return result
-
-
-@compiled
 def gains(
-    rows: Array, limits: Array, descriptor: Array, amplitude: float, reference: float, omegas: Array, low: float
-) -> Array:
-    """Gains (designs, frequencies) at each row of values; a frequency below `low` is taken there."""
-    result = np.full((rows.shape[0], omegas.size), np.nan)
-    for i in range(rows.shape[0]):
-        A, B, C, D, _, _, good = close(rows[i], descriptor)
-        if not good:
-            continue
-        system = (A, B, C, D, units(A))
-        G = np.empty((C.shape[0], B.shape[1]), np.complex128)
-        for k in range(omegas.size):
-            result[i, k] = gain_at(system, max(omegas[k], low), limits[i], amplitude, reference, G)[0]
-    return result
+    row: Array,
+    limit: Array,
+    dampers: Array,
+    descriptor: Array,
+    amplitude: float,
+    reference: float,
+    omegas: Array,
+) -> Any:
+    """Frequencies, the gain at each, and whether all went well: at `omegas`, or at the `peaks` where none is given.
+
+    There are none where the system cannot be closed.
+    """
+    A, B, C, D, _, _, good = close(row, descriptor)
+    if not good:
+        return np.zeros(0), np.zeros(0), False
+    system = (A, B, C, D, units(A))
+    G = np.empty((C.shape[0], B.shape[1]), np.complex128)
+    if omegas.size == 0:
+        return peaks(system, row, limit, dampers, descriptor, amplitude, reference, G)
+    values, fine = np.empty(omegas.size), True
+    for k in range(omegas.size):
+        values[k], settled = gain_at(system, omegas[k], limit, amplitude, reference, G)
+        fine = fine and settled
+    return omegas, values, fine

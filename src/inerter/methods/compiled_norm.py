@@ -111,23 +111,23 @@ class CompiledQuestion:
             return np.asarray(self._compiled_norms(points) @ self.problem.weights)
         if not self.serves:
             return np.full(points.shape[0], np.nan)
-        return np.asarray(gain_kernels.largest_gains(points, self.descriptor) * self.problem.weights[0])
+        largest = gain_kernels.peaks_of(points, self.descriptor)[1].max(axis=1)
+        return np.where(np.isfinite(largest), largest * self.problem.weights[0], np.nan)
 
     def _compiled_norms(self, points: Array) -> Array:
         if not self.serves:
             return np.full((points.shape[0], len(self.problem.descriptor.outputs)), np.nan)
-        norms, good = h2_kernels.norms_of_many(points, self.descriptor, self.arrivals, self.corner)
+        norms, _, good = h2_kernels.norms(points, self.descriptor, self.arrivals, self.corner, np.empty(0))
         norms[~good] = np.nan
         return np.asarray(norms)
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
         """An index of r.m.s. values and its gradient; by differences where compiled code does not serve."""
         if self.serves:
-            norms, gradient, good = h2_kernels.norms(
-                point, self.descriptor, self.arrivals, self.corner, self.problem.weights
-            )
-            if good:
-                return float(norms @ self.problem.weights), gradient
+            weights = self.problem.weights
+            norms, gradients, good = h2_kernels.norms(point[None], self.descriptor, self.arrivals, self.corner, weights)
+            if good[0]:
+                return float(norms[0] @ weights), gradients[0]
         return self._exact(point).value, self._difference(point)
 
     def _difference(self, point: Array) -> Array:
@@ -140,10 +140,12 @@ class CompiledQuestion:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""
         if not self.is_peak:
             return None
-        omegas, gains = gain_kernels.peaks_at(point, self.descriptor)
-        if omegas.size == 0:  # equal poles have no partial fractions
+        omegas, gains = (found[0] for found in gain_kernels.peaks_of(point[None], self.descriptor))
+        peaks = np.isfinite(omegas)
+        if not peaks.any():  # equal poles have no partial fractions
             return np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])
-        return np.asarray(omegas[np.argsort(-np.where(np.isnan(gains), np.inf, gains), kind="stable")])
+        order = np.argsort(-np.where(np.isnan(gains), np.inf, gains)[peaks], kind="stable")
+        return np.asarray(omegas[peaks][order])
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Gains at the frequencies `which`, and their gradients over the free values."""

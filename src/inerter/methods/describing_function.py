@@ -6,6 +6,7 @@ A Coulomb friction f across which the velocity has the amplitude V acts as a dam
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -23,6 +24,7 @@ from inerter.systems.descriptor import Descriptor, describe
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+_PEAKS: Array = np.empty(0)  # frequencies that are not known yet
 _NUDGE = 1e-6  # relative change of a value for differences
 
 
@@ -72,11 +74,18 @@ class HarmonicBalance:
         rows = np.hstack([points, dampers])[:, self.parts.order(self.descriptor)]
         return np.ascontiguousarray(rows), np.ascontiguousarray(4.0 / math.pi * self.parts.limits(points))
 
+    def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool]]:
+        """Frequencies, gains and whether all went well, at `omegas` or at the peaks, for each row of `points`."""
+        for row, limit in zip(*self._rows(points), strict=True):
+            yield kernels.gains(row, limit, self.places, self.arrays, self.amplitude, self.parts.scale, omegas)
+
     def known(self, points: Array) -> Array:
         """The index at each row of `points`; nan where it could not be found."""
-        rows, limits = self._rows(points)
-        found = kernels.largest_gains(rows, limits, self.places, self.arrays, self.amplitude, self.parts.scale)
-        return np.asarray(self.weight * found)
+        result = np.full(points.shape[0], np.nan)
+        for i, (_, gains, fine) in enumerate(self._gains(points)):
+            if fine and gains.size:
+                result[i] = self.weight * gains.max()
+        return result
 
     def values(self, points: Array) -> Array:
         """The index at each row of `points`; infinite where it could not be found."""
@@ -93,10 +102,7 @@ class HarmonicBalance:
 
     def peaks(self, point: Array) -> tuple[tuple[Peak, ...], bool]:
         """Local maxima of the index's gain, the highest first, and whether all went well."""
-        rows, limits = self._rows(point[None])
-        omegas, gains, fine = kernels.peaks(
-            rows[0], limits[0], self.places, self.arrays, self.amplitude, self.parts.scale
-        )
+        omegas, gains, fine = next(self._gains(point[None]))
         order = np.argsort(-gains, kind="stable")
         return tuple(Peak(float(omegas[i]), self.weight * float(gains[i])) for i in order), bool(fine)
 
@@ -107,11 +113,11 @@ class HarmonicBalance:
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Gains at the frequencies `which`, and their gradients over the free values."""
         steps = _NUDGE * np.diag(point)
-        rows, limits = self._rows(np.vstack([point, point + steps, point - steps]))
+        points = np.vstack([point, point + steps, point - steps])
         low = 1e-7 * float(np.min(which[which > 0.0], initial=1.0))
-        found = self.weight * kernels.gains(
-            rows, limits, self.arrays, self.amplitude, self.parts.scale, np.ascontiguousarray(which, dtype=float), low
-        )
+        found = np.full((points.shape[0], which.size), np.nan)
+        for i, (_, gains, _) in enumerate(self._gains(points, np.maximum(which, low))):
+            found[i, : gains.size] = self.weight * gains
         ahead, behind = found[1 : 1 + point.size], found[1 + point.size :]
         return found[0], np.asarray((ahead - behind).T / (2.0 * _NUDGE * point))
 

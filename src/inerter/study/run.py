@@ -26,7 +26,7 @@ from inerter.study.journal import Journal
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.results import dataset, summary_csv
 from inerter.study.values import Study, write_resolved
-from inerter.study.workers import run_all
+from inerter.study.workers import Crew, crewed, run_all
 from inerter.vehicle.cars import Vehicle
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
@@ -116,15 +116,15 @@ def run_study(
     study: Study,
     folder: Path,
     *,
-    jobs: int = 1,
+    jobs: int | Crew = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, outcome: None,
 ) -> StudyResult:
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
 
-    With more than one process, `jobs`, a script that calls this needs the line `if __name__ == "__main__":`, because
-    processes are started afresh and import it.
+    `jobs` is a number of processes, or a crew, which goes on afterwards. With more than one process, a script that
+    calls this needs the line `if __name__ == "__main__":`, because processes are started afresh and import it.
 
     Every finished case is in the journal at once. With `resume`, cases in the journal are not computed again, and the
     results are the same, byte for byte, as those of an undisturbed run.
@@ -144,14 +144,14 @@ def run_study(
         pending = [case for case in everything if case not in done]
         total, computed = len(everything) + len(further), len(pending)
         progress(len(done) + len(budgets), total, None)
-        with journal.appending() as writer:
-            for outcome in run_all(study, pending, jobs):
+        with crewed(jobs) as crew, journal.appending() as writer:
+            for outcome in run_all(study, pending, crew):
                 writer.write(outcome)
                 done[outcome.case] = outcome
                 progress(len(done) + len(budgets), total, outcome)
             for case in further:
                 if case not in budgets:
-                    budgets[case] = run_budget(study, case, done, jobs)
+                    budgets[case] = run_budget(study, case, done, crew.jobs)
                     writer.write(budgets[case])
                     progress(len(done) + len(budgets), total, budgets[case])
         found = tuple(budgets[case] for case in further)

@@ -7,12 +7,13 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing.connection import wait as wait_for_end
+from multiprocessing.process import BaseProcess
 from typing import TypeVar
 
 from inerter.errors import WorkError
@@ -24,42 +25,67 @@ Result = TypeVar("Result")
 _SHORT = 3.0  # seconds: to start processes takes about as long
 
 
-def run_all(study: Study, pending: Sequence[Case], jobs: int) -> Iterator[Outcome]:
-    """Outcomes of `pending` as they are ready; see `spread`."""
-    here = partial(run_case, study, threads=jobs)
-    return spread(partial(run_case, study), pending, jobs, lambda case: case.index, here)
+def run_all(study: Study, pending: Sequence[Case], crew: Crew) -> Iterator[Outcome]:
+    """Outcomes of `pending` as they are ready; see `Crew.spread`."""
+    here = partial(run_case, study, threads=crew.jobs)
+    return crew.spread(partial(run_case, study), pending, lambda case: case.index, here)
 
 
-def spread(
-    work: Callable[[Item], Result],
-    pending: Sequence[Item],
-    jobs: int,
-    kind: Callable[[Item], object],
-    here: Callable[[Item], Result] | None = None,
-) -> Iterator[Result]:
-    """Results of `work` on each of `pending` as they are ready.
+class Crew:
+    """Up to `jobs` processes that work through one list after another, from when they are needed until the end.
 
-    The first item of each kind is worked on in this process (by `here`, if that is another way to the same), so that
-    compiled code is in the cache before others look for it, and so are the next ones for as long as it would take to
-    start processes. Those are spawned afresh (a fork of a threaded process may hang) and end when this one is gone,
-    however it went.
-
-    Raises `WorkError` if a process is killed from outside.
+    They are spawned afresh (a fork of a threaded process may hang) and end when this one is gone, however it went.
     """
-    firsts = list({kind(item): item for item in reversed(pending)}.values())
-    at_home = here or work
-    for item in firsts:
-        yield at_home(item)
-    rest = [item for item in pending if item not in firsts]
-    start = time.monotonic()
-    while rest and (jobs == 1 or time.monotonic() - start < _SHORT):
-        yield at_home(rest.pop(0))
-    if not rest:
-        return
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(jobs, len(rest)), context, initializer=_begin_worker) as pool:
-        with _deaf_to_interrupts():
-            waiting: set[Future[Result]] = {pool.submit(work, item) for item in rest}
+
+    def __init__(self, jobs: int) -> None:
+        self.jobs = jobs
+        self._pool: ProcessPoolExecutor | None = None
+        self._processes: set[BaseProcess] = set()
+
+    def __enter__(self) -> Crew:
+        return self
+
+    def __exit__(self, kind: object, error: object, trace: object) -> None:
+        if self._pool is None:
+            return
+        self._pool.shutdown(wait=kind is None, cancel_futures=kind is not None)
+        if kind is not None:  # Ctrl-C: what is under way is not waited for
+            for process in self._processes:
+                process.terminate()
+            for process in self._processes:
+                process.join()
+
+    def begin(self, work: Callable[[], object]) -> None:
+        """Have one of the processes do this first, whatever comes of it."""
+        if self.jobs > 1:
+            self._submit([work])
+
+    def spread(
+        self,
+        work: Callable[[Item], Result],
+        pending: Sequence[Item],
+        kind: Callable[[Item], object] | None = None,
+        here: Callable[[Item], Result] | None = None,
+    ) -> Iterator[Result]:
+        """Results of `work` on each of `pending` as they are ready.
+
+        The first item of each kind is worked on in this process (by `here`, if that is another way to the same), so
+        that compiled code is in the cache before others look for it, and so are the next ones for as long as it would
+        take to start processes.
+
+        Raises `WorkError` if a process is killed from outside.
+        """
+        firsts = {kind(pending[i]): i for i in reversed(range(len(pending)))}.values() if kind else ()
+        at_home = here or work
+        for i in firsts:
+            yield at_home(pending[i])
+        rest = [item for i, item in enumerate(pending) if i not in firsts]
+        start = time.monotonic()
+        while rest and (self.jobs == 1 or (self._pool is None and time.monotonic() - start < _SHORT)):
+            yield at_home(rest.pop(0))
+        if not rest:
+            return
+        waiting = self._submit(partial(work, item) for item in rest)
         try:
             while waiting:
                 done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
@@ -70,11 +96,30 @@ def spread(
                 "a process of this run was ended from outside, perhaps for want of memory. "
                 "What was computed is kept; continue with --resume, and fewer processes (-j 1)."
             ) from None
-        except BaseException:  # Ctrl-C: what is under way is not waited for
-            pool.shutdown(wait=False, cancel_futures=True)
-            for child in multiprocessing.active_children():
-                child.terminate()
-            raise
+        finally:
+            for future in waiting:
+                future.cancel()
+
+    def _submit(self, calls: Iterable[Callable[[], Result]]) -> set[Future[Result]]:
+        """Have the calls made; one that finds no process idle starts another, up to as many as there may be."""
+        if self._pool is None:
+            context = multiprocessing.get_context("spawn")
+            self._pool = ProcessPoolExecutor(self.jobs, context, initializer=_begin_worker)
+        others = set(multiprocessing.active_children()) - self._processes
+        with _deaf_to_interrupts():
+            submitted = {self._pool.submit(call) for call in calls}
+        self._processes |= set(multiprocessing.active_children()) - others
+        return submitted
+
+
+@contextmanager
+def crewed(jobs: int | Crew) -> Iterator[Crew]:
+    """The crew that is given, or one of so many processes that ends with this."""
+    if isinstance(jobs, Crew):
+        yield jobs
+    else:
+        with Crew(jobs) as crew:
+            yield crew
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """Seconds of every part of the reproduction of Wang and Su (2008), from nothing.
 
     python benchmarks/reproduction.py [part ...]
+    XDG_CACHE_HOME=$(mktemp -d) python benchmarks/reproduction.py    # nothing compiled yet
 
 Parts of tasks are sums over the processes; the others are times on the clock. Memory is that of the largest process.
 """
@@ -18,6 +19,7 @@ from tempfile import TemporaryDirectory
 
 from inerter.papers.wang_su_2008 import reproduce as paper
 from inerter.report.reproduction import write_reproduction
+from inerter.study.workers import Crew
 
 
 def main(only: tuple[str, ...]) -> None:
@@ -32,9 +34,10 @@ def main(only: tuple[str, ...]) -> None:
     start = time.perf_counter()
     with TemporaryDirectory() as name:
         folder = Path(name)
-        found = paper.reproduce(folder, only=only, jobs=jobs, force=True, progress=progress)
-        computed = time.perf_counter()
-        write_reproduction(found, folder)
+        with Crew(jobs) as crew:
+            found = paper.reproduce(folder, only=only, jobs=crew, force=True, progress=progress)
+            computed = time.perf_counter()
+            write_reproduction(found, folder, crew)
         written = time.perf_counter()
         tasks: Counter[str] = Counter()
         for line in (folder / paper.JOURNAL).read_text(encoding="utf-8").splitlines()[1:]:

@@ -23,6 +23,7 @@ from inerter.report.text import WIDTH, summary_table, wrapped
 from inerter.study.budgets import budget_cases
 from inerter.study.file import load_study
 from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study, study_notes
+from inerter.study.workers import Crew
 
 _JSON = {"improvement_error": "improvement_error_percent"}
 
@@ -81,12 +82,13 @@ def reproduce(
     folder = output or Path(f"{KEY}-results")
     processes = _processes(jobs)
     try:
-        with interruptible(), steps(KEY) as callback:
-            found = paper.reproduce(folder, only=only, jobs=processes, resume=resume, force=force, progress=callback)
+        with interruptible(), Crew(processes) as crew:
+            with steps(KEY) as callback:
+                found = paper.reproduce(folder, only=only, jobs=crew, resume=resume, force=force, progress=callback)
+            write_reproduction(found, folder, crew)
     except KeyboardInterrupt:
         _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")
         return 1
-    write_reproduction(found, folder)
     _say(f"report: {folder / REPORT}")
     print(json.dumps(tables(found), indent=2) if as_json else reproduction_text(found))
     return max([_judge(result) for result in found.studies.values()], default=0)

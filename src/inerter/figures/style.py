@@ -172,7 +172,7 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: boo
     files = [folder / f"{name}.{kind}" for kind, asked in wanted.items() if asked]
     with styled():
         figure.draw_without_rendering()  # the layout is found once for all files
-        figure.set_layout_engine("none")
+        figure.set_layout_engine(None)  # "none" would have each file drawn twice
         for file in files:
             figure.savefig(file, dpi=_DPI, metadata=_UNDATED[file.suffix])
     return files

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from inerter.figures import reproduction as drawn
@@ -26,7 +27,9 @@ from inerter.report.reproduction_tables import (
 )
 from inerter.report.reproduction_text import agreement_of
 from inerter.study.run import FIGURES, REPORT, write_text
+from inerter.study.workers import Crew, crewed
 
+Drawing = Callable[[], list[Path]]
 _NETWORKS = "networks"
 _DRAWN = {
     "S1": "k | c",
@@ -88,29 +91,37 @@ _CAPTIONS = {
 }
 
 
-def write_reproduction(found: Reproduction, folder: Path) -> None:
+def write_reproduction(found: Reproduction, folder: Path, jobs: int | Crew = 1) -> None:
     """Write the tables as CSV, the figures, and a page that shows all of it, into `folder`."""
     for name, rows in tables(found).items():
         if rows:
             write_text(folder / f"{name}.csv", csv_text(rows))
-    _draw(found, folder / FIGURES)
+    with crewed(jobs) as crew:
+        for _ in crew.spread(_draw, _figures(found, folder / FIGURES)):
+            pass
     write_text(folder / REPORT, _page(found, folder))
 
 
-def _draw(found: Reproduction, folder: Path) -> None:
-    draw_networks(_networks(), folder, _NETWORKS)
+def _figures(found: Reproduction, folder: Path) -> list[Drawing]:
+    """The figures for which there are numbers, as calls that draw them; those that take longest first."""
+    figures: list[Drawing] = []
     if found.rig is not None:
-        drawn.draw_rig(found.rig, folder)
-    if found.figure11 is not None:
-        drawn.draw_figure_11(found.figure11, folder)
-    if "figure12" in found.parts:
-        drawn.draw_figure_12(study("table1").road, folder)
-    if found.curves is not None and "figure13" in found.parts:
-        drawn.draw_figure_13(found.curves, folder)
-    if found.curves is not None and "figure14" in found.parts:
-        drawn.draw_figure_14(found.curves, folder)
+        figures.append(partial(drawn.draw_rig, found.rig, folder))
     if found.methods:
-        drawn.draw_methods(method_points(found), _METHOD_TITLES, folder)
+        figures.append(partial(drawn.draw_methods, method_points(found), _METHOD_TITLES, folder))
+    if found.figure11 is not None:
+        figures.append(partial(drawn.draw_figure_11, found.figure11, folder))
+    if found.curves is not None and "figure13" in found.parts:
+        figures.append(partial(drawn.draw_figure_13, found.curves, folder))
+    if found.curves is not None and "figure14" in found.parts:
+        figures.append(partial(drawn.draw_figure_14, found.curves, folder))
+    if "figure12" in found.parts:
+        figures.append(partial(drawn.draw_figure_12, study("table1").road, folder))
+    return [*figures, partial(draw_networks, _networks(), folder, _NETWORKS)]
+
+
+def _draw(figure: Drawing) -> list[Path]:
+    return figure()
 
 
 def _networks() -> dict[str, Network]:

@@ -6,18 +6,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.optimize
 import xarray as xr
 from numpy.typing import NDArray
 
-from inerter.methods.norm import Norm
-from inerter.optimisation.optimise import optimise
+from inerter.papers.wang_su_2008.between import WORSE, Found, crossings, excess_there
 from inerter.papers.wang_su_2008.rows import SimulatedRow
-from inerter.papers.wang_su_2008.source import study
-from inerter.study.registry import INDEX
 
 Array = NDArray[np.float64]
-_WORSE = 1e-4  # two optima that differ by less, relatively, are equally good: no figure shows it
 _FEW = 12  # exceptions among 120 points of four curves: the rule holds, and they are told
 _SOFT = 60e3  # [N/m] what is called a small stiffness
 _STATIC = 80e3  # [N/m] up to here the static compliance, which friction lowers, may decide J5
@@ -39,6 +34,7 @@ class Evidence:
     """What claims are judged by; None or empty where that part was not computed."""
 
     figure11: xr.Dataset | None = None
+    between: Found = field(default_factory=dict)  # its swept values; there if Figure 11 is
     curves: xr.Dataset | None = None  # of Figures 11, 13 and 14
     rows: dict[tuple[int, str], SimulatedRow] = field(default_factory=dict)  # by table and "index case"
     linear: dict[tuple[int, str], float] = field(default_factory=dict)  # exact norms, the same
@@ -52,7 +48,8 @@ def judge(evidence: Evidence) -> list[Claim]:
     """Every claim for which there is evidence."""
     found: list[Claim] = []
     if evidence.figure11 is not None:
-        found += [claim(evidence.figure11) for claim in (_claim_1, _claim_2, _claim_3)]
+        ideal = Curves(evidence.figure11)
+        found += [_claim_1(ideal), _claim_2(ideal, evidence.between), _claim_3(ideal, evidence.between)]
     if evidence.curves is not None:
         friction = Curves(evidence.curves)
         found += [claim(friction) for claim in (_claim_4, _claim_5, _claim_8, _claim_9, _claim_10)]
@@ -106,36 +103,13 @@ class Curves:
         return sorted(chosen, key=mean.__getitem__)
 
 
-def crossings(figure11: xr.Dataset, index: str, one: str, other: str) -> list[float]:
-    """Stiffnesses k [N/m] at which the optimum of `one` becomes worse than that of `other`, or no longer is.
-
-    Worse means by more than a hundredth of a per cent: where the static compliance decides J5, layouts are equally
-    good. Each is found by optimising both anew.
-    """
-    k = figure11["k"].values
-    excess = Curves(figure11).excess(one, other, index)
-
-    def gap(stiffness: float) -> float:
-        values = [_optimal(layout, index, stiffness) for layout in (one, other)]
-        return values[0] / values[1] - 1.0 - _WORSE
-
-    changes = np.flatnonzero(np.diff(excess > _WORSE))
-    return [float(scipy.optimize.brentq(gap, k[i], k[i + 1], rtol=3e-4)) for i in changes]
-
-
-def _optimal(layout: str, index: str, k: float) -> float:
-    source = study("figure11")
-    vehicle = source.design(layout, k)
-    return optimise(vehicle, INDEX[index](source), Norm(source.conventions), seed=source.seed, starts=4).value
-
-
 def _shrinks(curves: Curves, index: str) -> tuple[bool, list[str]]:
     """Whether the optimum is worse with a hard shaft than with none, and worse still with a soft one, at every k."""
     holds, evidence = True, []
     base = curves.of("S1", index)
     for layout in ("S2", "S3"):
         ideal, hard, soft = (curves.of(layout + kind, index) for kind in ("", "-hard", "-soft"))
-        exceptions = curves.k[(hard < ideal * (1.0 - _WORSE)) | (soft < hard * (1.0 - _WORSE))]
+        exceptions = curves.k[(hard < ideal * (1.0 - WORSE)) | (soft < hard * (1.0 - WORSE))]
         holds &= exceptions.size == 0
         losses = [100.0 * (curve - ideal) / base for curve in (hard, soft)]
         but = f", but not at k = {_kilo(exceptions.tolist(), ', ', 0)} kN/m" if exceptions.size else ""
@@ -146,8 +120,8 @@ def _shrinks(curves: Curves, index: str) -> tuple[bool, list[str]]:
     return holds, evidence
 
 
-def _claim_1(figure11: xr.Dataset) -> Claim:
-    holds, evidence = _shrinks(Curves(figure11), "J1")
+def _claim_1(curves: Curves) -> Claim:
+    holds, evidence = _shrinks(curves, "J1")
     return Claim(
         1,
         "Elastic effect only: the benefit in J1 shrinks, more so with the softer setting.",
@@ -156,11 +130,11 @@ def _claim_1(figure11: xr.Dataset) -> Claim:
     )
 
 
-def _claim_2(figure11: xr.Dataset) -> Claim:
+def _claim_2(curves: Curves, between: Found) -> Claim:
     lines, holds, places = [], True, []
     for kind in ("soft", "hard"):
-        excess = Curves(figure11).excess(f"S3-{kind}", "S3", "J3")
-        found = crossings(figure11, "J3", f"S3-{kind}", "S3")
+        excess = curves.excess(f"S3-{kind}", "S3", "J3")
+        found = crossings(between, "J3", f"S3-{kind}", "S3")
         holds &= bool(excess[0] < 0.0 < excess[-1]) and len(found) == 1
         places += found
         lines.append(f"{kind}: better below k = {_kilo(found)} kN/m, by at most {-100.0 * float(excess.min()):.2f} %")
@@ -172,13 +146,13 @@ def _claim_2(figure11: xr.Dataset) -> Claim:
     )
 
 
-def _claim_3(figure11: xr.Dataset) -> Claim:
-    shrinks, evidence = _shrinks(Curves(figure11), "J5")
+def _claim_3(curves: Curves, between: Found) -> Claim:
+    shrinks, evidence = _shrinks(curves, "J5")
     near = False
     for kind in ("soft", "hard"):
-        found = crossings(figure11, "J5", f"S3-{kind}", "S1")
-        there = _optimal(f"S3-{kind}", "J5", 55e3) / _optimal("S1", "J5", 55e3) - 1.0
-        near |= there > _WORSE
+        found = crossings(between, "J5", f"S3-{kind}", "S1")
+        there = excess_there(between, "J5", f"S3-{kind}", "S1")
+        near |= there > WORSE
         where = f", and worse from k = {_kilo(found, ' to ')} kN/m" if len(found) == 2 else ""
         evidence.append(f"at 55 kN/m S3 {kind} is {abs(100.0 * there):.2f} % {_worse(there)} than S1{where}")
     return Claim(
@@ -225,7 +199,7 @@ def _claim_5(curves: Curves) -> Claim:
     for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5")):
         for force in (10, 20):
             excess = curves.excess(f"{layout}-{force}N", "S1", index)
-            at = curves.k[soft & (excess > _WORSE)]
+            at = curves.k[soft & (excess > WORSE)]
             worse[layout, index, force] = at.size > 0
             where = f"worse than S1's at k = {_kilo(at.tolist(), ', ', 0)} kN/m" if at.size else "nowhere worse"
             most = f", by at most {100.0 * float(excess[soft].max()):.2f} %" if at.size else ""
@@ -316,7 +290,7 @@ def _claim_10(curves: Curves) -> Claim:
 
 def _always_worst(curves: Curves, one: str, others: Iterable[str], index: str) -> Array:
     """Stiffnesses at which `one` is not the worst, beyond its standard error."""
-    slack = 2.0 * curves.error(one, index) + _WORSE * curves.of(one, index)
+    slack = 2.0 * curves.error(one, index) + WORSE * curves.of(one, index)
     better = np.any([curves.of(one, index) < curves.of(other, index) - slack for other in others], axis=0)
     return curves.k[better]
 
@@ -431,7 +405,7 @@ def _claim_13(evidence: Evidence) -> Claim:
         for layout in ("S2-soft-10N", "S3-soft-10N"):
             excess = curves.excess(layout, "S1", index)
             holds &= bool(excess[-1] < 0.0)
-            worse = curves.k[excess > _WORSE]
+            worse = curves.k[excess > WORSE]
             but = f", worse at k = {_kilo(worse.tolist(), ', ', 0)} kN/m" if worse.size else ""
             lines.append(f"{index} of {layout.split('-')[0]}: {-100.0 * excess[-1]:.1f} % better at 300 kN/m{but}")
     half = [_improvement(evidence, 3, index, case) for index in ("J1", "J3", "J5") for case in (7, 13)]

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -17,20 +15,30 @@ import xarray as xr
 import inerter
 from inerter.errors import StudyError
 from inerter.optimisation.threads import one_blas_thread
-from inerter.papers.wang_su_2008 import agreement, beyond, curves, linear, rig, rows
+from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import Claim, Evidence, judge
 from inerter.papers.wang_su_2008.linear import Linear
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
 from inerter.study.run import FIGURES, REPORT, StudyResult, claimed, run_study, write_text
-from inerter.study.workers import spread
+from inerter.study.workers import Crew, crewed
 
 JOURNAL = "tasks.jsonl"
 _PAPER = ("rig", "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")
 PARTS = (*_PAPER, "methods", "optima", "budgets")  # the last ones are not in the paper
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
-_PAPER_ORDER = ("rig", "table1", "table2", "table3", "curves", "methods", "optima", "budgets")  # of tasks in results
+_PAPER_ORDER = (
+    "rig",
+    "table1",
+    "table2",
+    "table3",
+    "curves",
+    "methods",
+    "optima",
+    "budgets",
+    "between",
+)  # of tasks in results
 TABLES = (
     *("rig", "figure8", "figure9", "figure10"),  # of the virtual rig
     *("linear-rows", "designs", "simulated-rows", "curves", "claims", "methods", "optima", "budgets", "origins"),
@@ -42,7 +50,7 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Task:
-    """One small piece of work: a row of a table, a point of a curve, an optimum, a budget."""
+    """One small piece of work: a row of a table, a point of a curve, a crossing, an optimum, a budget."""
 
     part: str
     name: str
@@ -70,6 +78,8 @@ def _numbers(task: Task) -> Numbers:
             return rig.compute(task.name)
         case "curves":
             return curves.compute(task.name, dict(task.given))
+        case "between":
+            return between.compute(task.name)
         case "methods":
             return agreement.compute(task.name)
         case "optima":
@@ -97,14 +107,14 @@ class Reproduction:
     @property
     def figure11(self) -> xr.Dataset | None:
         """Figure 11's data."""
-        return self.studies["figure11"].data.sel({"method": "norm"}) if "figure11" in self.studies else None
+        return _figure11(self.studies)
 
 
 def reproduce(
     folder: Path,
     *,
     only: Sequence[str] = (),
-    jobs: int = 1,
+    jobs: int | Crew = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda what, done, total: None,
@@ -119,37 +129,27 @@ def reproduce(
     wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
-    with claimed(folder, own=_OWN, resume=resume, force=force):
-        with _compiling_beside(jobs > 1 and bool(needed) and wanted > {"linear"}):
-            studies = {
-                name: run_study(study(name), folder / name, jobs=jobs, resume=resume, progress=_named(progress, name))
-                for name in needed
-            }
+    with crewed(jobs) as crew, claimed(folder, own=_OWN, resume=resume, force=force):
+        if needed and wanted > {"linear"} and not resume:
+            crew.begin(_warm_up)
+        studies = {
+            name: run_study(study(name), folder / name, jobs=crew, resume=resume, progress=_named(progress, name))
+            for name in needed
+        }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
         tasks = [Task("rig", rig.NAME)] if "rig" in wanted else []
         tasks += [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
         tasks += [Task(part, name) for part in ("table2", "table3", "table1") if part in wanted for name in _rows(part)]
+        figure11 = _figure11(studies)
+        if figure11 is not None and "linear" in wanted:
+            tasks += [Task("between", name) for name in between.names(figure11)]
         tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
-        found = _run(tasks, folder / JOURNAL, jobs, resume, progress)
+        found = _run(tasks, folder / JOURNAL, crew, resume, progress)
     return _put_together(tuple(part for part in PARTS if part in wanted), studies, found)
 
 
-@contextmanager
-def _compiling_beside(wanted: bool) -> Iterator[None]:
-    """Meanwhile another process goes through some quick tasks, and so compiles what simulations need."""
-    if not wanted:
-        yield
-        return
-    process = multiprocessing.get_context("spawn").Process(target=_warm_up, daemon=True)
-    process.start()
-    try:
-        yield
-        process.join()
-    finally:
-        process.terminate()
-
-
 def _warm_up() -> None:
+    """Go through some quick tasks, which compile what simulations need, while others compile what the studies do."""
     import_module("inerter.simulation.event_driven")  # first what the linear studies do not compile themselves
     for part, name in (("table1", "J5 4"), ("table1", "J1 4"), ("table3", "J1 3"), ("table3", "J5 3")):
         work(Task(part, name))
@@ -158,7 +158,7 @@ def _warm_up() -> None:
 def _put_together(
     parts: tuple[str, ...], studies: dict[str, StudyResult], found: dict[tuple[str, str], Numbers]
 ) -> Reproduction:
-    figure11 = studies["figure11"].data.sel({"method": "norm"}) if "figure11" in studies else None
+    figure11 = _figure11(studies)
 
     def of(part: str) -> dict[str, Numbers]:
         return {name: numbers for (p, name), numbers in found.items() if p == part}
@@ -173,6 +173,7 @@ def _put_together(
     drawn = curves.dataset(points, figure11) if points and figure11 is not None else None
     evidence = Evidence(
         figure11=figure11 if "linear" in parts else None,
+        between=of("between"),
         curves=drawn if {"figure13", "figure14"} <= set(parts) else None,
         rows=judged,
         linear={(c.row.table, f"{c.row.index} {c.row.case}"): c.exact for c in recomputed.compared}
@@ -193,6 +194,10 @@ def _put_together(
     )
 
 
+def _figure11(studies: dict[str, StudyResult]) -> xr.Dataset | None:
+    return studies["figure11"].data.sel({"method": "norm"}) if "figure11" in studies else None
+
+
 def _rows(part: str) -> list[str]:
     return rows.names(int(part[-1]))
 
@@ -206,7 +211,7 @@ def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
 
 
 def _run(
-    tasks: list[Task], journal: Path, jobs: int, resume: bool, progress: Progress
+    tasks: list[Task], journal: Path, crew: Crew, resume: bool, progress: Progress
 ) -> dict[tuple[str, str], Numbers]:
     """The numbers of all tasks; each is in the journal as soon as it is there."""
     found = _read(journal) if resume else {}
@@ -217,7 +222,7 @@ def _run(
     if tasks:
         progress("simulations", len(tasks) - len(pending), len(tasks))
     with journal.open("a", encoding="utf-8") as stream:
-        for i, (key, numbers) in enumerate(spread(work, pending, jobs, lambda task: 0), 1):
+        for i, (key, numbers) in enumerate(crew.spread(work, pending), 1):
             found[key] = numbers
             stream.write(json.dumps([*key, numbers]) + "\n")
             stream.flush()

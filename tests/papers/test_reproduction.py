@@ -108,6 +108,32 @@ def test_crossings_lie_where_lines_cross() -> None:
     assert Curves(data).crossings("S1", "S1", "J1") == []
 
 
+def test_crossings_in_the_noise_do_not_count() -> None:
+    gap = np.where(np.arange(30) < 10, -0.1, 0.1)
+    gap[[4, 20, 21]] = 0.01, -0.01, -0.02  # twice a turn and back
+    data = made_up(a=1.0 + gap)
+    assert len(Curves(data).crossings("a", "S1", "J1")) == 5
+    error = np.where(np.isin(data["layout"], ["a"])[:, None, None], 0.015, 0.0) * np.ones((2, 3, 30))
+    noisy = Curves(data.assign(standard_error=(data["value"].dims, error)))
+    assert noisy.crossings("a", "S1", "J1") == [pytest.approx((K[9] + K[10]) / 2.0)]
+    assert not noisy.worse("a", "S1", "J1")[4]
+    assert noisy.worse("a", "S1", "J1")[10]
+
+
+def test_claim_10_is_not_judged_where_nothing_costs_anything() -> None:
+    """Rounding there would tell whether elasticity or friction costs more."""
+    costs = {"": 0.0, "-10N": 0.01, "-20N": 0.02, "-soft": 0.05, "-soft-10N": 0.07}
+    rounding = np.random.default_rng(0).normal(0.0, 1e-9, 30)
+    found = {
+        f"{layout}{kind}": np.where(K < 150e3, 0.8 * (1.0 + rounding * len(kind)), 0.8 + cost)
+        for layout in ("S2", "S3")
+        for kind, cost in costs.items()
+    }
+    assert verdict(10, judge(Evidence(curves=made_up(**found)))) == claims.OTHER_NUMBER
+    found["S3-10N"][-1] = 0.86
+    assert verdict(10, judge(Evidence(curves=made_up(**found)))) == claims.FAILS
+
+
 def with_friction(factor: float, twist: float = 0.0) -> xr.Dataset:
     """Layouts of Figures 13 and 14 with effects that grow with k or shrink with it."""
     slope = (K - 150e3) / 1e6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
@@ -90,11 +91,22 @@ class Curves:
         """How much higher `one` is than `other`, relative."""
         return np.asarray(self.of(one, index) / self.of(other, index) - 1.0)
 
+    def worse(self, one: str, other: str, index: str) -> NDArray[np.bool_]:
+        """Where `one` is higher than `other` by more than can be seen, and than two standard errors."""
+        error = np.hypot(self.error(one, index), self.error(other, index)) / self.of(other, index)
+        return np.asarray(self.excess(one, other, index) > WORSE + 2.0 * error)
+
     def crossings(self, one: str, other: str, index: str) -> list[float]:
-        """Where `one` becomes better or worse than `other` [N/m], between swept values, by linear interpolation."""
+        """Where `one` becomes better or worse than `other` [N/m], by linear interpolation between swept values.
+
+        A stretch between two turns counts if the difference is certain anywhere on it.
+        """
         gap, k = self.excess(one, other, index), self.k
-        at = np.flatnonzero(np.diff(np.sign(gap)) != 0)
-        return [float(k[i] + (k[i + 1] - k[i]) * gap[i] / (gap[i] - gap[i + 1])) for i in at]
+        certain = self.worse(one, other, index) | self.worse(other, one, index)
+        stretches = np.split(np.arange(k.size), 1 + np.flatnonzero(np.diff(np.sign(gap)) != 0))
+        counted = [stretches[0], *(s for s in stretches[1:-1] if certain[s].any()), stretches[-1]]
+        turns = [(s[-1], after[0]) for s, after in pairwise(counted) if gap[s[-1]] * gap[after[0]] < 0.0]
+        return [float(k[i] + (k[j] - k[i]) * gap[i] / (gap[i] - gap[j])) for i, j in turns]
 
     def order(self, layouts: Iterable[str], index: str, at: NDArray[np.bool_]) -> list[str]:
         """The layouts, best first, where `at` holds, by their mean relative to the first one."""
@@ -198,17 +210,19 @@ def _claim_5(curves: Curves) -> Claim:
     soft = curves.k <= _SOFT
     for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5")):
         for force in (10, 20):
-            excess = curves.excess(f"{layout}-{force}N", "S1", index)
-            at = curves.k[soft & (excess > WORSE)]
+            name = f"{layout}-{force}N"
+            excess = curves.excess(name, "S1", index)
+            there = soft & curves.worse(name, "S1", index)
+            at = curves.k[there]
             worse[layout, index, force] = at.size > 0
             where = f"worse than S1's at k = {_kilo(at.tolist(), ', ', 0)} kN/m" if at.size else "nowhere worse"
-            most = f", by at most {100.0 * float(excess[soft].max()):.2f} %" if at.size else ""
+            most = f", by at most {100.0 * float(excess[there].max()):.2f} %" if at.size else ""
             evidence.append(f"{index} of {layout} with {force} N: {where}{most}")
     return Claim(
         5,
         "Friction only, Method 1: at small k J3 of S2 and S3 is worse than S1's, and so is J5 of S2.",
         _verdict(all(value for key, value in worse.items() if key[2] == 20), all(worse.values())),
-        f"Up to k = {_kilo([_SOFT], '', 0)} kN/m: " + "; ".join(evidence) + ".",
+        f"Up to k = {_kilo([_SOFT], '', 0)} kN/m, beyond two standard errors: " + "; ".join(evidence) + ".",
     )
 
 
@@ -272,9 +286,12 @@ def _claim_10(curves: Curves) -> Claim:
         always &= exceptions.size == 0
         rest = "" if exceptions.size == 0 else f", but not at k = {_kilo(exceptions.tolist(), ', ', 0)} kN/m"
         evidence.append(f"{layout}: both together are the worst{rest}")
-    more = curves.excess("S3-soft", "S3", "J5") > curves.excess("S3-10N", "S3", "J5")
-    holds &= bool(np.mean(more) > 0.9)
-    evidence.append(f"S3: elasticity costs more than friction at {int(more.sum())} of {more.size} stiffnesses")
+    more, less = curves.worse("S3-soft", "S3-10N", "J5"), curves.worse("S3-10N", "S3-soft", "J5")
+    holds &= bool(np.any(more)) and not np.any(less)
+    evidence.append(
+        f"S3: elasticity costs more than friction at {int(more.sum())} of {more.size} stiffnesses, less at "
+        f"{int(less.sum())}, neither costs anything at the others"
+    )
     found = curves.crossings("S2-10N", "S2-soft", "J5")
     evidence.append(
         f"S2: friction and elasticity cost the same at k = {_kilo(found, ', ')} kN/m, elasticity more above"
@@ -289,10 +306,8 @@ def _claim_10(curves: Curves) -> Claim:
 
 
 def _always_worst(curves: Curves, one: str, others: Iterable[str], index: str) -> Array:
-    """Stiffnesses at which `one` is not the worst, beyond its standard error."""
-    slack = 2.0 * curves.error(one, index) + WORSE * curves.of(one, index)
-    better = np.any([curves.of(one, index) < curves.of(other, index) - slack for other in others], axis=0)
-    return curves.k[better]
+    """Stiffnesses at which `one` is certainly not the worst."""
+    return curves.k[np.any([curves.worse(other, one, index) for other in others], axis=0)]
 
 
 # --- From the tables.
@@ -405,8 +420,10 @@ def _claim_13(evidence: Evidence) -> Claim:
         for layout in ("S2-soft-10N", "S3-soft-10N"):
             excess = curves.excess(layout, "S1", index)
             holds &= bool(excess[-1] < 0.0)
-            worse = curves.k[excess > WORSE]
-            but = f", worse at k = {_kilo(worse.tolist(), ', ', 0)} kN/m" if worse.size else ""
+            worse = curves.k[curves.worse(layout, "S1", index)]
+            but = (
+                f", worse beyond two standard errors at k = {_kilo(worse.tolist(), ', ', 0)} kN/m" if worse.size else ""
+            )
             lines.append(f"{index} of {layout.split('-')[0]}: {-100.0 * excess[-1]:.1f} % better at 300 kN/m{but}")
     half = [_improvement(evidence, 3, index, case) for index in ("J1", "J3", "J5") for case in (7, 13)]
     holds &= min(half) > 0.0

@@ -59,7 +59,10 @@ def lines(journal: Path) -> list[str]:
 
 
 def start(arguments: list[str]) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-c", "from inerter.cli.main import main; main()", *arguments]
+    heeding = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # deaf if tests run behind a `&`
+    )
+    command = [sys.executable, "-c", f"{heeding}; from inerter.cli.main import main; main()", *arguments]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 

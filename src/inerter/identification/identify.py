@@ -36,6 +36,7 @@ _ROUGH = 0.003  # of the r.m.s. force: what a residual counts as until the error
 _ROUNDS = 3
 _FINE, _POOR = 2.0, 20.0  # whitened residual (its last tenth) that needs no further search, and that which always does
 _FAIR = 1.5  # between them: over what the errors of the sensors leave
+_SAME = 1e-3  # relative difference of what two searches leave that have come to the same
 _ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
 _LAGS = 20
 _INDEPENDENT = 1e-3  # p-value below which residuals still hang together
@@ -112,19 +113,25 @@ def _searched(
     starts: int,
     progress: Callable[[float], None] | None,
 ) -> tuple[Matrix, list[float]]:
-    """The best of a search; while it leaves more than the sensors' errors, of more thorough ones."""
+    """The best of a search; while it leaves more than the sensors' errors, of more thorough ones.
+
+    Two that come to the same need no third: it is the model that leaves so much.
+    """
     kept = np.concatenate([e.kept for e in problem.experiments])
-    found: list[tuple[Matrix, list[float]]] = []
+    found: list[tuple[float, Matrix, list[float]]] = []
     for attempt, (stages, points) in enumerate(((QUICK, starts), (THOROUGH, starts), (THOROUGH, 2 * starts))):
         part = _part(progress, attempt / 3.0, (attempt + 1) / 3.0)
         point, costs = search(problem, guess, seed + attempt, points, stages, part)
         if stages is THOROUGH:
             point = wander(problem, point, seed)
-        found.append((point, costs))
-        left = float(np.quantile(np.abs(problem.residual(point)[kept]), 0.9))
-        if left < _FINE or left < min(_FAIR * unavoidable(problem, point, seed), _POOR):
+        residual = problem.residual(point)
+        cost, left = soft(residual), float(np.quantile(np.abs(residual[kept]), 0.9))
+        again = any(math.isclose(cost, earlier, rel_tol=_SAME) for earlier, _, _ in found)
+        found.append((cost, point, costs))
+        if again or left < _FINE or left < min(_FAIR * unavoidable(problem, point, seed), _POOR):
             break
-    return min(found, key=lambda f: soft(problem.residual(f[0])))
+    _, point, costs = min(found, key=lambda f: f[0])
+    return point, costs
 
 
 def _checked(records: Record | Sequence[Record], model: Network, check: float, starts: int) -> tuple[list[Record], Rig]:

@@ -28,16 +28,16 @@ JOURNAL = "tasks.jsonl"
 _PAPER = ("rig", "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")
 PARTS = (*_PAPER, "methods", "optima", "budgets")  # the last ones are not in the paper
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
-_PAPER_ORDER = (
+_ORDER = (
     "rig",
     "table1",
     "table2",
     "table3",
     "curves",
+    "between",
     "methods",
     "optima",
     "budgets",
-    "between",
 )  # of tasks in results
 TABLES = (
     *("rig", "figure8", "figure9", "figure10"),  # of the virtual rig
@@ -227,7 +227,7 @@ def _run(
             stream.write(json.dumps([*key, numbers]) + "\n")
             stream.flush()
             progress("simulations", len(tasks) - len(pending) + i, len(tasks))
-    return {task.key: found[task.key] for task in sorted(tasks, key=lambda task: _PAPER_ORDER.index(task.part))}
+    return {task.key: found[task.key] for task in sorted(tasks, key=lambda task: _ORDER.index(task.part))}
 
 
 def _read(journal: Path) -> dict[tuple[str, str], Numbers]:

@@ -11,11 +11,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from inerter import LoadCarrying
 from inerter.cli.main import call
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
+from inerter.methods.norm import Norm
 from inerter.norms.hinf import Peak
-from inerter.papers.wang_su_2008 import beyond, claims, curves, rows
+from inerter.optimisation.optimise import optimise
+from inerter.papers.wang_su_2008 import between, beyond, claims, curves, rows
 from inerter.papers.wang_su_2008.claims import Claim, Curves, Evidence, judge
 from inerter.papers.wang_su_2008.reproduce import JOURNAL, Task, work
 from inerter.papers.wang_su_2008.rows import SimulatedRow
@@ -106,6 +109,25 @@ def test_crossings_lie_where_lines_cross() -> None:
     data = made_up(a=1.0 + (K - 123456.0) * 1e-6)
     assert Curves(data).crossings("a", "S1", "J1") == [pytest.approx(123456.0)]
     assert Curves(data).crossings("S1", "S1", "J1") == []
+
+
+def test_a_crossing_of_optima_has_a_better_and_a_worse_side() -> None:
+    """Seen by searches with another seed."""
+    k = between.compute("J5 S3-soft S1 3")["k"]
+    source = study("figure11")
+
+    def excess(stiffness: float) -> float:
+        soft, usual = (
+            optimise(source.design(layout, stiffness), LoadCarrying(), Norm(), seed=7).value
+            for layout in ("S3-soft", "S1")
+        )
+        return soft / usual - 1.0
+
+    assert 40e3 < k < 50e3
+    assert excess(0.998 * k) < between.WORSE < excess(1.002 * k)
+    found = {"J5 S3-soft S1 3": {"k": k}, "J5 S3-soft S1 there": {"excess": 0.07}, "J3 S3-soft S3 9": {"k": 1.0}}
+    assert between.crossings(found, "J5", "S3-soft", "S1") == [k]
+    assert between.excess_there(found, "J5", "S3-soft", "S1") == 0.07
 
 
 def test_crossings_in_the_noise_do_not_count() -> None:

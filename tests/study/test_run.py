@@ -59,9 +59,8 @@ def lines(journal: Path) -> list[str]:
 
 
 def start(arguments: list[str]) -> subprocess.Popen[bytes]:
-    heeding = (
-        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"  # deaf if tests run behind a `&`
-    )
+    """The command, heeding Ctrl-C even if the tests run in the background, where processes are born deaf to it."""
+    heeding = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
     command = [sys.executable, "-c", f"{heeding}; from inerter.cli.main import main; main()", *arguments]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 

@@ -9,7 +9,7 @@ import numpy as np
 from inerter.kernels import compiled, part
 from inerter.kernels.closing import close, pull_back
 from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, solve, solve_transposed, sort
+from inerter.kernels.linalg import factor, merge, solve, solve_transposed, sort
 
 Array = Any
 _GOLDEN = 0.6180339887498949
@@ -146,17 +146,11 @@ def frequencies(poles: Array) -> Array:
     sort(near)
     low, high = 0.01 * slowest, 10.0 * fastest  # a static maximum may rise to a peak close to zero first
     steps = 1 + int(24.0 * np.log10(high / low))
-    grid, i = np.empty(steps + 1 + count), 0
+    grid = np.empty(steps + 1)
     grid[0] = 0.0
     for k in range(steps):
-        omega = low * (high / low) ** (k / (steps - 1))
-        while i < count and near[i] < omega:
-            grid[1 + k + i] = near[i]
-            i += 1
-        grid[1 + k + i] = omega
-    for k in range(i, count):
-        grid[1 + steps + k] = near[k]
-    return grid
+        grid[1 + k] = low * (high / low) ** (k / (steps - 1))
+    return merge(grid, near)
 
 
 @part()

@@ -215,8 +215,8 @@ def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner:
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
     if not lyapunov_factors(A, lyapunov):
         return False
-    u = np.empty(n)
     for c in range(1, m):
+        u = np.empty(n)
         for i in range(n):
             u[i] = met[c - 1, i] + B[i, c - 1]
         propagated(A, gaps[c - 1], u, poles, residues, direct, met[c])

@@ -14,7 +14,7 @@ from inerter.kernels import compiled, part
 from inerter.kernels.closing import close
 from inerter.kernels.gain import farthest, frequencies, resolve
 from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, solve, sort
+from inerter.kernels.linalg import factor, merge, solve, sort
 
 Array = Any
 _GOLDEN = 0.6180339887498949
@@ -98,8 +98,7 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
     damps, averaged reflections of those waves do.
     """
     count = limit.size
-    Z, M = np.empty((count, count), np.complex128), np.empty((count, count), np.complex128)
-    velocity, damper = np.empty(count, np.complex128), np.empty(count)
+    Z, velocity, damper = np.empty((count, count), np.complex128), np.empty(count, np.complex128), np.empty(count)
     for j in range(count):
         velocity[j], damper[j] = G[1 + j, 0] * amplitude, reference
         for k in range(count):
@@ -108,7 +107,8 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
         for k in range(count):
             if abs(velocity[k]) > 0.0:
                 damper[k] = limit[k] / abs(velocity[k])
-        pivots, column = np.empty(count, np.int64), np.empty(count, np.complex128)
+        M, column = np.empty((count, count), np.complex128), np.empty(count, np.complex128)
+        pivots = np.empty(count, np.int64)
         for j in range(count):
             for k in range(count):
                 M[j, k] = Z[j, k] * (damper[k] - reference)
@@ -202,17 +202,10 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
                         count += 1
     near = near[:count]
     sort(near)
-    grid, count, i = np.empty(found.size + near.size), 0, 0
-    for k in range(found.size + 1):
-        while i < near.size and (k == found.size or near[i] < found[k]):
-            if near[i] >= floor:
-                grid[count] = near[i]
-                count += 1
-            i += 1
-        if k < found.size and found[k] >= floor:
-            grid[count] = found[k]
-            count += 1
-    return grid[:count]
+    grid, first = merge(found, near), 0
+    while first < grid.size and grid[first] < floor:
+        first += 1
+    return grid[first:]
 
 
 @part()

@@ -109,6 +109,19 @@ def sort(values: Array) -> None:
 
 
 @part()
+def merge(first: Array, second: Array) -> Array:
+    """Two sorted lists as one."""
+    together, i = np.empty(first.size + second.size), 0
+    for k in range(first.size + 1):
+        while i < second.size and (k == first.size or second[i] < first[k]):
+            together[k + i] = second[i]
+            i += 1
+        if k < first.size:
+            together[k + i] = first[k]
+    return together
+
+
+@part()
 def exponential(X: Array, N: Array, with_derivative: bool) -> Any:
     """exp(X), and its derivative in the direction N, by a Taylor series of a scaled X and repeated squaring."""
     n = X.shape[0]

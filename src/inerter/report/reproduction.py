@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from operator import call
 from pathlib import Path
 
 from inerter.figures import reproduction as drawn
@@ -97,8 +98,7 @@ def write_reproduction(found: Reproduction, folder: Path, jobs: int | Crew = 1) 
         if rows:
             write_text(folder / f"{name}.csv", csv_text(rows))
     with crewed(jobs) as crew:
-        for _ in crew.spread(_draw, _figures(found, folder / FIGURES)):
-            pass
+        list(crew.spread(call, _figures(found, folder / FIGURES)))
     write_text(folder / REPORT, _page(found, folder))
 
 
@@ -118,10 +118,6 @@ def _figures(found: Reproduction, folder: Path) -> list[Drawing]:
     if "figure12" in found.parts:
         figures.append(partial(drawn.draw_figure_12, study("table1").road, folder))
     return [*figures, partial(draw_networks, _networks(), folder, _NETWORKS)]
-
-
-def _draw(figure: Drawing) -> list[Path]:
-    return figure()
 
 
 def _networks() -> dict[str, Network]:

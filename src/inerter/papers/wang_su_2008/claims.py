@@ -290,7 +290,7 @@ def _claim_10(curves: Curves) -> Claim:
     holds &= bool(np.any(more)) and not np.any(less)
     evidence.append(
         f"S3: elasticity costs more than friction at {int(more.sum())} of {more.size} stiffnesses, less at "
-        f"{int(less.sum())}, neither costs anything at the others"
+        f"{int(less.sum())}, with no certain difference at the others"
     )
     found = curves.crossings("S2-10N", "S2-soft", "J5")
     evidence.append(

@@ -20,10 +20,12 @@ from inerter.norms.hinf import Peak
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008 import between, beyond, claims, curves, rows
 from inerter.papers.wang_su_2008.claims import Claim, Curves, Evidence, judge
-from inerter.papers.wang_su_2008.reproduce import JOURNAL, Task, work
+from inerter.papers.wang_su_2008.reproduce import JOURNAL, Reproduction, Task, work
+from inerter.papers.wang_su_2008.rig import Found, RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import simulated_rows, study
 from inerter.report.reproduction_rows import reason
+from inerter.report.reproduction_text import reproduction_text
 
 
 def judged(table: int, name: str) -> SimulatedRow:
@@ -251,3 +253,11 @@ def test_the_same_seed_gives_the_same_number_whatever_ran_before() -> None:
     row = next(r for r in simulated_rows(1) if r.case == 4 and r.index == "J1")
     values = {evaluate(row.design(), row.asks(), ExpectedValue(realisations=2, seed=3, jobs=j)).value for j in (1, 2)}
     assert len(values) == 1
+
+
+def test_the_rig_fits_a_terminal() -> None:
+    widest = Found("cs", "N s/m", 3200.0, 3204.7, (3190.6, 3218.9), "")
+    tested = RigTest((widest,), {}, {}, {}, (), (), "ok")
+    lines = reproduction_text(Reproduction(("rig",), rig=tested)).splitlines()
+    assert any("3.1906 kN s/m to 3.2189 kN s/m" in line for line in lines)
+    assert max(map(len, lines)) <= 80

@@ -47,7 +47,7 @@ def reproduction_text(found: Reproduction) -> str:
 def _rig_line(p: Found) -> str:
     low, high = (format_quantity(value, p.unit, digits=5) for value in p.interval)
     value = format_quantity(p.value, p.unit, digits=5) if p.value == p.value else "not told"
-    return f"{p.name:5}printed {format_quantity(p.printed, p.unit):13}identified {value:16}{low} to {high}"
+    return f"{p.name:5}printed {format_quantity(p.printed, p.unit):11}identified {value:14}{low} to {high}"
 
 
 def agreement_of(compared: list[ComparedRow]) -> str:

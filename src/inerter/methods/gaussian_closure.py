@@ -17,19 +17,17 @@ from numpy.typing import NDArray
 from inerter.errors import MechanismError, Status, StatusKind
 from inerter.indices.index import Question
 from inerter.methods.compiled_norm import CompiledQuestion
-from inerter.methods.equivalent import Equivalent, equivalent
+from inerter.methods.equivalent import GAUSSIAN, STIFFEST, Equivalent, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.methods.method import Estimate
-from inerter.systems.descriptor import Descriptor, close
+from inerter.systems.descriptor import close
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
 Array = NDArray[np.float64]
-_SHARE = math.sqrt(2.0 / math.pi)  # r.m.s. force of the equivalent damper over the friction force
 _STEPS = 160
 _SETTLED = 1e-10  # relative error of a damper's r.m.s. force
 _NUDGE = 1e-4  # relative change of a damper for differences
 _LOCKED = 0.02  # d log(force) / d log(damper) below which a friction whose force is too small will not slip
-_STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 _RIGID = 1e-5  # the same for a damper that stands for a rigid link
 
 Speeds = Callable[[Array, NDArray[np.intp]], Array]
@@ -62,7 +60,7 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
             break
         ratio, slope = _forces(speeds, damping[left], limits[left], left)
         own = np.einsum("rii->ri", slope)
-        saturated = (own < _LOCKED) | (damping[left] > _STIFFEST * start[left])
+        saturated = (own < _LOCKED) | (damping[left] > STIFFEST * start[left])
         stuck = held[left] | (ratio * (1.0 + 20.0 * np.maximum(own, 0.0)) < 1.0) & saturated | (ratio == 0.0)
         miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
         settled = (miss <= _SETTLED) | np.isnan(miss)
@@ -133,7 +131,7 @@ class Pattern:
 
         if not start.shape[1]:
             return Dampers(start, np.zeros(start.shape, dtype=bool), np.zeros(points.shape[0]))
-        return solve_dampers(speeds, _SHARE * self.parts.limits(points), start, held)
+        return solve_dampers(speeds, GAUSSIAN * self.parts.limits(points), start, held)
 
     def value_and_gradient(self, question: CompiledQuestion, row: Array) -> tuple[float, Array]:
         """A value and its gradient over (values of the design, dampers)."""
@@ -169,17 +167,8 @@ class GaussianClosure:
 
     @cached_property
     def without(self) -> frozenset[str]:
-        """Frictions that white noise passes straight to, as one in a tyre: with a velocity of infinite variance across
-        them, their dampers are zero.
-        """
-        left_out: frozenset[str] = frozenset()
-        while True:
-            pattern = _pattern(self, left_out, frozenset())
-            direct = _direct(pattern.velocities.problem.descriptor)
-            if not direct:
-                self.patterns[frozenset()] = pattern
-                return left_out
-            left_out |= {pattern.parts.dampers[i] for i in direct}
+        """Frictions whose dampers are zero, because white noise passes straight to them."""
+        return slipping_freely(self.mechanism)
 
     def pattern(self, locked: frozenset[str]) -> Pattern | None:
         """The linear model with these frictions stuck; None if that makes a mount rigid, which has no model."""
@@ -223,7 +212,7 @@ class GaussianClosure:
                 solved += self._solve(points, designs[here], part.damping[:, still], locked | more)
                 continue
             if more:
-                too_stiff = np.any(part.sticks & (part.damping > _STIFFEST * pattern.parts.scale), axis=1)
+                too_stiff = np.any(part.sticks & (part.damping > STIFFEST * pattern.parts.scale), axis=1)
                 part = pattern.dampers(points[designs[here]], part.damping, part.sticks)
                 part.error[too_stiff] = np.nan
             solved.append(Solved(pattern, designs[here], part))
@@ -303,9 +292,3 @@ def _part(problem: LinearProblem, which: slice) -> LinearProblem:
     descriptor = replace(d, Y_eta=d.Y_eta[:, which], Y_x=d.Y_x[:, which], Y_u=d.Y_u[:, which], outputs=d.outputs[which])
     question = replace(problem.question, outputs=problem.question.outputs[which])
     return replace(problem, question=question, descriptor=descriptor)
-
-
-def _direct(descriptor: Descriptor) -> list[int]:
-    """Numbers of the outputs that white noise passes straight to."""
-    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in descriptor.variables.items()}
-    return [int(i) for i in np.flatnonzero(np.any(close(descriptor, middle).D != 0.0, axis=1))]

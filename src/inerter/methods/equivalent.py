@@ -26,6 +26,7 @@ from inerter.vehicle.mechanism import Mechanism, Tyre
 
 Array = NDArray[np.float64]
 GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
+POORLY = "is poorly told by one damper: the value may be off by more than 3 %. Simulate it, as ExpectedValue() does"
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 
 

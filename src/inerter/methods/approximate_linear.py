@@ -62,9 +62,10 @@ class ApproximateLinear:
     friction adds what is not of the input: |U| may come close to zero. Peak gains are smoothed here too, as mean |Y|^2
     over mean |U|^2: the largest of 50 000 raw ratios says nothing of the design.
 
-    `seed` decides the realisations, which are the same for every design. The standard error is that of the mean (or
-    median) over realisations, the interval Student's. `relative_error` asks for realisations until the standard error
-    is below that part of the value.
+    `seed` decides the realisations, which are the same for every design. The standard error is that of the mean over
+    realisations, the interval Student's; that of a median is from the scatter of logarithms, which has an expectation
+    where that of raw ratios has none. `relative_error` asks for realisations until the standard error is below that
+    part of the value.
 
     Raises `IndicatorError` for settings that cannot be.
 
@@ -244,9 +245,9 @@ class ApproximateLinear:
             value, peaks, smeared = float(weights @ sizes), (), 0.0
             scatter = (sums - sums.mean(axis=0)) @ (0.5 * weights / np.maximum(sizes, 1e-300))
             if self._raw:
-                single = np.sqrt(sums) @ weights
-                value = float(np.median(single))
-                scatter = math.sqrt(0.5 * math.pi) * (single - single.mean())
+                logs = np.log(np.sqrt(sums) @ weights)  # a standard error of raw ratios has no expectation, theirs has
+                value = float(np.exp(np.median(logs)))
+                scatter = math.sqrt(0.5 * math.pi) * value * (logs - logs.mean())
         count = scatter.size
         error = math.hypot(np.sqrt(np.sum(scatter**2) / (count * (count - 1))), 0.5 * unseen * value, smeared)
         interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())

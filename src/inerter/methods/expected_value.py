@@ -39,7 +39,8 @@ class ExpectedValue:
     Each of `realisations` roads (8 by default), which `seed` decides, is a multisine of eq. (17), 0.1 to 1000 Hz; the
     design settles on it, and mean squares are taken over the next period of 10 s. The value is made of the roots of
     their means over the roads, `samples` of those on each. A design that remembers the road for longer than a period,
-    as one that is hardly damped, gets roads of 40 or 160 s, with lines as much closer; `period` [s] sets their length.
+    as one that is hardly damped, gets roads of 40, 160 or 640 s, with lines as much closer; `period` [s] sets their
+    length.
     Where no such road shows a steady state, as with a strut that sticks on an undamped tyre, the value is nan. With
     `relative_error`, roads are added, from 8 to 1000, until the standard error is that part of the value. Designs are
     driven over the same roads, so that differences between them are known better than either (see `compare`).
@@ -51,8 +52,7 @@ class ExpectedValue:
 
     A peak gain is the largest ratio of r.m.s. displacement to r.m.s. force over all frequencies for a sine of the
     index's `amplitude`; `peaks` holds every local maximum, each found near where harmonic balance has one (with gaps:
-    where a grid of frequencies has one). It has no scatter. Under "paper2008" the value is the local maximum nearest
-    to the highest peak of the linear design, which need not be the highest.
+    where a grid of frequencies has one). It has no scatter, and is the same under both conventions.
 
     `jobs` threads share the work (all cores by default). Source: Wang and Su (2008), section 4.
 
@@ -183,8 +183,6 @@ class ExpectedValue:
         peaks, statuses = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool)
         weighted = tuple(replace(peak, gain=abs(output.weight) * peak.gain) for peak in peaks)
         value = weighted[0].gain if weighted else np.nan
-        if self.conventions == "paper2008" and weighted and known.size and known[0] > 0.0:
-            value = min(weighted, key=lambda peak: abs(np.log(max(peak.omega, 1e-9) / known[0]))).gain
         status = worst(statuses)
         if status.kind is StatusKind.FAILED:
             value = np.nan

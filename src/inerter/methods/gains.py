@@ -131,7 +131,10 @@ def largest_gain(
         linear = 0.0 if known is None else known.squares(at)[0]
         return np.asarray(np.maximum(np.interp(at, omega, mean) + linear, 0.0))
 
-    found = sorted((_refined(between, omega, i) for i in _summits(total, window.size)), key=lambda peak: -peak.gain)
+    peaks = [_refined(between, omega, i) for i in _summits(total, window.size)]
+    if known is not None:  # whose gain is known below the lowest harmonic too
+        peaks.append(_refined(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1))
+    found = sorted(peaks, key=lambda peak: -peak.gain)
     best = found[0]
     deviation = np.array([np.interp(best.omega, omega, row) for row in smooth - mean])
     return best.gain, deviation / (2.0 * max(best.gain, 1e-300)), tuple(found)

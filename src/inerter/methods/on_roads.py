@@ -22,7 +22,7 @@ from inerter.norms.response import modal_response
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
-LONGEST = 160  # [s] of a road
+LONGEST = 640  # [s] of a road
 MOST_ROADS = 1000
 _LONGER = 4  # times the length that does not do
 _FIRST = 2  # roads that decide how long the others must be
@@ -67,6 +67,7 @@ class Rest:
 
     power: Array
     unseen: float = 0.0  # share of the mean squares that may be missing, or too much
+    within_reach: bool = True  # whether longer roads would tell, if the motion stays as it is
     status: Status = OK
     notes: tuple[str, ...] = ()
 
@@ -87,14 +88,15 @@ def on_roads(
 def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Ran], Rest]:
     """The design on roads so long that their lines tell what it does, the first runs there, and what they lack.
 
-    On those of the usual length if none of the lengths will do.
+    On those of the usual length if none of the lengths will do. On a longer road friction that stuck may slip, so one
+    is tried even if the motion is out of reach as it is.
     """
     found = design.runs(0, _FIRST, pool)
     usual = design, found, rest_of(design, found)
     longer, found, lacking = usual
     while not _is_resolved(longer, found, lacking):
         period = _LONGER * longer.way.period
-        if period > design.longest:
+        if period > design.longest or (longer is not design and not lacking.within_reach):
             return usual
         longer = replace(longer, way=replace(longer.way, period=period))
         found = longer.runs(0, _FIRST, pool)
@@ -134,17 +136,18 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     gains = np.abs(modal_response(system, omega, pade_order)[:, :, 0]) ** 2
     inside = 0.5 * (omega * lines.amplitudes) ** 2 @ gains
     added = (way.road.velocity_intensity * whole.outputs) ** 2 - inside
-    left, pole = memory(system, whole.outputs, way.period)
-    unseen = 2.0 * left
+    (left, pole), (at_last, _) = (memory(system, whole.outputs, time) for time in (way.period, design.longest))
+    unseen, within_reach = 2.0 * left, True
     if unseen > _UNSEEN:  # by as much as the counterpart may be another once the lines tell more
         misfit = float(np.max(np.abs(inside / np.maximum(power[:count], 1e-300) - 1.0)))
-        unseen *= min(misfit + linear.unlike(speeds, whole.outputs), 1.0)
+        unlike = min(misfit + linear.unlike(speeds, whole.outputs), 1.0)
+        unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
     if has_play(design.system) and unseen > _UNSEEN:
         return Rest(np.zeros(count), notes=(_UNLIKE,))
     if unseen > _LOST:
-        return Rest(np.full(count, np.nan), unseen, _undamped(pole, design.longest))
+        return Rest(np.full(count, np.nan), unseen, within_reach, _undamped(pole, design.longest))
     share = float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left
-    return Rest(added, unseen, OK if share <= _MOST_BEYOND else _mostly_beyond(share))
+    return Rest(added, unseen, within_reach, OK if share <= _MOST_BEYOND else _mostly_beyond(share))
 
 
 def _undamped(pole: complex, longest: float) -> Status:

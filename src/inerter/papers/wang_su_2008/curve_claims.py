@@ -85,8 +85,9 @@ def _claim_4(curves: Curves) -> Claim:
     for layout in _LAYOUTS:
         name = f"{layout}-10N"
         found, soft = curves.crossings(name, "S1", "J1"), bool(curves.worse(name, "S1", "J1")[0])
-        text = f"J1 of {layout} with 10 N is {'' if soft else 'not '}worse than S1's up to k = {_at(found)} kN/m"
-        parts.append(Part(text, soft and len(found) == 1, len(found) == 1 and _is_at(found[0], 15e3, curves.step)))
+        where = f"worse than S1's up to k = {_at(found)} kN/m" if soft else "not certainly worse than S1's at small k"
+        once = soft and len(found) == 1
+        parts.append(Part(f"J1 of {layout} with 10 N is {where}", once, once and _is_at(found[0], 15e3, curves.step)))
     for layout in _LAYOUTS:
         name = f"{layout}-10N"
         last = -100.0 * curves.excess(name, "S1", "J1")[-1]

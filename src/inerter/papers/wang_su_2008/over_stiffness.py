@@ -69,12 +69,12 @@ class Curves:
     def crossings(self, one: str, other: str, index: str) -> list[Crossing]:
         """Where `one` becomes better or worse than `other`, by linear interpolation between swept values.
 
-        A stretch between two turns counts if the difference is certain anywhere on it.
+        A stretch between turns, or before or behind them all, counts if the difference is certain anywhere on it.
         """
         gap, k, error = self.excess(one, other, index), self.k, self.excess_error(one, other, index)
         certain = self.worse(one, other, index) | self.worse(other, one, index)
         stretches = np.split(np.arange(k.size), 1 + np.flatnonzero(np.diff(np.sign(gap)) != 0))
-        counted = [stretches[0], *(s for s in stretches[1:-1] if certain[s].any()), stretches[-1]]
+        counted = [stretch for stretch in stretches if certain[stretch].any()]
         turns = [(s[-1], after[0]) for s, after in pairwise(counted) if gap[s[-1]] * gap[after[0]] < 0.0]
         return [
             Crossing(

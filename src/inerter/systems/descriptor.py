@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, LinearSystemError, MechanismError
 from inerter.networks.elements import Damper, Element, Free, Inerter, Spring
-from inerter.systems.coordinates import Coordinates, find_coordinates
+from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph, linear_graph
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
@@ -253,14 +253,9 @@ class _Equations:
 
     def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
         """The combination of spring elongations that is this displacement whatever moves, if there is one."""
-        c = self.split
-        motions = np.hstack([c.R, c.U, c.Y, c.Z])
-        moves = np.hstack([self.spring_rows @ motions, self.spring_roads])
-        target = np.hstack([nodes @ motions, roads[self.road_columns]])
-        weights = np.linalg.lstsq(moves.T, target, rcond=1e-12)[0]
-        weights = np.where(np.abs(weights) < 1e-13, 0.0, weights)
-        fits = np.allclose(moves.T @ weights, target, rtol=0.0, atol=1e-9 * max(1.0, float(np.abs(target).max())))
-        return weights if fits else None
+        return combination(
+            np.hstack([self.spring_rows, self.spring_roads]), np.hstack([nodes, roads[self.road_columns]])
+        )
 
     def possible_outputs(self) -> list[str]:
         """Names of the outputs that need no state of their own."""
@@ -341,9 +336,7 @@ class _Equations:
         n = self.n + q
         X_eta, X_x, X_u = np.zeros((n, self.e)), np.zeros((n, n)), np.zeros((n, self.m))
         X_eta[self.a, self.a1] = np.eye(self.na)
-        X_eta[self.g, self.y] = c.P @ self.spring_rows @ c.Y
-        X_x[self.g, self.a] = c.P @ self.spring_rows @ c.R
-        X_u[self.g, : len(self.road_names)] = c.P @ self.spring_roads
+        X_x[self.g, self.a], X_eta[self.g, self.y], X_u[self.g, : len(self.road_names)] = c.rates
         for i, (_, eta, x, u) in enumerate(self.extra, start=self.n):
             X_eta[i], X_x[i, : self.n], X_u[i] = eta, x, u
         Y_x = np.zeros((self.k, len(self.rows), n))

@@ -1,304 +1,122 @@
-"""Norms of transfer functions with whole coefficients: what is infinite is decided without rounding.
+"""Norms of a system that comes from a mechanism, from its transfer functions without rounding.
 
-They answer where double precision cannot. Roots that numerators and denominator share are divided out, and what is left
-on the imaginary axis makes a norm infinite; a passive mechanism has no poles to its right. A mean square is then a sum
-of residues, which needs no poles: for p/a it is the leading coefficient of p modulo a. It is taken in decimals, twice
-as many until nothing changes. Peaks of the gain are roots of its slope, each isolated by Descartes' rule of signs.
+They answer where double precision cannot, and are what it is checked against. A Pade approximant of a delay is a
+fraction like the others.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, DecimalException, getcontext, localcontext
-from fractions import Fraction
-from itertools import pairwise, zip_longest
 
-from inerter.systems.polynomials import (
-    Polynomial,
-    add,
-    derivative,
-    mirrored,
-    multiply,
-    on_axis,
-    positive_roots,
-    quotient,
-    scaled,
-    shared,
-    trimmed,
-    value,
-)
+import numpy as np
+from numpy.typing import NDArray
 
-_AGREED = Decimal("1e-13")
-_FEWEST, _MOST = 50, 6400  # digits
-_FLAT = 1e-13  # relative difference of gains over a peak that ends its refinement
-_SMALL = 16  # bits by which the exponent of a Taylor series lies below one
-Numbers = list[Decimal]
+from inerter.errors import OK, Status, StatusKind
+from inerter.norms.delay import pade_coefficients
+from inerter.norms.gain_squared import GainSquared
+from inerter.norms.mean_square import Response, UnknownError, lasting, mean_square
+from inerter.systems.linear import LinearSystem
+from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirrored, multiply
+
+Matrix = NDArray[np.float64]
 
 
-class UnknownError(Exception):
-    """A number cannot be had in the digits that are tried."""
+def undamped(frequencies: Sequence[float]) -> Status:
+    """What makes a norm infinite where motions at these frequencies [rad/s] last."""
+    where = f"0 + {frequencies[0]:.4g}j" if frequencies[0] > 0.0 else "0"
+    return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {where} rad/s")
 
 
-@dataclass(frozen=True)
-class Response:
-    """One output over one source: numerators over one denominator, each with the time at which it arrives [s]."""
-
-    denominator: Polynomial
-    numerators: tuple[Polynomial, ...]
-    times: tuple[float, ...]
-
-    def reduced(self) -> Response:
-        """Without the roots that all share."""
-        common = shared(self.denominator, *self.numerators)
-        if len(common) == 1:
-            return self
-        numerators = tuple(quotient(n, common) if n else n for n in self.numerators)
-        return Response(quotient(self.denominator, common), numerators, self.times)
-
-    @property
-    def is_direct(self) -> bool:
-        """Whether white noise passes straight through."""
-        return max(map(len, self.numerators), default=0) >= len(self.denominator)
-
-
-def lasting(denominator: Polynomial) -> list[float]:
-    """Frequencies [rad/s] of the roots on the imaginary axis, none of which lies to its right."""
-    zeros = next(i for i, c in enumerate(denominator) if c)
-    squares = positive_roots(mirrored(on_axis(denominator[zeros:])))
-    return [0.0] * bool(zeros) + [math.sqrt(high) for _, high in squares]
-
-
-def mean_square(response: Response) -> tuple[float, list[float]]:
-    """Variance of the response to unit white noise, and the frequencies of undamped motions that make it infinite.
-
-    `response` is reduced and passes no noise straight through. Raises `UnknownError`.
-    """
-    a, numerators = response.denominator, response.numerators
-    frequencies = lasting(a)
-    drifts = frequencies == [0.0] and a[1] != 0 and sum(n[0] for n in numerators if n) == 0
-    if frequencies and not drifts:
-        return math.inf, frequencies
-    before: Decimal | None = None
-    digits = _FEWEST
-    while digits <= _MOST:
-        context = Context(prec=digits, Emax=MAX_EMAX, Emin=MIN_EMIN)
-        with localcontext(context):
+def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, Status]:
+    """The H2 norm of each output, and why it is infinite or unknown where it is."""
+    functions = _functions(system)
+    squares, direct, status = np.zeros(len(system.outputs)), [], OK
+    for i, (name, row) in enumerate(zip(system.outputs, functions.numerators, strict=True)):
+        for response in _by_source(functions.denominator, row, system, pade_order):
             try:
-                found = _drifting(response) if drifts else _square(a, numerators, response.times)
-            except (DecimalException, ZeroDivisionError):
-                found = None
-            if found is not None and before is not None and abs(found - before) <= _AGREED * found:
-                return _float(found), []
-        before, digits = found, 2 * digits
-    raise UnknownError("the mean square could not be computed")
+                square, frequencies = (math.inf, []) if response.is_direct else mean_square(response)
+            except UnknownError as error:
+                square, frequencies = math.nan, []
+                status = Status(StatusKind.FAILED, str(error)) if status.ok else status
+            squares[i] += square
+            if response.is_direct:
+                direct.append(name)
+            if frequencies:
+                status = undamped(frequencies)
+    if direct and status.kind is not StatusKind.MARGINAL:
+        names = ", ".join(dict.fromkeys(direct))
+        status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
+    return np.sqrt(squares), status
 
 
-def _float(number: Decimal) -> float:
-    result = float(number)
-    if not (0.0 < result < math.inf) and number != 0:
-        raise UnknownError("the mean square is beyond the range of numbers")
-    return result
+def peaks_exactly(system: LinearSystem) -> tuple[list[tuple[float, float]], Status] | None:
+    """Frequencies [rad/s] and values of all local maxima of the gain, the highest first, with one column a source.
 
-
-def _square(a: Polynomial, numerators: Sequence[Polynomial], times: Sequence[float]) -> Decimal:
-    """Sum over all pairs of arrivals of the integral of p(s) q(-s) exp(s dt) / (a(s) a(-s))."""
-    ring = _Modulo(a)
-    inverse = ring.inverse_of_mirrored()
-    total = Decimal(0)
-    for i, p in enumerate(numerators):
-        for j, q in enumerate(numerators):
-            gap = times[j] - times[i]
-            if p and q and (gap > 0.0 or (gap == 0.0 and i <= j)):
-                f = ring.multiply(ring.reduce(multiply(p, mirrored(q))), inverse)
-                if gap > 0.0:
-                    f = ring.multiply(f, ring.exponential(Decimal(times[j]) - Decimal(times[i])))
-                total += (1 if i == j else 2) * ring.residues(f)
-    return total
-
-
-def _drifting(response: Response) -> Decimal:
-    """As `_square`, with a pole at zero that the sum over all arrivals has not, as a tyre's share of the road has.
-
-    With p/(s a) = r/s + h/a, each arrival adds a step r to the decaying rest; the steps add up to zero in the end.
+    With undamped motions, these and infinity. None for several outputs of several sources: their largest singular
+    value is no fraction.
     """
-    a, times = response.denominator[1:], response.times
-    steps = [n[0] if n else 0 for n in response.numerators]
-    rests = [
-        trimmed(add(scaled(n, a[0]), scaled(a, -step))[1:])
-        for n, step in zip(response.numerators, steps, strict=True)
+    functions = _functions(system)
+    sources = list(dict.fromkeys(system.sources))
+    entries = [
+        _sum([n for n, of in zip(row, system.sources, strict=True) if of == source])
+        for row in functions.numerators
+        for source in sources
     ]
-    ring = _Modulo(a)
-    total = _square(a, rests, times) if any(rests) else Decimal(0)
-    for step, start in zip(steps, times, strict=True):
-        for other, then in zip(steps, times, strict=True):
-            total -= Decimal(step * other) * abs(Decimal(start) - Decimal(then)) / 2
-        for rest, then in zip(rests, times, strict=True):  # the integral of the rest from the step on
-            f = ring.multiply(ring.reduce(rest), ring.inverse_of_s())
-            if start > then:
-                f = ring.multiply(f, ring.exponential(Decimal(start) - Decimal(then)))
-            total -= 2 * step * ring.residues(f)
-    return total / Decimal(a[0]) ** 2
-
-
-class _Modulo:
-    """Polynomials modulo a(s), whose roots all lie to the left: numbers that stand for values at its roots."""
-
-    def __init__(self, a: Polynomial) -> None:
-        self.whole, self.leading = a, Decimal(a[-1])
-        self.a = [Decimal(c) / self.leading for c in a]
-        self.n = len(a) - 1
-        self.powers: dict[Decimal, Numbers] = {}
-
-    def residues(self, f: Numbers) -> Decimal:
-        """The sum of the residues of f/a."""
-        return f[self.n - 1] / self.leading if self.n else Decimal(0)
-
-    def reduce(self, p: Sequence[int] | Numbers) -> Numbers:
-        rest = [+Decimal(c) for c in p] + [Decimal(0)] * (self.n - len(p))
-        for i in range(len(rest) - 1, self.n - 1, -1):
-            top = rest.pop()
-            if top:
-                for j in range(self.n):
-                    rest[i - self.n + j] -= top * self.a[j]
-        return rest
-
-    def multiply(self, f: Numbers, g: Numbers) -> Numbers:
-        product = [Decimal(0)] * max(2 * self.n - 1, 0)
-        for i, x in enumerate(f):
-            if x:
-                for j, y in enumerate(g):
-                    product[i + j] += x * y
-        return self.reduce(product)
-
-    def inverse_of_s(self) -> Numbers:
-        return [-c / self.a[0] for c in self.a[1:]]
-
-    def inverse_of_mirrored(self) -> Numbers:
-        """1/a(-s) at the roots of a = e(s^2) + s o(s^2), where a(-s) = 2 e(s^2) = -2 s o(s^2).
-
-        With u e + v o = 1 that is (u - v/s)/2.
-        """
-        if self.n == 0:
-            return []
-        u, v = _bezout([+Decimal(c) for c in self.whole[0::2]], [+Decimal(c) for c in self.whole[1::2]])
-        odd = self.multiply(self.reduce(_spread(v)), self.inverse_of_s())
-        return [(x - y) / 2 for x, y in zip(self.reduce(_spread(u)), odd, strict=True)]
-
-    def exponential(self, time: Decimal) -> Numbers:
-        """exp(s time): a Taylor series of a small part of the time, squared."""
-        if time not in self.powers:
-            bits = [c.bit_length() - self.whole[-1].bit_length() + 1 for c in self.whole[-2::-1]]
-            fastest = 1 + max((math.ceil(b / k) for k, b in enumerate(bits, 1)), default=0)  # Fujiwara's, of the roots
-            squarings = max(0, fastest + math.frexp(float(time))[1] + _SMALL)
-            step = time / 2**squarings
-            total = term = self.reduce([Decimal(1)])
-            for k in range(1, getcontext().prec * 4 // _SMALL + 2):
-                term = [c * step / k for c in self.reduce([Decimal(0), *term])]
-                total = [x + y for x, y in zip(total, term, strict=True)]
-            for _ in range(squarings):
-                total = self.multiply(total, total)
-            self.powers[time] = total
-        return self.powers[time]
-
-
-def _spread(p: Numbers) -> Numbers:
-    """p(s^2)."""
-    return [c for x in p for c in (x, Decimal(0))][:-1]
-
-
-def _bezout(e: Numbers, o: Numbers) -> tuple[Numbers, Numbers]:
-    """u and v with u e + v o = 1, by Euclid's algorithm."""
-    one, none = [Decimal(1)], [Decimal(0)]
-    rows = (e, one, none), (o, none, one)
-    while len(rows[1][0]) > 1:
-        (p, *left), (q, *right) = rows
-        factors, rest = _divided(p, q)
-        new = tuple(_less(x, factors, y) for x, y in zip(left, right, strict=True))
-        rows = rows[1], (rest, *new)
-    scale, u, v = rows[1]
-    return [c / scale[0] for c in u], [c / scale[0] for c in v]
-
-
-def _divided(p: Numbers, q: Numbers) -> tuple[Numbers, Numbers]:
-    """Quotient, and remainder of a degree below that of q."""
-    rest, factors = list(p), [Decimal(0)] * max(len(p) - len(q) + 1, 1)
-    while len(rest) >= len(q):
-        top = rest[-1] / q[-1]
-        factors[len(rest) - len(q)] = top
-        for j in range(len(q) - 1):
-            rest[len(rest) - len(q) + j] -= top * q[j]
-        rest.pop()
-    return factors, rest
-
-
-def _less(x: Numbers, factors: Numbers, y: Numbers) -> Numbers:
-    """x - factors y."""
-    product = [Decimal(0)] * (len(factors) + len(y) - 1)
-    for i, a in enumerate(factors):
-        for j, b in enumerate(y):
-            product[i + j] += a * b
-    return [a - b for a, b in zip_longest(x, product, fillvalue=Decimal(0))]
-
-
-@dataclass(frozen=True)
-class GainSquared:
-    """|G(j w)|^2 = top(w^2) / bottom(w^2), summed up over all numerators; the denominator has no root on the axis."""
-
-    top: Polynomial
-    bottom: Polynomial
-
-    @staticmethod
-    def of(response: Response) -> GainSquared:
-        top: Polynomial = []
-        for numerator in response.numerators:
-            top = add(top, _on_axis_squared(numerator))
-        return GainSquared(top, _on_axis_squared(response.denominator))
-
-    def gain(self, x: Fraction) -> float:
-        """The gain where the squared frequency is x."""
-        spare = len(self.bottom) - len(self.top)
-        return _root(value(self.top, x) * x.denominator**spare, value(self.bottom, x)) if self.top else 0.0
-
-    def peaks(self) -> list[tuple[float, float]]:
-        """Frequencies [rad/s] and gains of all local maxima; one at infinity where the gain rises for good."""
-        falling = scaled(multiply(self.top, derivative(self.bottom)), -1)
-        slope = add(multiply(derivative(self.top), self.bottom), falling)
-        if not slope:
-            return [(0.0, self.gain(Fraction(0)))] if self.top else []
-        found = [] if next(c for c in slope if c) > 0 else [(0.0, self.gain(Fraction(0)))]
-        roots = positive_roots(slope)
-        edges = [(before[1] + after[0]) / 2 for before, after in pairwise(roots)]
-        edges = [roots[0][0] / 2, *edges, roots[-1][1] + 1] if roots else []
-        for root, before, after in zip(roots, edges[:-1], edges[1:], strict=True):
-            if value(slope, before) > 0 > value(slope, after):
-                found.append(self._top(slope, *root))
-        if slope[-1] > 0:
-            found.append((math.inf, _root(self.top[-1], self.bottom[-1])))
-        return found
-
-    def _top(self, slope: Polynomial, low: Fraction, high: Fraction) -> tuple[float, float]:
-        """The maximum between `low` and `high`, where `slope` changes its sign once."""
-        while True:
-            middle = (low + high) / 2
-            gains = [self.gain(x) for x in (low, middle, high)]
-            if max(gains) - min(gains) <= _FLAT * max(gains):
-                return _root(middle.numerator, middle.denominator), max(gains)
-            low, high = (middle, high) if value(slope, middle) > 0 else (low, middle)
-
-
-def _on_axis_squared(p: Polynomial) -> Polynomial:
-    """|p(j w)|^2 as a polynomial in w^2."""
-    square = multiply(p, mirrored(p))
-    return [-c if i % 2 else c for i, c in enumerate(square[0::2])]
-
-
-def _root(top: int, bottom: int) -> float:
-    """The square root of a fraction whose terms may be beyond floating point."""
-    shift = (bottom.bit_length() - top.bit_length() + 128) // 2 * 2
-    whole = (top << shift) // bottom if shift > 0 else top // (bottom << -shift)
+    response = Response(functions.denominator, tuple(entries), (0.0,) * len(entries)).reduced()
+    frequencies = lasting(response.denominator)
+    if frequencies:
+        return [(frequency, math.inf) for frequency in frequencies], undamped(frequencies)
+    if min(len(functions.numerators), len(sources)) > 1:
+        return None
     try:
-        return math.ldexp(math.isqrt(whole), -shift // 2)
-    except OverflowError:
-        raise UnknownError("the gain is beyond the range of numbers") from None
+        found = GainSquared.of(response).peaks()
+    except UnknownError as error:
+        return [(math.nan, math.nan)], Status(StatusKind.FAILED, str(error))
+    return sorted(found, key=lambda peak: -peak[1]), OK
+
+
+def _functions(system: LinearSystem) -> TransferFunctions:
+    assert system.origin is not None
+    return system.origin.functions(system.inputs, system.outputs)
+
+
+def _by_source(
+    denominator: Polynomial, row: Sequence[Polynomial], system: LinearSystem, pade_order: int | None
+) -> list[Response]:
+    """One output's response to each source, with what arrives at one time added up."""
+    found = []
+    for source in dict.fromkeys(system.sources):
+        arrivals: dict[float, Polynomial] = {}
+        for numerator, of, delay in zip(row, system.sources, system.delays.tolist(), strict=True):
+            if of == source:
+                arrivals[delay] = add(arrivals.get(delay, []), numerator)
+        times = sorted(arrivals)
+        numerators = [arrivals[time] for time in times]
+        response = Response(denominator, tuple(numerators), tuple(times))
+        found.append((response if pade_order is None else _approximated(response, pade_order)).reduced())
+    return [response for response in found if any(response.numerators)]
+
+
+def _approximated(response: Response, order: int) -> Response:
+    """With a Pade approximant for the time between one arrival and the next: they become one."""
+    denominator, total, factor = response.denominator, response.numerators[0], [1]
+    for before, time, numerator in zip(response.times, response.times[1:], response.numerators[1:], strict=False):
+        bottom = _pade(time - before, order)
+        factor = multiply(factor, mirrored(bottom))
+        total = add(multiply(total, bottom), multiply(numerator, factor))
+        denominator = multiply(denominator, bottom)
+    return Response(denominator, (total,), (0.0,))
+
+
+def _pade(time: float, order: int) -> Polynomial:
+    """The denominator of the approximant of exp(-s time), whose mirror image is the numerator."""
+    top, bottom = time.as_integer_ratio()
+    return [c * top**k * bottom ** (order - k) for k, c in enumerate(pade_coefficients(order))]
+
+
+def _sum(polynomials: Sequence[Polynomial]) -> Polynomial:
+    total: Polynomial = []
+    for polynomial in polynomials:
+        total = add(total, polynomial)
+    return total

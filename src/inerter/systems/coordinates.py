@@ -16,7 +16,7 @@ is made once for all designs of a layout.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache, wraps
 
 import numpy as np
@@ -47,6 +47,17 @@ class Coordinates:
     Z_e: Matrix
     P: Matrix
     rates: tuple[Matrix, Matrix, Matrix]
+    motions: Rows  # R, U, Y and Z in fractions, a column each
+    known: dict[bytes, list[Matrix]] = field(default_factory=dict)  # what `rate` has found
+
+    def rate(self, nodes: Matrix) -> list[Matrix]:
+        """The velocity of a combination of nodes over a, u, y and z; what is zero is zero."""
+        key = nodes.tobytes()
+        if key not in self.known:
+            row = rationals.product(rationals.exact(nodes[None]), self.motions, nodes.size)
+            edges = np.cumsum([self.R.shape[1], self.U.shape[1], self.Y.shape[1]])
+            self.known[key] = np.split(rationals.rounded(row, nodes.size)[0], edges)
+        return self.known[key]
 
 
 def find_coordinates(
@@ -120,6 +131,7 @@ def _found(*matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
         Z_e=rationals.rounded(stretched, len(Z)),
         P=rationals.rounded(P, len(springs)),
         rates=(whole[:, : len(R)], whole[:, len(R) : moved], whole[:, moved:]),
+        motions=rationals.transposed([*R, *U, *Y, *Z], n),
     )
 
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -25,10 +26,15 @@ from inerter.errors import DesignError, LinearSystemError, MechanismError
 from inerter.networks.elements import Damper, Element, Free, Inerter, Spring
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph, linear_graph
-from inerter.systems.linear import LinearSystem
+from inerter.systems.linear import LinearSystem, Origin
+from inerter.systems.polynomials import TransferFunctions
+from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
+Rows = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
+_ROUNDING = float(np.finfo(float).eps)
+_TERMS = 4  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +55,9 @@ class Descriptor:
     outputs: tuple[str, ...]
     variables: dict[str, Free]
     notes: tuple[str, ...]
+    sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
+    mechanism: Mechanism
+    graph: Graph
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
@@ -62,29 +71,53 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
     p = np.array([1.0, *(values[name] for name in descriptor.variables)])
-    S, R, F, Y_eta, Y_x, Y_u = (
-        np.tensordot(p, stack, 1)
-        for stack in (descriptor.S, descriptor.R, descriptor.F, descriptor.Y_eta, descriptor.Y_x, descriptor.Y_u)
-    )
-    size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
+    d = descriptor
+    S, R, F, Y_eta, Y_x, Y_u = (np.tensordot(p, stack, 1) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (np.tensordot(p, stack, 1) for stack in d.sizes)
+    T, unsure = _solved(S, np.hstack([R, F]), S_size, np.hstack([R_size, F_size]))
+    X, Y = np.hstack([d.X_x, d.X_u]), np.hstack([Y_x, Y_u])
+    top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
+    top_size = np.abs(X) + np.abs(d.X_eta) @ unsure
+    bottom_size = np.hstack([Y_x_size, Y_u_size]) + np.abs(Y_eta) @ unsure + Y_eta_size @ np.abs(T)
     n = R.shape[1]
-    scaled, right = S / size, np.hstack([R, F]) / size
-    solved = np.linalg.solve(scaled, right)
-    rest = right.astype(np.longdouble) - scaled.astype(np.longdouble) @ solved.astype(np.longdouble)
-    solved = solved + np.linalg.solve(scaled, np.asarray(rest, dtype=float))
-    T_x, T_u = solved[:, :n], solved[:, n:]
-    if np.any(F):  # an input that reaches an acceleration by rounding only would make an r.m.s. value infinite
-        T_u = np.where(np.abs(T_u) > 1e-14 * np.abs(np.linalg.inv(scaled)) @ np.abs(F / size), T_u, 0.0)
+    A, B, C, D = top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]
+    rounding = _TERMS * _ROUNDING
+    top_size, bottom_size = rounding * top_size, rounding * bottom_size
+    errors = top_size[:, :n], top_size[:, n:], bottom_size[:, :n], bottom_size[:, n:]
+    B, D = np.where(np.abs(B) > errors[1], B, 0.0), np.where(np.abs(D) > errors[3], D, 0.0)
     return LinearSystem(
-        A=descriptor.X_x + descriptor.X_eta @ T_x,
-        B=descriptor.X_u + descriptor.X_eta @ T_u,
-        C=Y_x + Y_eta @ T_x,
-        D=Y_u + Y_eta @ T_u,
-        states=descriptor.states,
-        inputs=descriptor.inputs,
-        outputs=descriptor.outputs,
-        notes=descriptor.notes,
+        A=A,
+        B=B,
+        C=C,
+        D=D,
+        states=d.states,
+        inputs=d.inputs,
+        outputs=d.outputs,
+        notes=d.notes,
+        origin=Origin(partial(_functions, d, dict(values)), (A, B, C, D), errors, d.inputs, d.outputs),
     )
+
+
+def _solved(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
+    """S^-1 right, and its error over that of one rounding: infinite where S is singular to rounding."""
+    size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
+    scaled, right = S / size, right / size
+    try:
+        inverse = np.linalg.inv(scaled)
+    except np.linalg.LinAlgError:
+        return np.zeros_like(right), np.full_like(right, np.inf)
+    solved = inverse @ right
+    for _ in range(2):
+        rest = right.astype(np.longdouble) - scaled.astype(np.longdouble) @ solved.astype(np.longdouble)
+        solved = solved + inverse @ np.asarray(rest, dtype=float)
+    unsure = np.abs(inverse) @ ((S_size @ np.abs(solved) + right_size) / size)
+    return solved, np.abs(solved) + unsure
+
+
+def _functions(
+    descriptor: Descriptor, values: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
+) -> TransferFunctions:
+    return transfer_functions(descriptor.mechanism, descriptor.graph, values, inputs, outputs)
 
 
 def describe(
@@ -170,7 +203,9 @@ class _Equations:
         k, n, e, m = 1 + len(self.variables), self.na + self.ng, int(edges[-1]), len(self.inputs)
         self.k, self.n, self.e, self.m = k, n, e, m
         self.S, self.R, self.F = np.zeros((k, e, e)), np.zeros((k, e, n)), np.zeros((k, e, m))
-        self.rows: list[tuple[Matrix, Matrix, Matrix]] = []
+        self.sizes = tuple(np.zeros_like(stack) for stack in (self.S, self.R, self.F))
+        self.rows: list[Rows] = []
+        self.row_sizes: list[Rows] = []
         self.extra: list[tuple[str, Matrix, Matrix, Matrix]] = []  # integrators: name, rows on eta, x, u
 
     def _variables(self) -> dict[str, Free]:
@@ -202,33 +237,34 @@ class _Equations:
         ]
         for branch in (*masses, *self.graph.branches):
             on = np.zeros(self.e)  # how the element's force acts on each row of the balance
-            on[self.a1], on[self.u1] = branch.nodes @ c.R, branch.nodes @ c.U
-            on[self.y], on[self.z] = branch.nodes @ c.Y, branch.nodes @ c.Z
-            eta, x, u = self._elongation_rate(branch)
-            self.S += self._by_value(branch.element, np.outer(on, eta))
-            self.R -= self._by_value(branch.element, np.outer(on, x))
-            self.F -= self._by_value(branch.element, np.outer(on, u))
+            on[self.a1], on[self.u1], on[self.y], on[self.z] = c.rate(branch.nodes)
+            self._add(branch.element, on, self._elongation_rate(branch))
             if isinstance(branch.element, Inerter):
                 momentum = np.zeros(self.e)
-                momentum[self.u0] = branch.nodes @ c.U
+                momentum[self.u0] = on[self.u1]
                 eta, x, _ = self._velocity(branch.nodes)
-                self.S += self._by_value(branch.element, np.outer(momentum, eta))
-                self.R -= self._by_value(branch.element, np.outer(momentum, x))
+                self._add(branch.element, momentum, (eta, x, np.zeros(self.m)))
         for j, row in enumerate(self.force_rows):
             column = len(self.road_names) + j
-            self.F[0, self.a1, column] = row @ c.R
-            self.F[0, self.y, column] = row @ c.Y
-            self.F[0, self.z, column] = row @ c.Z
+            self.F[0, self.a1, column], _, self.F[0, self.y, column], self.F[0, self.z, column] = c.rate(row)
+        self.sizes[2][0] += np.abs(self.F[0]) * (np.arange(self.m) >= len(self.road_names))
 
-    def _blank(self) -> tuple[Matrix, Matrix, Matrix]:
+    def _add(self, element: Element, on: Matrix, to: Rows) -> None:
+        """Add an element that acts on rows of the balance to S, -R and -F, and its size to theirs."""
+        for stack, size, row, sign in zip((self.S, self.R, self.F), self.sizes, to, (1.0, -1.0, -1.0), strict=True):
+            term = self._by_value(element, np.outer(on, row))
+            stack += sign * term
+            size += np.abs(term)
+
+    def _blank(self) -> Rows:
         return np.zeros(self.e), np.zeros(self.n), np.zeros(self.m)
 
-    def _elongation_rate(self, branch: Branch) -> tuple[Matrix, Matrix, Matrix]:
+    def _elongation_rate(self, branch: Branch) -> Rows:
         """What the element's value multiplies: its elongation, velocity or acceleration, as rows on eta, x and u."""
         eta, x, u = self._blank()
         match branch.element:
             case Inerter():
-                eta[self.a1], eta[self.u1] = branch.nodes @ self.split.R, branch.nodes @ self.split.U
+                eta[self.a1], eta[self.u1] = self.split.rate(branch.nodes)[:2]
             case Damper():
                 eta, x, u = self._velocity(branch.nodes, branch.roads)
             case Spring():
@@ -237,10 +273,9 @@ class _Equations:
                 eta, x = self._elongation(row)
         return eta, x, u
 
-    def _velocity(self, nodes: Matrix, roads: Matrix | None = None) -> tuple[Matrix, Matrix, Matrix]:
+    def _velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
         eta, x, u = self._blank()
-        x[self.a] = nodes @ self.split.R
-        eta[self.u0], eta[self.y] = nodes @ self.split.U, nodes @ self.split.Y
+        x[self.a], eta[self.u0], eta[self.y], _ = self.split.rate(nodes)
         if roads is not None and roads.size:
             u[: len(self.road_names)] = roads[self.road_columns]
         return eta, x, u
@@ -291,12 +326,12 @@ class _Equations:
             rows = self._constant(*self._velocity(coordinates[stem]))
         elif stem in coordinates and what == "acceleration":
             eta, x, u = self._blank()
-            eta[self.a1], eta[self.u1] = coordinates[stem] @ self.split.R, coordinates[stem] @ self.split.U
+            eta[self.a1], eta[self.u1] = self.split.rate(coordinates[stem])[:2]
             rows = self._constant(eta, x, u)
         elif name in displacements:
             rows = self._displacement_output(name, *displacements[name])
         elif mounts.get(stem) == what:
-            rows = self._force(stem)
+            rows, sizes = self._force(stem)
         elif stem in branches and what == "velocity":
             rows = self._constant(*self._velocity(branches[stem].nodes, branches[stem].roads))
         else:
@@ -304,13 +339,14 @@ class _Equations:
             known += [f"{mount}_{w}" for mount, w in mounts.items()]
             raise LinearSystemError(f"There is no output named {name!r} (there are: {', '.join(known)}).")
         self.rows.append(rows)
+        self.row_sizes.append(sizes if mounts.get(stem) == what else _absolute(rows))
         self.outputs.append(name)
 
-    def _constant(self, *rows: Matrix) -> tuple[Matrix, Matrix, Matrix]:
+    def _constant(self, *rows: Matrix) -> Rows:
         eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size))]) for row in rows)
         return eta, x, u
 
-    def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> tuple[Matrix, Matrix, Matrix]:
+    def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> Rows:
         weights = self.displacement(nodes, roads)
         if weights is not None:
             return self._constant(*self._elongation(weights), np.zeros(self.m))
@@ -320,15 +356,16 @@ class _Equations:
         column[0, -1] = 1.0
         return eta, np.hstack([x, column]), u
 
-    def _force(self, mount: str) -> tuple[Matrix, Matrix, Matrix]:
-        eta, x, u = np.zeros((self.k, self.e)), np.zeros((self.k, self.n)), np.zeros((self.k, self.m))
+    def _force(self, mount: str) -> tuple[Rows, Rows]:
+        """The force of a mounted network, and the size of its terms."""
+        total, size = self._constant(*self._blank()), self._constant(*self._blank())
         for i in self.graph.mounts[mount].carriers:
             branch = self.graph.branches[i]
-            on_eta, on_x, on_u = self._elongation_rate(branch)
-            eta += self._by_value(branch.element, on_eta)
-            x += self._by_value(branch.element, on_x)
-            u += self._by_value(branch.element, on_u)
-        return eta, x, u
+            for stack, sizes, row in zip(total, size, self._elongation_rate(branch), strict=True):
+                term = self._by_value(branch.element, row)
+                stack += term
+                sizes += np.abs(term)
+        return total, size
 
     def finish(self, order: list[str]) -> Descriptor:
         """All arrays, with integrators behind the other states and inputs in the order asked for."""
@@ -339,26 +376,37 @@ class _Equations:
         X_x[self.g, self.a], X_eta[self.g, self.y], X_u[self.g, : len(self.road_names)] = c.rates
         for i, (_, eta, x, u) in enumerate(self.extra, start=self.n):
             X_eta[i], X_x[i, : self.n], X_u[i] = eta, x, u
-        Y_x = np.zeros((self.k, len(self.rows), n))
-        for i, (_, x, _) in enumerate(self.rows):
-            Y_x[:, i, : x.shape[1]] = x
         columns = [self.inputs.index(name) for name in order]
+        later = np.zeros((self.k, self.e, q))
+        Y, Y_sizes = self._output_stacks(self.rows, columns), self._output_stacks(self.row_sizes, columns)
+        S_size, R_size, F_size = self.sizes
         return Descriptor(
             S=self.S,
-            R=np.concatenate([self.R, np.zeros((self.k, self.e, q))], axis=2),
+            R=np.concatenate([self.R, later], axis=2),
             F=self.F[:, :, columns],
             X_eta=X_eta,
             X_x=X_x,
             X_u=X_u[:, columns],
-            Y_eta=np.array([eta for eta, _, _ in self.rows]).reshape(-1, self.k, self.e).swapaxes(0, 1).copy(),
-            Y_x=Y_x,
-            Y_u=np.array([u for _, _, u in self.rows]).reshape(-1, self.k, self.m).swapaxes(0, 1)[:, :, columns],
+            Y_eta=Y[0],
+            Y_x=Y[1],
+            Y_u=Y[2],
             states=self._state_names(),
             inputs=tuple(order),
             outputs=tuple(self.outputs),
             variables=self.variables,
             notes=self.graph.notes,
+            sizes=(S_size, np.concatenate([R_size, later], axis=2), F_size[:, :, columns], *Y_sizes),
+            mechanism=self.mechanism,
+            graph=self.graph,
         )
+
+    def _output_stacks(self, rows: list[Rows], columns: list[int]) -> list[Matrix]:
+        """Rows of the outputs, some of which were added before the last state, as stacks over eta, x and u."""
+        stacks = [np.zeros((self.k, len(rows), width)) for width in (self.e, self.n + len(self.extra), self.m)]
+        for i, over in enumerate(rows):
+            for stack, row in zip(stacks, over, strict=True):
+                stack[:, i, : row.shape[1]] = row
+        return [*stacks[:2], stacks[2][:, :, columns]]
 
     def _state_names(self) -> tuple[str, ...]:
         velocities = [f"{self.graph.nodes[int(np.argmax(column))]}_velocity" for column in self.split.R.T]
@@ -368,3 +416,8 @@ class _Equations:
             elongations.append("_".join(labels) + ("_elongation" if len(labels) == 1 else "_mean_elongation"))
         names = [*velocities, *elongations, *(name for name, *_ in self.extra)]
         return tuple(n if names.count(n) == 1 else f"{n}{names[: i + 1].count(n)}" for i, n in enumerate(names))
+
+
+def _absolute(rows: Rows) -> Rows:
+    eta, x, u = rows
+    return np.abs(eta), np.abs(x), np.abs(u)

@@ -2,15 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError
+from inerter.systems.polynomials import TransferFunctions
 
 Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """What a mechanism's matrices `A`, `B`, `C`, `D` were rounded from.
+
+    `functions` gives the transfer functions from named inputs to named outputs without rounding; `errors` bound what
+    rounding has done to each entry of the matrices.
+    """
+
+    functions: Callable[[Sequence[str], Sequence[str]], TransferFunctions]
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix]
+    errors: tuple[Matrix, Matrix, Matrix, Matrix]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    def selected(self, matrices: tuple[Matrix, ...], rows: Sequence[int], columns: Sequence[int]) -> list[Matrix]:
+        """Those of (A, B, C, D) that belong to some outputs and inputs."""
+        A, B, C, D = matrices
+        return [A, B[:, columns], C[rows], D[np.ix_(rows, columns)]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +55,7 @@ class LinearSystem:
     delays: Matrix = field(default_factory=lambda: np.zeros(0))
     sources: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()  # what was left out on the way here, for a reader
+    origin: Origin | None = None  # of matrices that come from a mechanism
 
     def __post_init__(self) -> None:
         for name in "ABCD":
@@ -69,6 +91,19 @@ class LinearSystem:
     def order(self) -> int:
         """Number of states."""
         return int(self.A.shape[0])
+
+    @property
+    def errors(self) -> tuple[Matrix, Matrix, Matrix, Matrix] | None:
+        """What rounding has done to A, B, C and D at most; None for matrices that are given, or were changed by hand."""
+        known = self.origin
+        if known is None or not (set(self.inputs) <= set(known.inputs) and set(self.outputs) <= set(known.outputs)):
+            return None
+        rows, columns = [known.outputs.index(o) for o in self.outputs], [known.inputs.index(i) for i in self.inputs]
+        here = (self.A, self.B, self.C, self.D)
+        if not all(map(np.array_equal, here, known.selected(known.matrices, rows, columns))):
+            return None
+        A, B, C, D = known.selected(known.errors, rows, columns)
+        return A, B, C, D
 
     def select(
         self, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
@@ -114,15 +149,28 @@ def with_high_pass(system: LinearSystem, omega: float) -> LinearSystem:
     """
     if not omega > 0.0 or not np.isfinite(omega):
         raise LinearSystemError(f"A high-pass filter needs a corner above 0 rad/s, got {omega!r}.")
-    n, p, m = system.order, len(system.outputs), len(system.inputs)
-    A = np.block([[system.A, np.zeros((n, p))], [system.C, -omega * np.eye(p)]])
-    return replace(
-        system,
-        A=A,
-        B=np.vstack([system.B, system.D.reshape(p, m)]),
-        C=np.hstack([system.C, -omega * np.eye(p)]),
-        states=(*system.states, *(f"{name}_low_pass" for name in system.outputs)),
-    )
+    p = len(system.outputs)
+    A, B, C, D = system.A, system.B, system.C, system.D
+    matrices = _filtered((A, B, C, D), omega * np.eye(p))
+    origin, errors = system.origin, system.errors
+    if origin is not None and errors is not None:
+        functions, inputs, outputs = origin.functions, system.inputs, system.outputs
+        origin = Origin(
+            lambda chosen, wanted: functions(chosen, wanted).filtered(omega),
+            matrices,
+            _filtered(errors, np.zeros((p, p))),
+            inputs,
+            outputs,
+        )
+    A, B, C, D = matrices
+    states = (*system.states, *(f"{name}_low_pass" for name in system.outputs))
+    return replace(system, A=A, B=B, C=C, D=D, states=states, origin=origin)
+
+
+def _filtered(matrices: tuple[Matrix, ...], corner: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    A, B, C, D = matrices
+    none = np.zeros((A.shape[0], corner.shape[0]))
+    return np.block([[A, none], [C, -corner]]), np.vstack([B, D]), np.hstack([C, -corner]), D
 
 
 def check_names(what: str, names: object) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ decided by arithmetic alone. Shared roots are rare, and a prime modulus shows ne
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import gcd as common
@@ -225,3 +226,17 @@ def _shifted(p: Polynomial) -> Polynomial:
 def _changes(p: Polynomial) -> int:
     signs = [c > 0 for c in p if c]
     return sum(a != b for a, b in pairwise(signs))
+
+
+@dataclass(frozen=True)
+class TransferFunctions:
+    """G(s) = numerators[output][input] / denominator, with whole coefficients."""
+
+    denominator: Polynomial
+    numerators: tuple[tuple[Polynomial, ...], ...]
+
+    def filtered(self, corner: float) -> TransferFunctions:
+        """Every output filtered by s/(s + corner)."""
+        top, bottom = corner.as_integer_ratio()
+        numerators = tuple(tuple(multiply([0, bottom], n) for n in row) for row in self.numerators)
+        return TransferFunctions(multiply(self.denominator, [top, bottom]), numerators)

@@ -17,26 +17,12 @@ from typing import Any
 from inerter.networks.elements import Damper, Free, Inerter, Spring
 from inerter.systems.graph import Graph
 from inerter.systems.outputs import Output, outputs
-from inerter.systems.polynomials import Polynomial, interpolated, multiply, scaled
+from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
 from inerter.vehicle.mechanism import Mechanism
 
 _ORDER = {Spring: 0, Damper: 1, Inerter: 2}  # power of s in the dynamic stiffness
 Row = dict[int, int]
 Load = tuple[int | None, Row]  # the number of a road, if the input is one, and the force on each node, if it is one
-
-
-@dataclass(frozen=True)
-class TransferFunctions:
-    """G(s) = numerators[output][input] / denominator, with whole coefficients."""
-
-    denominator: Polynomial
-    numerators: tuple[tuple[Polynomial, ...], ...]
-
-    def filtered(self, corner: float) -> TransferFunctions:
-        """Every output filtered by s/(s + corner)."""
-        top, bottom = corner.as_integer_ratio()
-        numerators = tuple(tuple(multiply([0, bottom], n) for n in row) for row in self.numerators)
-        return TransferFunctions(multiply(self.denominator, [top, bottom]), numerators)
 
 
 def transfer_functions(
@@ -83,9 +69,7 @@ class _Nodal:
         self.roads = [road.name for road in mechanism.roads]
         ports = {force.name: force.port for force in mechanism.forces}
         names = [coordinate.name for coordinate in mechanism.coordinates]
-        forces = {
-            name: {names.index(at): lever for at, lever in port.items() if lever} for name, port in ports.items()
-        }
+        forces = {name: {names.index(at): lever for at, lever in port.items() if lever} for name, port in ports.items()}
         forces |= {
             f"{branch.label}_force": {i: -float(lever) for i, lever in enumerate(branch.nodes) if lever}
             for branch in graph.branches
@@ -156,12 +140,16 @@ class _Nodal:
         """With the powers of two taken out, and 1/s where a road is given by its velocity."""
         both = self.value_bits + self.lever_bits
         shifts = [
-            (both if road is None else 0) - (both if row.forces else self.lever_bits) for row in rows for road, _ in loads
+            (both if road is None else 0) - (both if row.forces else self.lever_bits)
+            for row in rows
+            for road, _ in loads
         ]
         low = min(shifts, default=0)
         velocities = any(road is not None for road, _ in loads)
         whole = [scaled(n, 1 << (shift - low)) for n, shift in zip(numerators, shifts, strict=True)]
-        whole = [[0, *n] if velocities and road is None else n for n, (road, _) in zip(whole, loads * len(rows), strict=True)]
+        whole = [
+            [0, *n] if velocities and road is None else n for n, (road, _) in zip(whole, loads * len(rows), strict=True)
+        ]
         bottom = scaled([0, *denominator] if velocities else denominator, 1 << max(-low, 0))
         if low > 0:
             whole = [scaled(n, 1 << low) for n in whole]

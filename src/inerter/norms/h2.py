@@ -18,6 +18,7 @@ from inerter.systems.linear import LinearSystem, check_system
 Matrix = NDArray[np.float64]
 _LOST = Status(StatusKind.INACCURATE, "some motions are so much slower than others that rounding hides their damping")
 _EPS = float(np.finfo(float).eps)
+_SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
 ACCURATE = 1e-9  # relative error of a mean square up to which double precision is believed
 
 
@@ -169,12 +170,14 @@ def _solved(
     P[d] = solve.refined(W[d] + cross + cross.T)
     half = A.astype(np.longdouble) @ P.astype(np.longdouble)
     rest = np.asarray(half + half.T + W.astype(np.longdouble), dtype=float)
+    noise = np.diag(W)
+    terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + noise
     rest[np.ix_(w, w)] = 8.0 * _EPS * walks
     squares, size = np.einsum("ij,jk,ik->i", C, P, C), np.einsum("ij,jk,ik->i", np.abs(C), np.abs(P), np.abs(C))
     with np.errstate(divide="ignore"):
         weights = np.where(size > 0.0, 1.0 / squares, 0.0)
-    if not np.all(weights >= 0.0):
-        raise np.linalg.LinAlgError("a variance is negative")
+    if not np.all(weights >= 0.0) or np.any((noise > 0.0) & (np.abs(np.diag(rest)) > _SOLVED * terms)):
+        raise np.linalg.LinAlgError("the covariance does not solve its equation")
     goal = (C.T * weights) @ C
     Q[d] = solve.adjoint(goal[d])
     Q[dw] = solve.once(-(goal[dw] + Q[d] @ follow), adjoint=True)
@@ -199,9 +202,8 @@ class _Lyapunov:
 
     def _solve(self, W: Matrix, adjoint: bool) -> Matrix:
         kinds = ("T", "N") if adjoint else ("N", "T")
-        Y, scale, _ = scipy.linalg.lapack.dtrsyl(
-            self.T, self.T, -(self.Z.T @ W @ self.Z), trana=kinds[0], tranb=kinds[1]
-        )
+        right = -(self.Z.T @ W @ self.Z)
+        Y, scale, _ = scipy.linalg.lapack.dtrsyl(self.T, self.T, right, trana=kinds[0], tranb=kinds[1])
         P = self.Z @ (Y / scale) @ self.Z.T
         return np.asarray(0.5 * (P + P.T), dtype=float)
 

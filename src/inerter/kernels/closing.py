@@ -13,6 +13,8 @@ from inerter.kernels import part
 from inerter.kernels.linalg import copy, factor, solve, solve_transposed
 
 Array = Any
+_EPS = 2.2e-16
+_TERMS = 4  # roundings, in eps, of an entry of S and R: of its terms and their sum
 
 
 @part()
@@ -39,6 +41,72 @@ def even_out(S: Array, T: Array, size: Array) -> None:
                 S[i, j] /= largest
             for j in range(T.shape[1]):
                 T[i, j] /= largest
+
+
+@part()
+def errors_space(descriptor: Array) -> Any:
+    """Room for `errors_in`."""
+    S, R, F, _, _, _, _, Y_x, _ = descriptor
+    e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
+    sizes = np.empty((e, e)), np.empty((e, n + m)), np.empty((o, e)), np.empty((o, n))
+    return np.empty((n, n)), np.empty((n, m)), np.empty((o, n)), sizes, np.empty((e, e)), np.empty((e, n + m))
+
+
+@part()
+def errors_in(room: Array, p: Array, descriptor: Array, sizes: Array, space: Array) -> None:
+    """Fill `room` with bounds of the rounding errors of the A, B and C that `close_in` has filled `space` with.
+
+    `sizes` are stacks like S, R, F, Y_eta and Y_x of the descriptor, with the sizes of all terms in place of the terms.
+    """
+    _, _, _, X_eta, X_x, X_u, _, _, _ = descriptor
+    E_A, E_B, E_C, (S, RF, Y_size, Y_x), inverse, unsure = room
+    _, _, _, _, T, (LU, pivots, size), Y, column = space
+    e, n, m, o = S.shape[0], E_A.shape[0], E_B.shape[1], E_C.shape[0]
+    contract(p, sizes[0], S)
+    contract(p, sizes[1], RF[:, :n])
+    contract(p, sizes[2], RF[:, n:])
+    contract(p, sizes[3], Y_size)
+    contract(p, sizes[4], Y_x)
+    rounding = (_TERMS + e) * _EPS
+    for k in range(e):
+        for i in range(e):
+            column[i] = 0.0
+        column[k] = 1.0
+        solve(LU, pivots, column)
+        for i in range(e):
+            inverse[i, k] = rounding * abs(column[i]) / size[k]
+    for k in range(e):
+        for j in range(n + m):
+            for i in range(e):
+                RF[k, j] += S[k, i] * abs(T[i, j])
+    for k in range(e):
+        for j in range(n + m):
+            unsure[k, j] = _EPS * abs(T[k, j])
+        for i in range(e):
+            x = inverse[k, i]
+            if x != 0.0:
+                for j in range(n + m):
+                    unsure[k, j] += x * RF[i, j]
+    for i in range(n):
+        for j in range(n):
+            E_A[i, j] = _EPS * abs(X_x[i, j])
+        for j in range(m):
+            E_B[i, j] = _EPS * abs(X_u[i, j])
+        for k in range(e):
+            x = abs(X_eta[i, k])
+            if x != 0.0:
+                for j in range(n):
+                    E_A[i, j] += x * unsure[k, j]
+                for j in range(m):
+                    E_B[i, j] += x * unsure[k, n + j]
+    for i in range(o):
+        for j in range(n):
+            E_C[i, j] = _TERMS * _EPS * Y_x[i, j]
+        for k in range(e):
+            y, more = abs(Y[i, k]), rounding * Y_size[i, k]
+            if more != 0.0:
+                for j in range(n):
+                    E_C[i, j] += y * unsure[k, j] + more * abs(T[k, j])
 
 
 @part()

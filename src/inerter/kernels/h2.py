@@ -12,11 +12,13 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels import compiled, part
-from inerter.kernels.closing import close_in, closing_space, pull_back
+from inerter.kernels.closing import close_in, closing_space, errors_in, errors_space, pull_back
 from inerter.kernels.linalg import copy, exponential, factor, matmul, solve, solve_transposed
 
 Array = Any
-_LARGEST_ERROR = 1e-9  # relative change of a squared norm by one step of refinement, which tells its rounding error
+_LARGEST_ERROR = 1e-9  # relative, of the squared norms together
+_SOLVED = 1e-3  # share of the noise that enters a state that the solution may leave over
+_EPS = 2.2e-16
 
 
 @part()
@@ -83,29 +85,69 @@ def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
 
 
 @part()
-def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, direct: float, out: Array) -> None:
-    """Fill `out` with exp(A time) u, or its Pade approximant where poles are given."""
+def propagated(
+    A: Array, E_A: Array, time: float, u: Array, unsure: Array, pade: Array, out: Array, error: Array
+) -> None:
+    """Fill `out` with exp(A time) u, or its Pade approximant where `pade` has poles, and `error` with a bound of its
+    error, from those of A, which is balanced, and of u.
+
+    A change dA changes exp(A time) by the integral of exp(A (time - t)) dA exp(A t), taken at five places; the
+    squarings of the exponential add n roundings each, of which the first ones are many.
+    """
+    poles, residues, direct = pade
     n = A.shape[0]
     if poles.size == 0:
-        E, _ = exponential(A * time, A, False)
+        quarter, _, squarings = exponential(A * (0.25 * time), A, False)
+        powers = np.empty((5, n, n))
         for i in range(n):
-            out[i] = 0.0
             for j in range(n):
-                out[i] += E[i, j] * u[j]
+                powers[4, i, j] = 1.0 if i == j else 0.0
+        for k in range(3, -1, -1):
+            matmul(quarter, powers[k + 1], powers[k])
+        rounding, change = _EPS * (n * 2.0 ** (squarings + 2) + 15.0), np.empty(n)
+        for i in range(n):
+            error[i] = 0.0
+            for j in range(n):
+                error[i] += abs(powers[0, i, j]) * unsure[j]
+        for step in range(5):
+            for i in range(n):
+                out[i] = 0.0
+                for j in range(n):
+                    out[i] += powers[4 - step, i, j] * u[j]
+            for i in range(n):
+                change[i] = rounding * abs(out[i])
+                for j in range(n):
+                    change[i] += time * E_A[i, j] * abs(out[j])
+            for i in range(n):
+                for j in range(n):
+                    error[i] += 0.5 * abs(powers[step, i, j]) * change[j]
         return
     for i in range(n):
-        out[i] = direct * u[i]
+        out[i], error[i] = direct * u[i], abs(direct) * unsure[i]
     M, pivots, z = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
+    size, change = np.empty((n, n)), np.empty(n)
     for k in range(poles.size):
         for i in range(n):
             for j in range(n):
                 M[i, j] = A[i, j] * time
             M[i, i] += poles[k]
+            for j in range(n):
+                size[i, j] = time * E_A[i, j] + 4.0 * n * _EPS * abs(M[i, j])
             z[i] = u[i]
         factor(M, pivots)
         solve(M, pivots, z)
         for i in range(n):
             out[i] -= (residues[k] * z[i]).real
+            change[i] = unsure[i]
+            for j in range(n):
+                change[i] += size[i, j] * abs(z[j])
+        for j in range(n):
+            for i in range(n):
+                z[i] = 0.0
+            z[j] = 1.0
+            solve(M, pivots, z)
+            for i in range(n):
+                error[i] += abs(residues[k]) * abs(z[i]) * change[j]
 
 
 @part()
@@ -119,7 +161,7 @@ def propagated_adjoint(
         for i in range(n):
             for j in range(n):
                 N[i, j] = time * bar[i] * u[j]
-        E, L = exponential(A.T.copy() * time, N, True)
+        E, L, _ = exponential(A.T.copy() * time, N, True)
         for i in range(n):
             for j in range(n):
                 G_A[i, j] += L[i, j]
@@ -193,61 +235,106 @@ def norms_space(descriptor: Array, corner: float) -> Any:
     order = n + o if corner > 0.0 else n
     return (
         closing_space(descriptor),
+        errors_space(descriptor),
         lyapunov_space(order),
-        np.zeros((m, order)),
-        np.empty((order, order)),
-        np.empty((order, order)),
-        np.empty((order, order)),
+        np.zeros((2, m, order)),
+        np.empty((4, order, order)),
         np.empty((o, order)),
     )
 
 
 @part()
-def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, result: Array) -> bool:
-    """Fill `result` with the norm of each output; False if that did not go well. See `norms` for the arguments."""
-    closing, lyapunov, met, W, P, correction, CP = space
+def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arrivals: Array) -> None:
+    """Fill `met` with what each arrival meets of those before it, and with bounds of its error."""
     gaps, poles, residues, direct = arrivals
+    _, _, _, scale, _, scaled = lyapunov
+    n, m = B.shape
+    if m == 1:
+        return
+    E_scaled, u, unsure = np.empty((n, n)), np.empty(n), np.empty(n)
+    for i in range(n):
+        for j in range(n):
+            E_scaled[i, j] = E_A[i, j] * scale[j] / scale[i]
+    for c in range(1, m):
+        for i in range(n):
+            u[i] = (met[0, c - 1, i] + B[i, c - 1]) / scale[i]
+            unsure[i] = (met[1, c - 1, i] + E_B[i, c - 1]) / scale[i] + _EPS * abs(u[i])
+        propagated(scaled, E_scaled, gaps[c - 1], u, unsure, (poles, residues, direct), met[0, c], met[1, c])
+        for i in range(n):
+            met[0, c, i] *= scale[i]
+            met[1, c, i] *= scale[i]
+
+
+@part()
+def norms_in(
+    space: Array, p: Array, descriptor: Array, sizes: Array, arrivals: Array, corner: float, result: Array
+) -> bool:
+    """Fill `result` with the norm of each output; False where it may be off by more than `_LARGEST_ERROR` allows.
+
+    With Q of A' Q + Q A + C' C = 0 a change of A changes a square by 2 tr(Q dA P), and one of W by tr(Q dW): so count
+    what rounding has done to A, W and C, and what the solution leaves of its equation, for all outputs together.
+    """
+    closing, errors, lyapunov, met, (W, P, Q, E), CP = space
     if not close_in(closing, p, descriptor):
         return False
+    errors_in(errors, p, descriptor, sizes, closing)
     A, B, C = closing[0], closing[1], closing[2]
+    E_A, E_B, E_C = errors[0], errors[1], errors[2]
     if corner > 0.0:
+        none = np.zeros(closing[3].shape)
         A, B, C = high_passed(A, B, C, closing[3], corner)
+        E_A, E_B, E_C = high_passed(E_A, E_B, E_C, none, corner)
+        for i in range(errors[2].shape[0]):
+            E_A[errors[0].shape[0] + i, errors[0].shape[0] + i] = 0.0
+            E_C[i, errors[0].shape[0] + i] = 0.0
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
     if not lyapunov_factors(A, lyapunov):
         return False
-    for c in range(1, m):
-        u = np.empty(n)
-        for i in range(n):
-            u[i] = met[c - 1, i] + B[i, c - 1]
-        propagated(A, gaps[c - 1], u, poles, residues, direct, met[c])
+    excite(E_A, B, E_B, lyapunov, met, arrivals)
     for i in range(n):
         for j in range(n):
             W[i, j] = 0.0
             for c in range(m):
-                W[i, j] += B[i, c] * B[j, c] + met[c, i] * B[j, c] + B[i, c] * met[c, j]
+                W[i, j] += B[i, c] * B[j, c] + met[0, c, i] * B[j, c] + B[i, c] * met[0, c, j]
     solve_symmetric(lyapunov, W, False, P)
-    for i in range(n):  # the equation's residual, in the place of W
-        for j in range(i, n):
-            total = W[i, j]
-            for k in range(n):
-                total += A[i, k] * P[k, j] + P[i, k] * A[j, k]
-            W[i, j] = total
-            W[j, i] = total
-    solve_symmetric(lyapunov, W, False, correction)
+    for i in range(n):
+        for j in range(n):
+            Q[i, j] = 0.0
+    error = 0.0
     for k in range(o):
-        total, error = 0.0, 0.0
+        total = 0.0
         for i in range(n):
             CP[k, i] = 0.0
-            row = 0.0
             for j in range(n):
                 CP[k, i] += P[i, j] * C[k, j]
-                row += correction[i, j] * C[k, j]
             total += CP[k, i] * C[k, i]
-            error += row * C[k, i]
-        if not abs(error) <= _LARGEST_ERROR * total:
+        if not total > 0.0:
             return False
-        result[k] = np.sqrt(total + error)
-    return True
+        result[k] = np.sqrt(total)
+        for i in range(n):
+            size = 0.0
+            for j in range(n):
+                size += abs(P[i, j]) * abs(C[k, j])
+                Q[i, j] += C[k, i] * C[k, j] / total
+            error += size * (2.0 * E_C[k, i] + n * _EPS * abs(C[k, i])) / total
+    for i in range(n):
+        for j in range(n):
+            E[i, j] = E_A[i, j] + (n + 3) * _EPS * abs(A[i, j])
+    left = W  # what the solution leaves of its equation, or bounds of that: W itself is needed no more
+    solve_symmetric(lyapunov, Q, True, Q)
+    for i in range(n):
+        for j in range(n):
+            total, size = left[i, j], _EPS * abs(left[i, j])
+            for k in range(n):
+                total += A[i, k] * P[k, j] + P[i, k] * A[j, k]
+                size += 2.0 * E[i, k] * abs(P[k, j])
+            for c in range(m):
+                size += abs(B[i, c]) * (2.0 * E_B[j, c] + 2.0 * _EPS * abs(B[j, c]) + 2.0 * met[1, c, j])
+                size += 2.0 * abs(met[0, c, i]) * (E_B[j, c] + _EPS * abs(B[j, c]))
+            error += abs(Q[i, j]) * (abs(total) + size)
+            if i == j and left[i, i] > 0.0 and not abs(total) <= _SOLVED * left[i, i]:
+                return False
+    return error <= _LARGEST_ERROR
 
 
 @part()
@@ -255,7 +342,7 @@ def gradient_in(
     space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array, result: Array
 ) -> Array:
     """Gradient over p of the weighted sum of the norms that `norms_in` has filled `result` with."""
-    closing, lyapunov, met, CC, P, Q, CP = space
+    closing, _, lyapunov, met, (CC, P, Q, _), CP = space
     A0, B0, C0, D0, T, factors, _, _ = closing
     gaps, poles, residues, direct = arrivals
     o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
@@ -284,12 +371,12 @@ def gradient_in(
             here, before = 0.0, 0.0
             for j in range(n):
                 here += Q[i, j] * B[j, c]
-                before += Q[i, j] * met[c, j]
+                before += Q[i, j] * met[0, c, j]
             G_B[i, c] += 2.0 * (here + before) + carry[i]
             bar[i] = 2.0 * here + carry[i]
         if c > 0:
             for i in range(n):
-                u[i] = met[c - 1, i] + B[i, c - 1]
+                u[i] = met[0, c - 1, i] + B[i, c - 1]
             propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A, carry)
     if corner > 0.0:  # the filter's states repeat C and D in its A and B
         for i in range(o):
@@ -301,8 +388,8 @@ def gradient_in(
 
 
 @compiled
-def norms(points: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array) -> Any:
-    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each went well.
+def norms(points: Array, descriptor: Array, sizes: Array, arrivals: Array, corner: float, weights: Array) -> Any:
+    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each is right.
 
     The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights.
     `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the next, and the Pade
@@ -313,7 +400,7 @@ def norms(points: Array, descriptor: Array, arrivals: Array, corner: float, weig
     result, good = np.full((count, descriptor[7].shape[1]), np.nan), np.empty(count, np.bool_)
     gradients = np.full((count if weights.size > 0 else 0, points.shape[1]), np.nan)
     for i in range(count):
-        good[i] = norms_in(space, points[i], descriptor, arrivals, corner, result[i])
+        good[i] = norms_in(space, points[i], descriptor, sizes, arrivals, corner, result[i])
         if good[i] and weights.size > 0:
             gradient = gradient_in(space, points[i], descriptor, arrivals, corner, weights, result[i])
             for j in range(gradient.size):

@@ -123,7 +123,7 @@ def merge(first: Array, second: Array) -> Array:
 
 @part()
 def exponential(X: Array, N: Array, with_derivative: bool) -> Any:
-    """exp(X), and its derivative in the direction N, by a Taylor series of a scaled X and repeated squaring."""
+    """exp(X) by a Taylor series of a scaled X and repeated squaring, its derivative in the direction N, how often."""
     n = X.shape[0]
     norm = 0.0
     for i in range(n):
@@ -162,4 +162,4 @@ def exponential(X: Array, N: Array, with_derivative: bool) -> Any:
                     L[i, j] = work[i, j] + dwork[i, j]
         matmul(E, E, work)
         copy(work, E)
-    return E, L
+    return E, L, squarings

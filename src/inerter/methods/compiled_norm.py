@@ -42,6 +42,11 @@ class CompiledQuestion:
         return tuple(np.ascontiguousarray(getattr(self.problem.descriptor, name), dtype=float) for name in names)
 
     @cached_property
+    def sizes(self) -> tuple[Any, ...]:
+        """The sizes of the terms of S, R, F, Y_eta and Y_x."""
+        return tuple(np.ascontiguousarray(stack) for stack in self.problem.descriptor.sizes[:5])
+
+    @cached_property
     def arrivals(self) -> tuple[Array, NDArray[np.complex128], NDArray[np.complex128], float]:
         """Times between arrivals of the road, and the Pade approximant (no poles where the delay is exact)."""
         order = self.problem.pade_order
@@ -117,7 +122,7 @@ class CompiledQuestion:
     def _compiled_norms(self, points: Array) -> Array:
         if not self.serves:
             return np.full((points.shape[0], len(self.problem.descriptor.outputs)), np.nan)
-        norms, _, good = h2_kernels.norms(points, self.descriptor, self.arrivals, self.corner, np.empty(0))
+        norms, _, good = h2_kernels.norms(points, self.descriptor, self.sizes, self.arrivals, self.corner, np.empty(0))
         norms[~good] = np.nan
         return np.asarray(norms)
 
@@ -125,7 +130,9 @@ class CompiledQuestion:
         """An index of r.m.s. values and its gradient; by differences where compiled code does not serve."""
         if self.serves:
             weights = self.problem.weights
-            norms, gradients, good = h2_kernels.norms(point[None], self.descriptor, self.arrivals, self.corner, weights)
+            norms, gradients, good = h2_kernels.norms(
+                point[None], self.descriptor, self.sizes, self.arrivals, self.corner, weights
+            )
             if good[0]:
                 return float(norms[0] @ weights), gradients[0]
         return self._exact(point).value, self._difference(point)

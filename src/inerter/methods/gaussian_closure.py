@@ -300,7 +300,10 @@ def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozense
 def _part(problem: LinearProblem, which: slice) -> LinearProblem:
     """The problem with some of its outputs."""
     d = problem.descriptor
-    descriptor = replace(d, Y_eta=d.Y_eta[:, which], Y_x=d.Y_x[:, which], Y_u=d.Y_u[:, which], outputs=d.outputs[which])
+    sizes = (*d.sizes[:3], *(stack[:, which] for stack in d.sizes[3:]))
+    descriptor = replace(
+        d, Y_eta=d.Y_eta[:, which], Y_x=d.Y_x[:, which], Y_u=d.Y_u[:, which], outputs=d.outputs[which], sizes=sizes
+    )
     question = replace(problem.question, outputs=problem.question.outputs[which])
     return replace(problem, question=question, descriptor=descriptor)
 

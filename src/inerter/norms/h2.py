@@ -13,13 +13,15 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade, propagate
 from inerter.norms.exact import h2_exactly
 from inerter.norms.stability import balance, split
-from inerter.systems.linear import LinearSystem, check_system
+from inerter.systems.linear import Fine, LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
 _LOST = Status(StatusKind.INACCURATE, "some motions are so much slower than others that rounding hides their damping")
 _EPS = float(np.finfo(float).eps)
 _SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
-ACCURATE = 1e-9  # relative error of a mean square up to which double precision is believed
+_LONG = float(np.finfo(np.longdouble).eps)
+_SMALL = 1e-6  # relative size of the terms of a correction at first order up to which the rest is below 1e-9
+ACCURATE = 1e-9  # relative error of a mean square up to which it is believed
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +61,11 @@ def h2(system: LinearSystem, pade_order: int | None = None) -> H2:
     check_system(system)
     if pade_order is not None:
         pade(pade_order)  # refuses an order that there is not, even where nothing is late
-    errors = system.errors
-    if errors is None:
+    fine = system.fine
+    if fine is None:
         return _of_matrices(system, pade_order)
-    if not (np.any(system.D) or np.any(errors[3])):
-        squares = _squares(system, errors, pade_order)
+    if not (np.any(system.D) or np.any(fine.errors[3])):
+        squares = _squares(system, fine, pade_order)
         if squares is not None:
             return H2(np.sqrt(squares), OK)
     return H2(*h2_exactly(system, pade_order))
@@ -79,7 +81,8 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
     A, B, C = (system.A, system.B, system.C) if drifts else (part.A, part.B, part.C)
     seen = seen & (not drifts)
     given = LinearSystem(A, B, C, system.D, delays=system.delays, sources=system.sources)
-    squares = _squares(given, tuple(np.zeros_like(M) for M in (A, B, C)), pade_order)
+    matrices = A, B, C, system.D
+    squares = _squares(given, Fine(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
     if np.any(seen):
         status = parts.status
     elif np.any(direct):
@@ -120,107 +123,108 @@ def _drift_covariance(system: LinearSystem, B: Matrix) -> Matrix:
     return result
 
 
-def _squares(system: LinearSystem, errors: tuple[Matrix, ...], pade_order: int | None) -> Matrix | None:
-    """The squared norm of each output; None where its relative error may exceed `ACCURATE`.
+def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> Matrix | None:
+    """The squared norm of each output; None where it may be off by more than `ACCURATE`.
 
     The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
     of each delayed arrival with the state that its earlier arrivals have left: exp(A dt) Bi Bj' and its transpose.
-    With the solution Q of A' Q + Q A + C' C = 0 a change of A changes the square by 2 tr(Q dA P), and one of W by
-    tr(Q dW): so count what is left of the first equation, and what rounding has done to A, W and C.
+    With the solution Q of A' Q + Q A + C' C = 0 for one output, what P leaves of the first equation changes the square
+    by tr(Q rest). With the matrices before they were rounded that corrects all rounding at first order, and is
+    believed while it is small. What rounding has done to those matrices themselves counts as an error.
     """
     A, scale = balance(system.A)
-    B, C = system.B / scale[:, None], system.C * scale
-    EA, EB, EC = errors[0] / scale[:, None] * scale, errors[1] / scale[:, None], errors[2] * scale
+    row = scale[:, None]
+    fine_A, fine_B, fine_C = fine.matrices[0] / row * scale, fine.matrices[1] / row, fine.matrices[2] * scale
+    EA, EB, EC = fine.errors[0] / row * scale, fine.errors[1] / row, fine.errors[2] * scale
     drift = _drifting(EA + np.abs(A))
     if np.any(drift):
         walks = system.B[drift]
         if np.any(np.abs(_per_source(system, walks)) > 4.0 * _EPS * _per_source(system, np.abs(walks))):
             return None
-    W, EW = _excitation(system, (A, EA), (B, EB), pade_order)
+    moved = EA + np.abs(fine_A - A).astype(float)
+    W, EW = _excitation(system, (A, moved), (fine_B, EB), pade_order)
     try:
-        P, Q, rest, weights = _solved(system, A, B, C, W, drift)
+        solver = _Lyapunov(A[np.ix_(~drift, ~drift)])
+        P, rest, solved = _covariance(system, solver, A, (fine_A, fine_B, W), drift)
+        size, C = np.abs(P), fine_C.astype(float)
+        seen = np.abs(C) @ size
+        squares = np.einsum("ij,jk,ik->i", fine_C, P, fine_C)
+        goals = np.where(np.sum(seen * np.abs(C), axis=1) > 0.0, squares, np.inf).astype(float)
+        if not np.all(goals > 0.0):
+            return None
+        Q = [_adjoint(solver, A, row, drift) / goal for row, goal in zip(C, goals, strict=True)]
     except np.linalg.LinAlgError:
         return None
-    squares = np.einsum("ij,jk,ik->i", C, P, C)
-    size = np.abs(P)
-    seen = np.abs(C) @ size
-    relative = float(np.sum(np.abs(Q) * (np.abs(rest) + 2.0 * EA @ size + EW)))
-    relative += float(np.sum(weights[:, None] * (2.0 * seen * EC + len(A) * _EPS * seen * np.abs(C))))
-    return squares if relative <= ACCURATE else None
+    change = np.array([np.sum(one * rest) for one in Q])
+    together = np.abs(Q).sum(axis=0)
+    unsure = np.sum(together * (2.0 * EA @ size + EW + len(A) * _LONG * (2.0 * np.abs(A) @ size)))
+    unsure += np.sum(seen * (2.0 * EC + len(A) * _LONG * np.abs(C)) / goals[:, None])
+    if not (unsure <= ACCURATE and np.sum(together * np.abs(rest)) <= _SMALL and solved):
+        return None
+    return np.asarray(squares * (1.0 + change), dtype=float)
 
 
-def _solved(
-    system: LinearSystem, A: Matrix, B: Matrix, C: Matrix, W: Matrix, drift: NDArray[np.bool_]
-) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """P, Q for outputs with weights that make each square one, what is left of the equation for P, and the weights.
+def _covariance(
+    system: LinearSystem, solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix, Matrix], drift: NDArray[np.bool_]
+) -> tuple[Matrix, Matrix, bool]:
+    """P, what it leaves of its equation, and whether that is little of the noise that enters each state.
 
     Of states that only drift the covariance is known, and the others follow them.
     """
-    decays, n = np.flatnonzero(~drift), len(A)
-    d, w = np.ix_(decays, decays), np.flatnonzero(drift)
-    dw = np.ix_(decays, w)
-    follow = A[dw]
-    P, Q = np.zeros((n, n)), np.zeros((n, n))
-    walks = _drift_covariance(system, B[w])
+    fine_A, fine_B, W = fine
+    P = np.zeros_like(A)
+    decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
+    d, dw = np.ix_(decays, decays), np.ix_(decays, w)
+    follow, noise = A[dw], W.astype(float)
+    walks = _drift_covariance(system, fine_B[w]).astype(float)
     P[np.ix_(w, w)] = walks
-    solve = _Lyapunov(A[d])
-    P[dw] = solve.once(-(follow @ walks + W[dw]))
+    P[dw] = _once(A[d], -(follow @ walks + noise[dw]))
     P[np.ix_(w, decays)] = P[dw].T
-    cross = follow @ P[dw].T
-    P[d] = solve.refined(W[d] + cross + cross.T)
-    half = A.astype(np.longdouble) @ P.astype(np.longdouble)
-    rest = np.asarray(half + half.T + W.astype(np.longdouble), dtype=float)
-    noise = np.diag(W)
-    terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + noise
+    P[d] = solver.refined(fine_A[d], W[d] + _both(follow @ P[dw].T))
+    rest = np.asarray(_both(fine_A @ P) + W, dtype=float)
     rest[np.ix_(w, w)] = 8.0 * _EPS * walks
-    squares, size = np.einsum("ij,jk,ik->i", C, P, C), np.einsum("ij,jk,ik->i", np.abs(C), np.abs(P), np.abs(C))
-    with np.errstate(divide="ignore"):
-        weights = np.where(size > 0.0, 1.0 / squares, 0.0)
-    if not np.all(weights >= 0.0) or np.any((noise > 0.0) & (np.abs(np.diag(rest)) > _SOLVED * terms)):
-        raise np.linalg.LinAlgError("the covariance does not solve its equation")
-    goal = (C.T * weights) @ C
-    Q[d] = solve.adjoint(goal[d])
-    Q[dw] = solve.once(-(goal[dw] + Q[d] @ follow), adjoint=True)
+    enters = np.diag(noise)
+    terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + enters
+    return P, rest, not np.any((enters > 0.0) & (np.abs(np.diag(rest)) > _SOLVED * terms))
+
+
+def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drift: NDArray[np.bool_]) -> Matrix:
+    """Q of `_squares` for one output."""
+    Q, goal = np.zeros_like(A), np.outer(row, row)
+    decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
+    d, dw = np.ix_(decays, decays), np.ix_(decays, w)
+    Q[d] = solver.solve(goal[d], adjoint=True)
+    Q[dw] = _once(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
     Q[np.ix_(w, decays)] = Q[dw].T
-    cross = Q[dw].T @ follow
-    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + cross + cross.T
-    return P, Q, rest, weights
+    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _both(Q[dw].T @ A[dw])
+    return Q
+
+
+def _once(A: Matrix, right: Matrix) -> Matrix:
+    return np.asarray(np.linalg.solve(A, right)) if right.size else right
 
 
 class _Lyapunov:
     """Equations with one matrix A, by one Schur form (Bartels and Stewart, 1972)."""
 
     def __init__(self, A: Matrix) -> None:
-        self.A = A
         self.T, self.Z = scipy.linalg.schur(A, output="real") if len(A) else (A, A)
 
-    def once(self, right: Matrix, adjoint: bool = False) -> Matrix:
-        """X with A X = right, or A' X = right."""
-        if not right.size:
-            return right
-        return np.asarray(np.linalg.solve(self.A.T if adjoint else self.A, right))
-
-    def _solve(self, W: Matrix, adjoint: bool) -> Matrix:
+    def solve(self, W: Matrix, adjoint: bool = False) -> Matrix:
+        """P with A P + P A' + W = 0, or of the equation with A' in place of A."""
+        if not W.size:
+            return W
         kinds = ("T", "N") if adjoint else ("N", "T")
         right = -(self.Z.T @ W @ self.Z)
         Y, scale, _ = scipy.linalg.lapack.dtrsyl(self.T, self.T, right, trana=kinds[0], tranb=kinds[1])
         P = self.Z @ (Y / scale) @ self.Z.T
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
-    def adjoint(self, W: Matrix) -> Matrix:
-        """Q with A' Q + Q A + W = 0."""
-        return self._solve(W, adjoint=True) if W.size else W
-
-    def refined(self, W: Matrix) -> Matrix:
-        """P with A P + P A' + W = 0, corrected for its residuals in extended precision while that helps."""
-        if not W.size:
-            return W
-        P = self._solve(W, adjoint=False)
-        long_A, long_W = self.A.astype(np.longdouble), W.astype(np.longdouble)
-        before = np.inf
+    def refined(self, A: Matrix, W: Matrix) -> Matrix:
+        """P for an A and a W in extended precision, corrected for its residuals while that helps."""
+        P, before = self.solve(W.astype(float)), np.inf
         for _ in range(20):
-            half = long_A @ P.astype(np.longdouble)
-            step = self._solve(np.asarray(half + half.T + long_W, dtype=float), adjoint=False)
+            step = self.solve(np.asarray(_both(A @ P) + W, dtype=float))
             change = float(np.linalg.norm(step))
             if not change < 0.5 * before:
                 break
@@ -233,15 +237,15 @@ def _excitation(
 ) -> tuple[Matrix, Matrix]:
     """W of `_squares`, the noise that enters and what of it the state has met before, and its error."""
     (A, EA), (B, EB) = dynamics, entries
-    size = np.abs(B)
-    W, EW = B @ B.T, _both(EB @ size.T) + 2.0 * _EPS * size @ size.T
+    size = np.abs(B).astype(float)
+    W, EW = B @ B.T, _both(EB @ size.T) + 2.0 * _LONG * size @ size.T
     for source in dict.fromkeys(system.sources):
         arrivals = [j for j in np.argsort(system.delays, kind="stable") if system.sources[j] == source]
         met = unsure = np.zeros((B.shape[0], 0))
         for before, now in pairwise(arrivals):
             met, unsure = np.hstack([met, B[:, [before]]]), np.hstack([unsure, EB[:, [before]]])
             time = float(system.delays[now] - system.delays[before])
-            met, unsure = propagate(A, EA, met, unsure, time, pade_order)
+            met, unsure = propagate(A, EA, met.astype(float), unsure + _EPS * np.abs(met), time, pade_order)
             W = W + _both(np.outer(met.sum(axis=1), B[:, now]))
             EW = EW + _both(np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(met).sum(axis=1), EB[:, now]))
     return W, EW

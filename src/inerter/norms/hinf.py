@@ -52,16 +52,14 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
     """
     check_system(system)
     merged = _merge(system)
-    errors = system.errors
-    if errors is not None:
-        found = peaks_exactly(system)
-        if found is not None:
-            peaks, status = found
-            value = peaks[0][1] if peaks else 0.0
-            return HInfinity(value, tuple(Peak(*peak) for peak in peaks), status)
+    exact = system.fine is not None
+    found = peaks_exactly(system) if exact else None
+    if found is not None:
+        known, status = found
+        return HInfinity(known[0][1] if known else 0.0, tuple(Peak(*peak) for peak in known), status)
     parts = split(merged)
     if parts.poles.size and np.any(parts.visible()):
-        if errors is not None:  # the transfer functions have no such poles
+        if exact:  # the transfer functions have no such poles
             return HInfinity(np.nan, (), _hidden(float(np.abs(parts.poles.imag).max())))
         frequencies = np.unique(np.abs(parts.poles.imag))
         return HInfinity(np.inf, tuple(Peak(float(w), np.inf) for w in frequencies), parts.status)

@@ -18,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,15 +27,15 @@ from inerter.errors import DesignError, LinearSystemError, MechanismError
 from inerter.networks.elements import Damper, Element, Free, Inerter, Spring
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph, linear_graph
-from inerter.systems.linear import LinearSystem, Origin
+from inerter.systems.linear import Fine, LinearSystem, Origin
 from inerter.systems.polynomials import TransferFunctions
 from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
 Rows = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
-_ROUNDING = float(np.finfo(float).eps)
-_TERMS = 4  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
+_ROUNDING = float(np.finfo(np.longdouble).eps)
+_TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,21 +71,23 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
         raise DesignError(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
-    p = np.array([1.0, *(values[name] for name in descriptor.variables)])
+    p = np.array([1.0, *(values[name] for name in descriptor.variables)], dtype=np.longdouble)
     d = descriptor
-    S, R, F, Y_eta, Y_x, Y_u = (np.tensordot(p, stack, 1) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
-    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (np.tensordot(p, stack, 1) for stack in d.sizes)
-    T, unsure = _solved(S, np.hstack([R, F]), S_size, np.hstack([R_size, F_size]))
+    S, R, F, Y_eta, Y_x, Y_u = (_summed(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (_summed(p.astype(float), stack) for stack in d.sizes)
+    T, T_error = _solved(S, np.hstack([R, F]), S_size, np.hstack([R_size, F_size]))
     X, Y = np.hstack([d.X_x, d.X_u]), np.hstack([Y_x, Y_u])
     top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
-    top_size = np.abs(X) + np.abs(d.X_eta) @ unsure
-    bottom_size = np.hstack([Y_x_size, Y_u_size]) + np.abs(Y_eta) @ unsure + Y_eta_size @ np.abs(T)
+    size = np.abs(T).astype(float)
+    top_error = np.abs(d.X_eta) @ (T_error + _ROUNDING * size) + _ROUNDING * np.abs(X)
+    bottom_error = np.abs(Y_eta).astype(float) @ T_error
+    bottom_error += _TERMS * _ROUNDING * (np.hstack([Y_x_size, Y_u_size]) + Y_eta_size @ size)
     n = R.shape[1]
-    A, B, C, D = top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]
-    rounding = _TERMS * _ROUNDING
-    top_size, bottom_size = rounding * top_size, rounding * bottom_size
-    errors = top_size[:, :n], top_size[:, n:], bottom_size[:, :n], bottom_size[:, n:]
-    B, D = np.where(np.abs(B) > errors[1], B, 0.0), np.where(np.abs(D) > errors[3], D, 0.0)
+    for matrix, error in ((top[:, n:], top_error[:, n:]), (bottom[:, n:], bottom_error[:, n:])):
+        matrix[np.abs(matrix) <= error] = 0.0  # white noise that reaches an output by rounding only would be infinite
+    errors = top_error[:, :n], top_error[:, n:], bottom_error[:, :n], bottom_error[:, n:]
+    fine = Fine((top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]), errors)
+    A, B, C, D = (matrix.astype(float) for matrix in fine.matrices)
     return LinearSystem(
         A=A,
         B=B,
@@ -94,24 +97,28 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
         inputs=d.inputs,
         outputs=d.outputs,
         notes=d.notes,
-        origin=Origin(partial(_functions, d, dict(values)), (A, B, C, D), errors, d.inputs, d.outputs),
+        origin=Origin(partial(_functions, d, dict(values)), (A, B, C, D), fine, d.inputs, d.outputs),
     )
 
 
+def _summed(p: NDArray[Any], stack: Matrix) -> Matrix:
+    return stack[0] if p.size == 1 else np.tensordot(p, stack, 1)
+
+
 def _solved(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
-    """S^-1 right, and its error over that of one rounding: infinite where S is singular to rounding."""
+    """S^-1 right in extended precision, and its error: infinite where S is singular to rounding."""
     size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
     scaled, right = S / size, right / size
     try:
-        inverse = np.linalg.inv(scaled)
+        inverse = np.linalg.inv(scaled.astype(float))
     except np.linalg.LinAlgError:
-        return np.zeros_like(right), np.full_like(right, np.inf)
-    solved = inverse @ right
-    for _ in range(2):
-        rest = right.astype(np.longdouble) - scaled.astype(np.longdouble) @ solved.astype(np.longdouble)
-        solved = solved + inverse @ np.asarray(rest, dtype=float)
-    unsure = np.abs(inverse) @ ((S_size @ np.abs(solved) + right_size) / size)
-    return solved, np.abs(solved) + unsure
+        return np.zeros_like(right), np.full(right.shape, np.inf)
+    solved = step = (inverse @ right.astype(float)).astype(np.longdouble)
+    for _ in range(3):
+        step = inverse @ (right - scaled @ solved).astype(float)
+        solved = solved + step
+    terms = (S_size @ np.abs(solved).astype(float) + right_size) / size.astype(float)
+    return solved, np.abs(step) + _TERMS * _ROUNDING * (np.abs(inverse) @ terms)
 
 
 def _functions(
@@ -202,8 +209,8 @@ class _Equations:
         self.a, self.g = slice(0, self.na), slice(self.na, self.na + self.ng)
         k, n, e, m = 1 + len(self.variables), self.na + self.ng, int(edges[-1]), len(self.inputs)
         self.k, self.n, self.e, self.m = k, n, e, m
-        self.S, self.R, self.F = np.zeros((k, e, e)), np.zeros((k, e, n)), np.zeros((k, e, m))
-        self.sizes = tuple(np.zeros_like(stack) for stack in (self.S, self.R, self.F))
+        self.balance = np.zeros((k, e, e + n + m), np.longdouble)  # S, -R and -F beside each other
+        self.size = np.zeros_like(self.balance)
         self.rows: list[Rows] = []
         self.row_sizes: list[Rows] = []
         self.extra: list[tuple[str, Matrix, Matrix, Matrix]] = []  # integrators: name, rows on eta, x, u
@@ -220,12 +227,12 @@ class _Equations:
 
     def _by_value(self, element: Element, array: Matrix) -> Matrix:
         """`array` times the element's value, as a stack over the design variables."""
-        stack = np.zeros((self.k, *array.shape))
+        stack = np.zeros((self.k, *array.shape), np.longdouble)
         value = element.value
         if isinstance(value, Free):
             stack[1 + list(self.variables).index(str(value.name))] = array
         else:
-            stack[0] = value * array
+            stack[0] = value * array.astype(np.longdouble)
         return stack
 
     def add_balance(self) -> None:
@@ -245,16 +252,21 @@ class _Equations:
                 eta, x, _ = self._velocity(branch.nodes)
                 self._add(branch.element, momentum, (eta, x, np.zeros(self.m)))
         for j, row in enumerate(self.force_rows):
-            column = len(self.road_names) + j
-            self.F[0, self.a1, column], _, self.F[0, self.y, column], self.F[0, self.z, column] = c.rate(row)
-        self.sizes[2][0] += np.abs(self.F[0]) * (np.arange(self.m) >= len(self.road_names))
+            force = np.zeros(self.e)
+            force[self.a1], _, force[self.y], force[self.z] = c.rate(row)
+            column = self.e + self.n + len(self.road_names) + j
+            self.balance[0, :, column], self.size[0, :, column] = -force, np.abs(force)
 
     def _add(self, element: Element, on: Matrix, to: Rows) -> None:
-        """Add an element that acts on rows of the balance to S, -R and -F, and its size to theirs."""
-        for stack, size, row, sign in zip((self.S, self.R, self.F), self.sizes, to, (1.0, -1.0, -1.0), strict=True):
-            term = self._by_value(element, np.outer(on, row))
-            stack += sign * term
-            size += np.abs(term)
+        """Add an element that acts so on the rows of the balance."""
+        value, place, on = element.value, 0, on.astype(np.longdouble)
+        if isinstance(value, Free):
+            place = 1 + list(self.variables).index(str(value.name))
+        else:
+            on = value * on
+        term = np.multiply.outer(on, np.concatenate(to))
+        self.balance[place] += term
+        self.size[place] += np.abs(term)
 
     def _blank(self) -> Rows:
         return np.zeros(self.e), np.zeros(self.n), np.zeros(self.m)
@@ -343,7 +355,7 @@ class _Equations:
         self.outputs.append(name)
 
     def _constant(self, *rows: Matrix) -> Rows:
-        eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size))]) for row in rows)
+        eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size), row.dtype)]) for row in rows)
         return eta, x, u
 
     def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> Rows:
@@ -358,13 +370,13 @@ class _Equations:
 
     def _force(self, mount: str) -> tuple[Rows, Rows]:
         """The force of a mounted network, and the size of its terms."""
-        total, size = self._constant(*self._blank()), self._constant(*self._blank())
+        size, total = self._constant(*self._blank()), self._constant(*map(_fine, self._blank()))
         for i in self.graph.mounts[mount].carriers:
             branch = self.graph.branches[i]
             for stack, sizes, row in zip(total, size, self._elongation_rate(branch), strict=True):
                 term = self._by_value(branch.element, row)
                 stack += term
-                sizes += np.abs(term)
+                sizes += np.abs(term).astype(float)
         return total, size
 
     def finish(self, order: list[str]) -> Descriptor:
@@ -377,13 +389,12 @@ class _Equations:
         for i, (_, eta, x, u) in enumerate(self.extra, start=self.n):
             X_eta[i], X_x[i, : self.n], X_u[i] = eta, x, u
         columns = [self.inputs.index(name) for name in order]
-        later = np.zeros((self.k, self.e, q))
-        Y, Y_sizes = self._output_stacks(self.rows, columns), self._output_stacks(self.row_sizes, columns)
-        S_size, R_size, F_size = self.sizes
+        Y, Y_sizes = (self._output_stacks(rows, columns) for rows in (self.rows, self.row_sizes))
+        S, R, F = self._balance_stacks(self.balance, columns)
         return Descriptor(
-            S=self.S,
-            R=np.concatenate([self.R, later], axis=2),
-            F=self.F[:, :, columns],
+            S=S,
+            R=-R,
+            F=-F,
             X_eta=X_eta,
             X_x=X_x,
             X_u=X_u[:, columns],
@@ -395,14 +406,21 @@ class _Equations:
             outputs=tuple(self.outputs),
             variables=self.variables,
             notes=self.graph.notes,
-            sizes=(S_size, np.concatenate([R_size, later], axis=2), F_size[:, :, columns], *Y_sizes),
+            sizes=tuple(size.astype(float) for size in (*self._balance_stacks(self.size, columns), *Y_sizes)),
             mechanism=self.mechanism,
             graph=self.graph,
         )
 
+    def _balance_stacks(self, balance: Matrix, columns: list[int]) -> list[Matrix]:
+        """Stacks over eta, over all states, and over the inputs in the order asked for."""
+        S, R, F = np.split(balance, [self.e, self.e + self.n], axis=2)
+        later = np.zeros((self.k, self.e, len(self.extra)), balance.dtype)
+        return [S, np.concatenate([R, later], axis=2), F[:, :, columns]]
+
     def _output_stacks(self, rows: list[Rows], columns: list[int]) -> list[Matrix]:
         """Rows of the outputs, some of which were added before the last state, as stacks over eta, x and u."""
-        stacks = [np.zeros((self.k, len(rows), width)) for width in (self.e, self.n + len(self.extra), self.m)]
+        widths = (self.e, self.n + len(self.extra), self.m)
+        stacks = [np.zeros((self.k, len(rows), width), np.longdouble) for width in widths]
         for i, over in enumerate(rows):
             for stack, row in zip(stacks, over, strict=True):
                 stack[:, i, : row.shape[1]] = row
@@ -421,3 +439,7 @@ class _Equations:
 def _absolute(rows: Rows) -> Rows:
     eta, x, u = rows
     return np.abs(eta), np.abs(x), np.abs(u)
+
+
+def _fine(array: Matrix) -> Matrix:
+    return array.astype(np.longdouble)

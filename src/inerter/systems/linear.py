@@ -15,23 +15,39 @@ Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Origin:
-    """What a mechanism's matrices `A`, `B`, `C`, `D` were rounded from.
+class Fine:
+    """A, B, C, D in extended precision, and bounds of what rounding has done to each of their entries."""
 
-    `functions` gives the transfer functions from named inputs to named outputs without rounding; `errors` bound what
-    rounding has done to each entry of the matrices.
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix]
+    errors: tuple[Matrix, Matrix, Matrix, Matrix]
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """What a mechanism's matrices A, B, C, D were rounded from.
+
+    `functions` gives the transfer functions from named inputs to named outputs without rounding.
     """
 
     functions: Callable[[Sequence[str], Sequence[str]], TransferFunctions]
-    matrices: tuple[Matrix, Matrix, Matrix, Matrix]
-    errors: tuple[Matrix, Matrix, Matrix, Matrix]
+    rounded: tuple[Matrix, Matrix, Matrix, Matrix]
+    fine: Fine
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
 
-    def selected(self, matrices: tuple[Matrix, ...], rows: Sequence[int], columns: Sequence[int]) -> list[Matrix]:
-        """Those of (A, B, C, D) that belong to some outputs and inputs."""
-        A, B, C, D = matrices
-        return [A, B[:, columns], C[rows], D[np.ix_(rows, columns)]]
+    def of(self, system: LinearSystem) -> Fine | None:
+        """The part that a system has of it; None if the system's matrices were changed by hand."""
+        if not (set(system.inputs) <= set(self.inputs) and set(system.outputs) <= set(self.outputs)):
+            return None
+        rows, columns = [self.outputs.index(o) for o in system.outputs], [self.inputs.index(i) for i in system.inputs]
+
+        def part(matrices: tuple[Matrix, ...]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+            A, B, C, D = matrices
+            return A, B[:, columns], C[rows], D[np.ix_(rows, columns)]
+
+        if not all(map(np.array_equal, (system.A, system.B, system.C, system.D), part(self.rounded))):
+            return None
+        return Fine(part(self.fine.matrices), part(self.fine.errors))
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,17 +109,9 @@ class LinearSystem:
         return int(self.A.shape[0])
 
     @property
-    def errors(self) -> tuple[Matrix, Matrix, Matrix, Matrix] | None:
-        """What rounding has done to A, B, C and D at most; None for matrices that are given, or were changed by hand."""
-        known = self.origin
-        if known is None or not (set(self.inputs) <= set(known.inputs) and set(self.outputs) <= set(known.outputs)):
-            return None
-        rows, columns = [known.outputs.index(o) for o in self.outputs], [known.inputs.index(i) for i in self.inputs]
-        here = (self.A, self.B, self.C, self.D)
-        if not all(map(np.array_equal, here, known.selected(known.matrices, rows, columns))):
-            return None
-        A, B, C, D = known.selected(known.errors, rows, columns)
-        return A, B, C, D
+    def fine(self) -> Fine | None:
+        """The matrices before they were rounded; None where they were given, or changed by hand."""
+        return None if self.origin is None else self.origin.of(self)
 
     def select(
         self, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
@@ -150,17 +158,17 @@ def with_high_pass(system: LinearSystem, omega: float) -> LinearSystem:
     if not omega > 0.0 or not np.isfinite(omega):
         raise LinearSystemError(f"A high-pass filter needs a corner above 0 rad/s, got {omega!r}.")
     p = len(system.outputs)
-    A, B, C, D = system.A, system.B, system.C, system.D
-    matrices = _filtered((A, B, C, D), omega * np.eye(p))
-    origin, errors = system.origin, system.errors
-    if origin is not None and errors is not None:
-        functions, inputs, outputs = origin.functions, system.inputs, system.outputs
+    matrices = _filtered((system.A, system.B, system.C, system.D), omega * np.eye(p))
+    origin, fine = system.origin, system.fine
+    if origin is not None and fine is not None:
+        functions = origin.functions
+        filtered = Fine(_filtered(fine.matrices, omega * np.eye(p)), _filtered(fine.errors, np.zeros((p, p))))
         origin = Origin(
             lambda chosen, wanted: functions(chosen, wanted).filtered(omega),
             matrices,
-            _filtered(errors, np.zeros((p, p))),
-            inputs,
-            outputs,
+            filtered,
+            system.inputs,
+            system.outputs,
         )
     A, B, C, D = matrices
     states = (*system.states, *(f"{name}_low_pass" for name in system.outputs))

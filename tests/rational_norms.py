@@ -100,7 +100,10 @@ class RationalMechanism:
 
     def _solution(self, row: dict, column: dict) -> flint.fmpq_poly:
         """row' adj(P) column."""
-        key = (tuple(sorted((k, str(v)) for k, v in row.items())), tuple(sorted((k, str(v)) for k, v in column.items())))
+        key = (
+            tuple(sorted((k, str(v)) for k, v in row.items())),
+            tuple(sorted((k, str(v)) for k, v in column.items())),
+        )
         if key not in self._known:
             self._known[key] = self._determinant(row, column) - self.denominator
         return self._known[key]

@@ -11,7 +11,7 @@ from inerter.kernels import part
 Array = Any  # compiled code is typed when it is compiled
 
 
-@part()
+@part(borrowing=True)
 def factor(A: Array, pivots: Array) -> bool:
     """LU factors of A in its place, with partial pivoting; False if A is singular. Rows should be of like size."""
     n = A.shape[0]
@@ -37,7 +37,7 @@ def factor(A: Array, pivots: Array) -> bool:
     return True
 
 
-@part()
+@part(borrowing=True)
 def solve(LU: Array, pivots: Array, b: Array) -> None:
     """Solve A x = b; b becomes x."""
     n = LU.shape[0]
@@ -57,7 +57,30 @@ def solve(LU: Array, pivots: Array, b: Array) -> None:
         b[i] = total / LU[i, i]
 
 
-@part()
+@part(borrowing=True)
+def solve_rows(LU: Array, pivots: Array, X: Array) -> None:
+    """Solve A Y = X for all columns at once; X becomes Y."""
+    n, m = X.shape
+    for k in range(n):
+        row = pivots[k]
+        if row != k:
+            for j in range(m):
+                X[k, j], X[row, j] = X[row, j], X[k, j]
+    for i in range(n):
+        for k in range(i):
+            if LU[i, k] != 0.0:
+                for j in range(m):
+                    X[i, j] -= LU[i, k] * X[k, j]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            if LU[i, k] != 0.0:
+                for j in range(m):
+                    X[i, j] -= LU[i, k] * X[k, j]
+        for j in range(m):
+            X[i, j] /= LU[i, i]
+
+
+@part(borrowing=True)
 def solve_transposed(LU: Array, pivots: Array, b: Array) -> None:
     """Solve A^T x = b (no conjugation); b becomes x."""
     n = LU.shape[0]
@@ -76,7 +99,7 @@ def solve_transposed(LU: Array, pivots: Array, b: Array) -> None:
             b[k], b[row] = b[row], b[k]
 
 
-@part()
+@part(borrowing=True)
 def matmul(A: Array, B: Array, out: Array) -> None:
     """Multiply: out = A B."""
     for i in range(A.shape[0]):
@@ -89,7 +112,7 @@ def matmul(A: Array, B: Array, out: Array) -> None:
                     out[i, j] += a * B[k, j]
 
 
-@part()
+@part(borrowing=True)
 def copy(source: Array, target: Array) -> None:
     """Copy a matrix: an assignment to a slice would compile for a second, for the sake of its error message."""
     for i in range(source.shape[0]):

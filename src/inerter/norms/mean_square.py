@@ -203,7 +203,7 @@ def _spread(p: Numbers) -> Numbers:
 
 
 def _bezout(e: Numbers, o: Numbers) -> tuple[Numbers, Numbers]:
-    """u and v with u e + v o = 1, by Euclid's algorithm."""
+    """U and v with u e + v o = 1, by Euclid's algorithm."""
     one, none = [Decimal(1)], [Decimal(0)]
     before, now = [e, one, none], [o, none, one]
     while len(now[0]) > 1:
@@ -226,7 +226,7 @@ def _divided(p: Numbers, q: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def _less(x: Numbers, factors: Numbers, y: Numbers) -> Numbers:
-    """x - factors y."""
+    """X - factors y."""
     product = [Decimal(0)] * (len(factors) + len(y) - 1)
     for i, a in enumerate(factors):
         for j, b in enumerate(y):

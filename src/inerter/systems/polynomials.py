@@ -77,7 +77,7 @@ def interpolated(values: Sequence[int]) -> Polynomial:
 
 
 def quotient(p: Polynomial, q: Polynomial) -> Polynomial:
-    """p / q up to a constant factor, where q divides p and both are primitive."""
+    """P / q up to a constant factor, where q divides p and both are primitive."""
     rest, result = list(p), [0] * (len(p) - len(q) + 1)
     for i in range(len(result) - 1, -1, -1):
         result[i] = rest[i + len(q) - 1] // q[-1]

@@ -32,7 +32,7 @@ def transposed(rows: Rows, columns: int) -> Rows:
 
 
 def product(left: Rows, right: Rows, columns: int) -> Rows:
-    """left @ right, where right has so many columns."""
+    """Left @ right, where right has so many columns."""
     zero = Fraction(0)
     result = []
     for row in left:

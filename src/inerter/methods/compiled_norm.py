@@ -78,7 +78,7 @@ class CompiledQuestion:
 
     @cached_property
     def serves(self) -> NDArray[np.bool_]:
-        """Which outputs compiled code may value: those that are finite at a design within the bounds, off its middle."""
+        """Which outputs compiled code may value: those that are finite at a design beside the middle of the bounds."""
         middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._variables.items()}
         special = np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1))
         if self.is_peak:

@@ -63,7 +63,8 @@ class RationalMechanism:
                 ends.append({self.size: flint.fmpq(1)})
                 self.size += 1
             ends.append(lower)
-            return [self._mount(p, a, b) for p, a, b in zip(network.parts, ends[:-1], ends[1:], strict=True)][0]
+            placed = [self._mount(p, a, b) for p, a, b in zip(network.parts, ends[:-1], ends[1:], strict=True)]
+            return placed[0]
         nodes: dict[int, flint.fmpq] = {}
         roads: dict[str, flint.fmpq] = {}
         for end, sign in ((upper, 1), (lower, -1)):

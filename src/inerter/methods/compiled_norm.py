@@ -29,6 +29,7 @@ from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _ASIDE = 0.0137  # relative distance from the middle of the bounds, another one for each value
+_ASTRIDE, _SAME_SLOPE = 1e-4, 1e-7  # relative distance at which a gradient is looked at, and what it may be off by
 _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
@@ -155,14 +156,24 @@ class CompiledQuestion:
         if np.all(self.serves):
             arguments = self.descriptor, self.twofold, self.arrivals, self.corner
             norms, gradients, good = h2_kernels.norms(point[None], *arguments, weights)
-            if good[0]:
-                return float(norms[0] @ weights), gradients[0]
+            value = float(norms[0] @ weights)
+            if good[0] and self._confirmed(point, value, gradients[0], arguments):
+                return value, gradients[0]
         steps = 1e-5 * point * np.eye(point.size)
         places = np.vstack([point[None], point + steps, point - steps])
         values = np.array([self._exact_norms(place) @ weights for place in places])
         with np.errstate(invalid="ignore"):  # infinite on both sides: no gradient
             slopes = (values[1 : 1 + point.size] - values[1 + point.size :]) / (2e-5 * point)
         return float(values[0]), slopes
+
+    def _confirmed(self, point: Array, value: float, gradient: Array, arguments: Any) -> bool:
+        """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
+        direction = np.cos(1.0 + np.arange(point.size))
+        ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
+        norms, _, good = h2_kernels.norms(ends, *arguments, np.empty(0))
+        ahead, behind = norms @ self.problem.weights
+        slope = (ahead - behind) / (2.0 * _ASTRIDE)
+        return bool(np.all(good)) and abs(slope - (gradient * point) @ direction) <= _SAME_SLOPE * value
 
     def active(self, point: Array) -> Array | None:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""

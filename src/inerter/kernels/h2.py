@@ -19,6 +19,7 @@ from inerter.kernels.twofold import add_multiple
 Array = Any
 _ACCURATE = 1e-9  # relative error of a squared norm up to which it is believed
 _SMALL = 1e-7  # relative size of the terms of a correction at first order up to which the rest is far below that
+_DAMPED = 1e-6  # relative correction of a variance from which on its motion may be damped by rounding
 _SOLVED = 1e-3  # share of the noise that enters a state that the solution may leave over
 _EPS = 2.2e-16
 
@@ -240,7 +241,7 @@ def norms_space(descriptor: Array, corner: float) -> Any:
         twofold_space(descriptor),
         lyapunov_space(order),
         np.zeros((2, m, order)),
-        np.empty((4, order, order)),
+        np.empty((5, order, order)),
         np.empty((o, order)),
     )
 
@@ -308,10 +309,11 @@ def norms_in(
 ) -> bool:
     """Fill `result` with the norm of each output; False where it may be off by more than `_ACCURATE`.
 
-    With the solution Q of A' Q + Q A + C' C = 0 for one output, what P leaves of A P + P A' + W = 0 changes the square
-    by tr(Q rest): that corrects all rounding at first order, and is believed while it is small.
+    What P leaves of A P + P A' + W = 0, A and B as they were before rounding, corrects all rounding at first order.
+    With the solution Q of A' Q + Q A + C' C = 0 for one output it changes the square by tr(Q rest), whose terms are
+    small where that can be believed.
     """
-    closing, lyapunov, met, (W, P, Q, rest), CP = space
+    closing, lyapunov, met, (W, P, Q, rest, lacks), CP = space
     if not close_twofold(closing, p, descriptor, twofold):
         return False
     A, B, C = closing[0][0], closing[0][1], closing[0][2]
@@ -323,7 +325,7 @@ def norms_in(
         return False
     if B.shape[1] > 1:
         excite(lost_A, B, lost_B, lyapunov, met, arrivals)
-    return judge((A, B, C), (lost_A, lost_B, lost_C), lyapunov, met, (W, P, Q, rest, CP), result)
+    return judge((A, B, C), (lost_A, lost_B, lost_C), lyapunov, met, (W, P, Q, rest, lacks, CP), result)
 
 
 @part(borrowing=True)
@@ -331,7 +333,7 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, met: Array, room: Array
     """Fill `result` once A, B and C, the factors and `met` are there. See `norms_in`."""
     A, B, C = matrices
     lost_A, lost_B, lost_C = lost
-    W, P, Q, rest, CP = room
+    W, P, Q, rest, lacks, CP = room
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
     for i in range(n):
         for j in range(n):
@@ -341,30 +343,40 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, met: Array, room: Array
     solve_symmetric(lyapunov, W, False, P)
     if not leave((lost_A, lost_B), A, B, met, W, P, rest):
         return False
+    solve_symmetric(lyapunov, rest, False, lacks)  # what P lacks
+    for i in range(n):
+        if not abs(lacks[i, i]) <= _DAMPED * P[i, i]:
+            return False
+        for j in range(n):
+            Q[i, j] = 0.0
+    terms, unsure = 0.0, 0.0
     for k in range(o):
-        total, change, size, unsure = 0.0, 0.0, 0.0, 0.0
+        total, change, size, rounding = 0.0, 0.0, 0.0, 0.0
         for i in range(n):
-            CP[k, i], row = 0.0, 0.0
+            CP[k, i], row, more = 0.0, 0.0, 0.0
             for j in range(n):
                 CP[k, i] += P[i, j] * C[k, j]
+                more += lacks[i, j] * C[k, j]
                 row += abs(P[i, j] * C[k, j])
-                Q[i, j] = C[k, i] * C[k, j]
             total += CP[k, i] * C[k, i]
-            change += 2.0 * CP[k, i] * lost_C[k, i]
+            change += more * C[k, i] + 2.0 * CP[k, i] * lost_C[k, i]
             size += 2.0 * abs(CP[k, i] * lost_C[k, i])
-            unsure += n * _EPS * row * abs(C[k, i])
-        solve_symmetric(lyapunov, Q, True, Q)
-        for i in range(n):
-            for j in range(n):
-                term = Q[i, j] * rest[i, j]
-                change += term
-                size += abs(term)
-                for c in range(1, m):
-                    unsure += 2.0 * abs(Q[i, j]) * (met[1, c, i] * abs(B[j, c]))
-        if not (total > 0.0 and size <= _SMALL * total and unsure <= _ACCURATE * total):
+            rounding += n * _EPS * row * abs(C[k, i])
+        if not total > 0.0:
             return False
         result[k] = np.sqrt(total + change)
-    return True
+        terms += size / total
+        unsure += rounding / total
+        for i in range(n):
+            for j in range(n):
+                Q[i, j] += C[k, i] * C[k, j] / total
+    solve_symmetric(lyapunov, Q, True, Q)
+    for i in range(n):
+        for j in range(n):
+            terms += abs(Q[i, j] * rest[i, j])
+            for c in range(1, m):
+                unsure += 2.0 * abs(Q[i, j]) * (met[1, c, i] * abs(B[j, c]))
+    return terms <= _SMALL and unsure <= _ACCURATE
 
 
 @part()
@@ -372,7 +384,7 @@ def gradient_in(
     space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array, result: Array
 ) -> Array:
     """Gradient over p of the weighted sum of the norms that `norms_in` has filled `result` with."""
-    (closing, _, _, _, _, _), lyapunov, met, (CC, P, Q, _), CP = space
+    (closing, _, _, _, _, _), lyapunov, met, (CC, P, Q, _, _), CP = space
     A0, B0, C0, D0, T, factors, _, _ = closing
     gaps, poles, residues, direct = arrivals
     o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]

@@ -19,6 +19,7 @@ Matrix = NDArray[np.float64]
 _LOST = Status(StatusKind.INACCURATE, "some motions are so much slower than others that rounding hides their damping")
 _EPS = float(np.finfo(float).eps)
 _SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
+_DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
 _LONG = float(np.finfo(np.longdouble).eps)
 _SMALL = 1e-6  # relative size of the terms of a correction at first order up to which the rest is below 1e-9
 ACCURATE = 1e-9  # relative error of a mean square up to which it is believed
@@ -221,11 +222,16 @@ class _Lyapunov:
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
     def refined(self, A: Matrix, W: Matrix) -> Matrix:
-        """P for an A and a W in extended precision, corrected for its residuals while that helps."""
+        """P for an A and a W in extended precision, corrected for its residuals while that helps.
+
+        Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.
+        """
         P, before = self.solve(W.astype(float)), np.inf
-        for _ in range(20):
+        for turn in range(20):
             step = self.solve(np.asarray(_both(A @ P) + W, dtype=float))
             change = float(np.linalg.norm(step))
+            if turn == 0 and np.any(np.abs(np.diag(step)) > _DAMPED * np.diag(P)):
+                raise np.linalg.LinAlgError("rounding damps a motion")
             if not change < 0.5 * before:
                 break
             P, before = P + step, change

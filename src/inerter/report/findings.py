@@ -166,10 +166,10 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
     (least, _), (largest, at) = found[names[0]]
     if largest < _NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {element}."
+    best = f"{names[0]}{_as_good(names)}, {largest:.1f} % better at {element} = {write(at, unit, np.nan)}"
     return (
-        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: "
-        f"{names[0]}{_as_good(names)}, {largest:.1f} % better at {element} = {write(at, unit, np.nan)}; its improvement over the sweep lies "
-        f"{_range(least, largest)}."
+        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {best}; its improvement over "
+        f"the sweep lies {_range(least, largest)}."
     )
 
 

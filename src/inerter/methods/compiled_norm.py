@@ -166,7 +166,7 @@ class CompiledQuestion:
             slopes = (values[1 : 1 + point.size] - values[1 + point.size :]) / (2e-5 * point)
         return float(values[0]), slopes
 
-    def _confirmed(self, point: Array, value: float, gradient: Array, arguments: Any) -> bool:
+    def _confirmed(self, point: Array, value: float, gradient: Array, arguments: tuple[Any, Any, Any, float]) -> bool:
         """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))

@@ -100,7 +100,8 @@ def balance(A: Matrix) -> tuple[Matrix, Matrix]:
     """A after a diagonal change of units by powers of two, and the units: A_new = A / scale[:, None] * scale."""
     if A.shape[0] == 0:
         return A, np.ones(0)
-    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    with np.errstate(invalid="ignore", over="ignore"):
+        balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     return np.asarray(balanced, dtype=float), np.asarray(scale, dtype=float)
 
 

@@ -79,8 +79,9 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
     X, Y = np.hstack([d.X_x, d.X_u]), np.hstack([Y_x, Y_u])
     top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
     size = np.abs(T).astype(float)
-    top_error = np.abs(d.X_eta) @ (T_error + _ROUNDING * size) + _ROUNDING * np.abs(X)
-    bottom_error = np.abs(Y_eta).astype(float) @ T_error
+    with np.errstate(invalid="ignore"):  # nothing times infinite: as unsure
+        top_error = np.abs(d.X_eta) @ (T_error + _ROUNDING * size) + _ROUNDING * np.abs(X)
+        bottom_error = np.abs(Y_eta).astype(float) @ T_error
     bottom_error += _TERMS * _ROUNDING * (np.hstack([Y_x_size, Y_u_size]) + Y_eta_size @ size)
     n = R.shape[1]
     for matrix, error in ((top[:, n:], top_error[:, n:]), (bottom[:, n:], bottom_error[:, n:])):

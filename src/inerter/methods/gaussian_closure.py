@@ -18,7 +18,7 @@ from inerter.errors import MechanismError, Status, StatusKind
 from inerter.indices.index import Question
 from inerter.methods.compiled_norm import CompiledQuestion
 from inerter.methods.equivalent import GAUSSIAN, POORLY, STIFFEST, Equivalent, equivalent, slipping_freely
-from inerter.methods.linear import Conventions, LinearProblem, linear_problem
+from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
 from inerter.systems.descriptor import close
 from inerter.vehicle.mechanism import Mechanism, Weighted
@@ -127,7 +127,7 @@ class Pattern:
     def single(self) -> tuple[CompiledQuestion, ...]:
         """The velocity across each friction by itself."""
         problem = self.velocities.problem
-        return tuple(CompiledQuestion(_part(problem, slice(i, i + 1))) for i in range(len(problem.question.outputs)))
+        return tuple(CompiledQuestion(problem.part(slice(i, i + 1))) for i in range(len(problem.question.outputs)))
 
     def rows(self, points: Array, damping: Array) -> Array:
         """Rows of values for the descriptors."""
@@ -338,13 +338,5 @@ def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozense
     wanted = tuple(Weighted(f"{name}_velocity") for name in parts.dampers)
     outputs = closure.question.outputs
     joint = linear_problem(parts.mechanism, replace(closure.question, outputs=(*outputs, *wanted)), closure.conventions)
-    index, velocities = _part(joint, slice(0, len(outputs))), _part(joint, slice(len(outputs), None))
+    index, velocities = joint.part(slice(0, len(outputs))), joint.part(slice(len(outputs), None))
     return Pattern(CompiledQuestion(index), CompiledQuestion(replace(velocities, corner=None)), parts)
-
-
-def _part(problem: LinearProblem, which: slice) -> LinearProblem:
-    """The problem with some of its outputs."""
-    d = problem.descriptor
-    descriptor = replace(d, Y_eta=d.Y_eta[:, which], Y_x=d.Y_x[:, which], Y_u=d.Y_u[:, which], outputs=d.outputs[which])
-    question = replace(problem.question, outputs=problem.question.outputs[which])
-    return replace(problem, question=question, descriptor=descriptor)

@@ -126,7 +126,7 @@ def evaluate_many(
     """Indices of many designs of one layout: an array (designs, indices).
 
     `values` gives for each free value of `vehicle` an array of one length (or one number for all designs); they
-    need not lie between its bounds. Where `evaluate` would call the value inaccurate, it is nan here.
+    need not lie between its bounds. Where `evaluate` would not say `ok`, the value is nan here.
 
     Raises `DesignError` if a free value is missing, unknown, not positive or not finite, or if lengths differ; and
     what `evaluate` raises.

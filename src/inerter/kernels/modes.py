@@ -35,6 +35,7 @@ from inerter.kernels.arrays import (
     OUTPUT,
     OUTPUTS,
     OWN_POSITION,
+    SEEN,
     SHARP,
     K,
     N,
@@ -257,6 +258,46 @@ def drop_rounding(A: Array, bound: Array) -> None:
                 A[i, j] = 0.0
 
 
+@part("void(float64[:,::1], float64[:,::1], int64)", apart=True)
+def after_entry(maps: Array, mended: Array, entry: int) -> None:
+    """Have all rows see the state as the conditions on entry leave it: drift off them then changes nothing."""
+    rows, n, conditions, width = maps.shape[0], mended.shape[0], mended.shape[1], maps.shape[1]
+    asked, bound = block(maps, entry, entry + conditions, 0, width), sizes_of(maps)
+    add(bound, 0, 0, product(product(block(bound, 0, rows, 0, n), sizes_of(mended)), sizes_of(asked)), 1.0)
+    for _ in range(2):  # what rounding of the first time leaves, the second removes
+        add(maps, 0, 0, product(product(block(maps, 0, rows, 0, n), mended), asked), 1.0)
+    drop_rounding(maps, bound)
+    for i in range(conditions):
+        for j in range(width):
+            maps[entry + i, j] = asked[i, j]
+
+
+@part("boolean(float64[:,::1], int64)", apart=True)
+def is_zero(rows: Array, i: int) -> bool:
+    """Whether a row is zero."""
+    zero = True
+    for j in range(rows.shape[1]):
+        zero = zero and rows[i, j] == 0.0
+    return zero
+
+
+@part("void(float64[:,::1], int64, int64, float64[:,::1])", apart=True)
+def unwatched(maps: Array, guard: int, n: int, limits: Array) -> None:
+    """Limits of the guards while the mode lasts, behind them those on entry: what is constant need not be watched."""
+    k, width = limits.shape[0] // 2, maps.shape[1]
+    guards, rates = block(maps, guard, guard + k, 0, n), block(maps, 0, n, 0, width)
+    change = product(guards, rates)
+    bound = product(sizes_of(guards), sizes_of(rates))
+    drop_rounding(change, bound)
+    for e in range(k):
+        limits[k + e, 0], limits[k + e, 1] = limits[e, 0], limits[e, 1]
+        moves = not is_zero(change, e)
+        for j in range(n, width - 1):
+            moves = moves or maps[guard + e, j] != 0.0
+        if not moves:
+            limits[e, 0], limits[e, 1] = -np.inf, np.inf
+
+
 @typed(
     "boolean(int64[::1], float64[:,::1], float64[:,::1], float64[:,::1], int64[:,::1], float64[::1], float64[:,::1], "
     "int64[::1], float64[:,::1], float64[:,::1], float64[:,::1])"
@@ -421,6 +462,13 @@ def build(
     add(reaction, na, nc, product(block(motion, 0, ng, na, nv), moved), -1.0)
     add(reaction, n, nc, product(locks_w, moved), -1.0)
     add(reaction, n, nc + nz, product(locks_w, Y), 1.0)
+    add(maps, sizes[SEEN], 0, unit(n), 1.0)
+    after_entry(maps, block(reaction, 0, n, 0, nc + nz), entry)
+    for e in range(k):
+        slips = elements[e, KIND] == FRICTION and state[e] != 0 and not still[e] and limit[e] > 0.0
+        if slips and is_zero(maps, guard + e):  # what cannot move sticks
+            limits[e, 0 if state[e] > 0 else 1] = state[e]
+    unwatched(maps, guard, n, limits)
     return True
 
 

@@ -79,7 +79,7 @@ def squares(system: PiecewiseSystem, way: Drive, seed: int, outputs: Sequence[st
         return found, integration.warning
     integration, steady = settle(system, inputs, state, energy=False)
     integration.advance(inputs.time.size - 1)
-    run = trajectory_of(integration, steady, "", state)
+    run = trajectory_of(integration, steady, "")
     if not integration.status.ok:
         return np.full(len(outputs), np.nan), integration.status
     count = run.time.size - 1

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from inerter.errors import DesignError
+import numpy as np
+
+from inerter.errors import DesignError, MechanismError
 from inerter.systems.descriptor import close, describe
 from inerter.systems.linear import LinearSystem, check_names
 from inerter.vehicle.cars import Vehicle, check_vehicle
@@ -30,4 +32,11 @@ def assemble(
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
     inputs = None if inputs is None else check_names("inputs", inputs)
     outputs = None if outputs is None else check_names("outputs", outputs)
-    return close(describe(mechanism, inputs, outputs), {})
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            return close(describe(mechanism, inputs, outputs), {})
+    except (FloatingPointError, np.linalg.LinAlgError):
+        raise MechanismError(
+            "The values of the mechanism are so far apart that numbers of 16 digits cannot hold its matrices. Leave out "
+            "what is so small, and join rigidly what is so stiff."
+        ) from None

@@ -49,9 +49,7 @@ class PiecewiseSystem:
     kinematics: Kinematics
     graph: Graph
     mechanics: Mechanics
-    nonlinear: tuple[
-        dict[int, float], ...
-    ]  # branches of friction or gaps that act as one, and their shares of its force
+    nonlinear: tuple[dict[int, float], ...]  # branches of friction or gaps that act as one; shares of its force
     outputs: dict[str, Output]
     rates: tuple[Matrix, Matrix, Matrix]  # of all branches, over a, w, z'
     elongations: tuple[Matrix, Matrix]  # of springs and gaps (zero for others), over g, z
@@ -177,8 +175,8 @@ def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
         size = 1.0 / np.sqrt(np.diag(M))
         if np.linalg.eigvalsh(M * size * size[:, None])[0] < 1.0 / _LOST:
             raise MechanismError(
-                f"Inertias from {inertia.min():g} to {inertia.max():g} kg move together, and numbers of 16 digits cannot "
-                f"hold both. Leave out what is so small, and join rigidly what is so heavy."
+                f"Inertias from {inertia.min():g} to {inertia.max():g} kg move together, and numbers of 16 digits "
+                "cannot hold both. Leave out what is so small, and join rigidly what is so heavy."
             )
 
 

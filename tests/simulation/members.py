@@ -151,7 +151,9 @@ def table(rng: np.random.Generator, size: float, hold: str) -> Signal:
     if rng.random() < 0.5:
         value[20:60] = value[20]
     value -= value[0]
-    return Signal.sampled(time, value, hold, speed=SPEED)
+    slope = np.gradient(value, time)  # without overshoot: a spline would ring on down to the size of rounding
+    slope[20:60][np.diff(value[20:61]) == 0.0] = 0.0
+    return Signal.sampled(time, value, hold, slope if hold == "cubic" else None, speed=SPEED)
 
 
 SIGNALS: dict[str, Callable[[np.random.Generator, float], Signal]] = {

@@ -204,8 +204,8 @@ def cross(now: Work, events: Array, begun: Array, branch_road: Array, gauss: Arr
         who: Any = np.int64(-1)
         for e in range(elements):
             if now.flags[TOUCH, e] < ORDERS:
-                ends = d == length - t
-                s = _crossing(now.maps[m, guard + e], now.limits[m, e], now.flags, e, n, nu, count, work, ends)
+                ends, slips = d == length - t, now.elements[e, KIND] == FRICTION and now.state[m, e] != 0
+                s = _crossing(now.maps[m, guard + e], now.limits[m, e], now.flags, e, n, nu, count, work, ends, slips)
                 if s < best:
                     best, who = s, e
         s = min(best, 1.0)
@@ -243,16 +243,16 @@ def _polynomial(state: Array, count: int, i: int, s: float) -> float:
 
 
 @part(
-    "float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1], boolean)",
+    "float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1], boolean, boolean)",
     borrowing=True,
 )
 def _crossing(
-    row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array, ends: bool
+    row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array, ends: bool, slips: bool
 ) -> float:
     """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
 
     CROSSED is then the limit, if it is crossed with a slope beyond all rounding, else 0. A limit that is just reached
-    where the segment `ends` is left to the next one: inputs may turn there.
+    where the segment `ends` is left to the next one: inputs may turn there. What `slips` and comes to lie still sticks.
     """
     if limits[0] == -np.inf and limits[1] == np.inf:
         return 2.0
@@ -269,6 +269,15 @@ def _crossing(
         swing += abs(total)
     swing -= abs(c[0])
     c[0] += row[n + nu]
+    if slips:
+        size = abs(row[n + nu])
+        for j in range(n):
+            size += abs(row[j] * work[X, j])
+        for j in range(nu):
+            size += abs(row[n + j] * work[U, j])
+        if abs(c[0]) + swing <= _ROUNDING * size:
+            flags[CROSSED, e] = 1
+            return 0.0
     best = 2.0
     for at in range(2):
         side, limit = 2 * at - 1, limits[at]

@@ -63,7 +63,8 @@ def steps(number: int) -> None:
     print(f"{len(STEPS)} steps: {dict(kinds)}")
     for kind, (in_time, in_state) in worst.items():
         print(f"  {kind}: events apart by up to {in_time:.1e} s, states by {in_state:.1e} of the largest")
-    print(f"  observed orders of {len(orders)}: {min(orders):.2f} to {max(orders):.2f}, median {np.median(orders):.2f}")
+    if orders:
+        print(f"  orders of {len(orders)}: {min(orders):.2f} to {max(orders):.2f}, median {np.median(orders):.2f}")
 
 
 def cuts(number: int, what: Callable[[int], float | None], allowed: float) -> None:

@@ -16,7 +16,7 @@ Array = Any
 DONE, PAUSED, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(9)
 ACCEPTED, STRUCK, STRANDED = -1, -2, -3
 SEGMENT, MODE, EVENTS, SPECIAL, JUMPED, SWITCHES = range(6)  # places in `place`
-WANTED, SETTLED, ACCOUNT, INPUTS, KNOWN, LEFT = range(6, 12)
+WANTED, SETTLED, ACCOUNT, INPUTS, KNOWN, LEFT, ENDED = range(6, 13)
 TRIAL, TOUCH, SIDE, CROSSED = range(4)  # rows of `flags`
 ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
 STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, then those of these sizes
@@ -111,7 +111,7 @@ def integrate(address: int, steps: Array, now: Work, record: Record, h: float, s
         while record.special[place[SPECIAL]] < k:
             place[SPECIAL] += 1
         m = place[MODE]
-        if place[ACCOUNT] == 0 and work[CLOCK, 0] == 0.0 and place[JUMPED] == 0:
+        if place[ACCOUNT] == 0 and work[CLOCK, 0] == 0.0 and place[JUMPED] == 0 and place[ENDED] == 0:
             place[SEGMENT] = march(
                 steps[m],
                 now.limits[m],
@@ -202,10 +202,19 @@ def cross(now: Work, events: Array, begun: Array, branch_road: Array, gauss: Arr
         count = series(now.maps[m], work[STATE], coefficients, n, nu, d, state)
         best = 2.0
         who: Any = np.int64(-1)
+        ends, ended = d == length - t, place[ENDED] != 0
+        place[ENDED] = 0
         for e in range(elements):
             if now.flags[TOUCH, e] < ORDERS:
-                ends, slips = d == length - t, now.elements[e, KIND] == FRICTION and now.state[m, e] != 0
-                s = _crossing(now.maps[m, guard + e], now.limits[m, e], now.flags, e, n, nu, count, work, ends, slips)
+                row = now.maps[m, guard + e]
+                slips = now.elements[e, KIND] == FRICTION and now.state[m, e] != 0 and now.limit[e] > 0.0
+                if slips and ended and _lies_still(row, work, n, nu, min(count, ORDERS), now.reach[m] / d):
+                    now.flags[CROSSED, e] = now.state[m, e]
+                    best, who = 0.0, e
+                    break
+                s = _crossing(row, now.limits[m, e], now.flags, e, n, nu, count, work, ends)
+                if slips and ends and _comes_to_zero(work[POLYNOMIAL], count):
+                    place[ENDED] = 1
                 if s < best:
                     best, who = s, e
         s = min(best, 1.0)
@@ -243,16 +252,16 @@ def _polynomial(state: Array, count: int, i: int, s: float) -> float:
 
 
 @part(
-    "float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1], boolean, boolean)",
+    "float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1], boolean)",
     borrowing=True,
 )
 def _crossing(
-    row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array, ends: bool, slips: bool
+    row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array, ends: bool
 ) -> float:
     """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
 
     CROSSED is then the limit, if it is crossed with a slope beyond all rounding, else 0. A limit that is just reached
-    where the segment `ends` is left to the next one: inputs may turn there. What `slips` and comes to lie still sticks.
+    where the segment `ends` is left to the next one: inputs may turn there.
     """
     if limits[0] == -np.inf and limits[1] == np.inf:
         return 2.0
@@ -269,15 +278,6 @@ def _crossing(
         swing += abs(total)
     swing -= abs(c[0])
     c[0] += row[n + nu]
-    if slips:
-        size = abs(row[n + nu])
-        for j in range(n):
-            size += abs(row[j] * work[X, j])
-        for j in range(nu):
-            size += abs(row[n + j] * work[U, j])
-        if abs(c[0]) + swing <= _ROUNDING * size:
-            flags[CROSSED, e] = 1
-            return 0.0
     best = 2.0
     for at in range(2):
         side, limit = 2 * at - 1, limits[at]
@@ -296,6 +296,41 @@ def _crossing(
             best = root
             flags[CROSSED, e] = side if slope_at(g, count - zeros, root) < -1e-6 * swing else 0
     return best
+
+
+@part("boolean(float64[::1], int64)", borrowing=True)
+def _comes_to_zero(c: Array, count: int) -> bool:
+    """Whether a polynomial is zero at 1, and not before."""
+    total, size = 0.0, 0.0
+    for k in range(count):
+        total += c[k]
+        size += abs(c[k])
+    return abs(total) <= _ROUNDING * size and abs(c[0]) > _MET * size
+
+
+@part("boolean(float64[::1], float64[:,::1], int64, int64, int64, float64)", borrowing=True)
+def _lies_still(row: Array, work: Array, n: int, nu: int, count: int, longer: float) -> bool:
+    """Whether a slip that has come to zero has ended for good: its velocity and the rates of it are rounding.
+
+    What the piece would add up to if it were so many times `longer` counts: in a short one a slip that begins is slow.
+    """
+    value, size, scale = row[n + nu], abs(row[n + nu]), 1.0
+    change = 0.0
+    for k in range(count):
+        total = 0.0
+        for j in range(n):
+            total += row[j] * work[X + k, j]
+            size += abs(row[j] * work[X, j]) if k == 0 else 0.0
+        if k < 4:
+            for j in range(nu):
+                total += row[n + j] * work[U + k, j]
+                size += abs(row[n + j] * work[U, j]) if k == 0 else 0.0
+        if k == 0:
+            value += total
+        else:
+            scale *= longer
+            change += abs(total) * scale
+    return abs(value) + change <= _ROUNDING * size
 
 
 @part("int64(int64[:,::1])", borrowing=True)

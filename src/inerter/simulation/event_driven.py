@@ -223,7 +223,7 @@ def start(
         gauss=np.array([0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS]),
     )
     record.states[:1] = state
-    place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0, 0], np.int64)
+    place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0, 0, 0], np.int64)
     march = march_of(n, tuple(used.tolist()), k, len(outputs), jumps, sharp)
     capacity, width = min(3**k, 9), n + nu + 1
     modes = Modes(

@@ -60,6 +60,8 @@ def steps(number: int) -> None:
         known = order(in_state, STEPS, 1e-10) if kind == "formula" else None
         if known is not None:
             orders.append(known)
+            if known < 2.5:
+                print(f"of order {known:.2f}: {seed}, {member(seed).kind}", flush=True)
     print(f"{len(STEPS)} steps: {dict(kinds)}")
     for kind, (in_time, in_state) in worst.items():
         print(f"  {kind}: events apart by up to {in_time:.1e} s, states by {in_state:.1e} of the largest")

@@ -330,7 +330,7 @@ def _lies_still(row: Array, work: Array, n: int, nu: int, count: int, longer: fl
         else:
             scale *= longer
             change += abs(total) * scale
-    return abs(value) + change <= _ROUNDING * size
+    return bool(abs(value) + change <= _ROUNDING * size)
 
 
 @part("int64(int64[:,::1])", borrowing=True)

@@ -90,8 +90,8 @@ def test_two_parts_are_the_whole(chunk: int) -> None:
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("chunk", range(100))
-def test_two_parts_are_the_whole_in_a_thousand_members(chunk: int) -> None:
+@pytest.mark.parametrize("chunk", range(20))
+def test_two_parts_are_the_whole_in_many_members(chunk: int) -> None:
     found = {seed: joined(seed) for seed in range(1000 * chunk, 1000 * chunk + 11)}
     print("worst", max(f for f in found.values() if f is not None))
     assert max(f for f in found.values() if f is not None) < CLOSE, found
@@ -114,8 +114,8 @@ def test_time_stepping_goes_on_as_well() -> None:
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("chunk", range(20))
-def test_time_stepping_goes_on_in_two_hundred_members(chunk: int) -> None:
+@pytest.mark.parametrize("chunk", range(5))
+def test_time_stepping_goes_on_in_many_members(chunk: int) -> None:
     found = {seed: stepped(seed) for seed in range(1000 * chunk, 1000 * chunk + 10)}
     assert max(f for f in found.values() if f is not None) < 1e-8, found
 

@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "simul
 
 from members import member
 from test_joins import joined, stepped
-from test_steps import STEPS, checked, order, survives
+from test_steps import FLOOR, STEPS, checked, order, survives
 
 
 def each(number: int, what: Callable[[int], object]) -> Iterator[tuple[int, object]]:
@@ -57,7 +57,7 @@ def steps(number: int) -> None:
             print(f"grazing: {seed}, {member(seed).kind}", flush=True)
         if in_state:
             worst[kind] = np.maximum(worst[kind], [max(in_time), max(in_state)])
-        known = order(in_state, STEPS, 1e-10) if kind == "formula" else None
+        known = order(in_state, STEPS, FLOOR) if kind == "formula" else None
         if known is not None:
             orders.append(known)
             if known < 2.5:

@@ -15,6 +15,7 @@ from inerter.systems.graph import full_graph
 STEPS = (5e-4, 4e-4, 2.5e-4, 2e-4, 1e-4, 5e-5, 4e-5, 2.5e-5, 2e-5, 1.25e-5, 1e-5, 5e-6)
 SAMPLING = 2e-3
 ROUNDING = 1e-8  # of times [s] and states (relative) where a table of samples is the same for every step
+FLOOR = 1e-9  # of states: what is left of an error is rounding
 FORMULAS = ("sine", "multisine", "chirp", "bump", "sum", "sum with steps")  # tabled at every step, to fourth order
 
 
@@ -95,7 +96,7 @@ def family(seeds: range | list[int], steps: tuple[float, ...], needed: int) -> d
             print(f"grazing: member {seed}, {member(seed).kind}")
         if kind == "formula":
             assert result is not None
-            observed.append(order(result[2], steps, 1e-10))
+            observed.append(order(result[2], steps, FLOOR))
             for step, error in zip(steps, result[1], strict=False):  # an error within a step depends on where it is
                 allowed = 1e-9 + 30.0 * (step / steps[0]) ** 4 * max(result[1][0], 1e-9)
                 assert error < allowed, (seed, step, result[1])

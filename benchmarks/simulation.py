@@ -60,7 +60,7 @@ def run(system: PiecewiseSystem, table: InputTable) -> it.Trajectory:
     state = np.zeros(system.order)
     integration = event_driven.start(system, table, state)
     integration.advance(table.time.size - 1)
-    return trajectory_of(integration, None, "", state)
+    return trajectory_of(integration, None, "")
 
 
 def fastest(work: Callable[[], object], repeats: int = 15) -> float:

@@ -40,7 +40,7 @@ def through(car, signals, delays, outputs, whole_steps=True, parts=1, duration=1
     run = event_driven.start(system, table, state, outputs, account=not whole_steps)
     run.advance(table.time.size - 1)
     assert run.status.ok
-    return run, trajectory_of(run, None, "", state)
+    return run, trajectory_of(run, None, "")
 
 
 def same(one, other, outputs, close=1e-9):
@@ -202,7 +202,7 @@ def test_a_recorded_period_is_the_steady_state(period):
     assert mismatch <= 1e-6
     steady = it.simulate(car, road=road, initial="periodic", step=2e-3)
     assert run.state == pytest.approx(steady.final_state, abs=1e-5 * np.abs(steady.final_state).max())
-    moved = trajectory_of(run, None, "", run.state)
+    moved = trajectory_of(run, None, "")
     for name in (*COMFORT, "tyre_load"):
         assert moved[name] == pytest.approx(steady[name], abs=1e-4 * steady.rms(name))
 

@@ -78,7 +78,7 @@ class Experiment:
         integration.advance(integration.table.time.size - 1)
         if not integration.status.ok:
             return None
-        return trajectory_of(integration, None, self.record.source, state)
+        return trajectory_of(integration, None, self.record.source)
 
 
 def experiment_of(record: Record, bandwidth: float | None = None, lead: float | None = None) -> Experiment:
@@ -173,7 +173,7 @@ def parts_for(integration: event_driven.Integration) -> int:
 
     Else each of them would be gone through in as many pieces, which take a hundred times as long.
     """
-    kinds = [integration.system.graph.branches[i].element for i in integration.system.nonlinear]
+    kinds = integration.system.nonlinear_elements
     reach = np.inf
     for friction in (0, 1):  # sticks, slips; gaps touch
         states = [friction if isinstance(e, Friction) and e.value != 0.0 else 1 for e in kinds]

@@ -101,7 +101,29 @@ def _compiled(function: F, signature: Any, fused: bool, borrowing: bool) -> F:
                 gc.enable()
     finally:
         settings.CACHE_DIR, settings.SLP_VECTORIZE = before
+    if isinstance(result, CPUDispatcher):
+        result.__class__ = _Entry
     return cast("F", result)
+
+
+class _Entry(CPUDispatcher):
+    """A compiled function that lets Ctrl-C through.
+
+    Python code that makes the types of arrays that are returned runs inside the call. Where Ctrl-C breaks that, the
+    call goes on, returns, and Python raises SystemError ("returned a result with an exception set") whose cause is the
+    KeyboardInterrupt, or another such error, and so on down to it.
+    """
+
+    def __call__(self, *args: Any) -> Any:
+        try:
+            return super().__call__(*args)
+        except SystemError as error:
+            cause: BaseException | None = error
+            while isinstance(cause, SystemError):
+                cause = cause.__cause__
+            if isinstance(cause, KeyboardInterrupt):
+                raise KeyboardInterrupt from None
+            raise
 
 
 def typed(signature: str, *, borrowing: bool = False) -> Callable[[F], F]:

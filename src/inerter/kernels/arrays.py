@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 Array = Any
 FRICTION, GAP = 0, 1
 KIND, OWN_POSITION = 0, 1  # columns of `Mechanics.elements`
-NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT = range(11)  # places in `Mechanics.sizes`
+NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT, SEEN = range(12)  # in `Mechanics.sizes`
 SHARP = 4  # terms of a guard's sway over a step that are values, where that is worth it
 
 
@@ -28,8 +28,8 @@ class Modes(NamedTuple):
 
     number: Array  # (3^k,) index of the mode that a state of the elements has, or -1
     state: Array  # (capacity, k + 3): -1, 0, 1 of each element; numbers of conditions on velocity, springs, the loose
-    maps: Array  # (capacity, rows, width): rate of the state, guards, (a', w, F), entry conditions, outputs
+    maps: Array  # (capacity, rows, width): rates, guards, (a', w, F), entry conditions, outputs, the state as seen
     reaction: Array  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
-    limits: Array  # (capacity, k, 2): interval of the guards
+    limits: Array  # (capacity, 2 k, 2): intervals of the guards while the mode lasts, and on entry
     steps: Array  # (capacity, columns, rows): see `march.lines_of`, then jumps of the state with inputs
     reach: Array  # (capacity,) how far a Taylor series of the flow serves [s]

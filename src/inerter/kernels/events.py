@@ -8,16 +8,15 @@ import numpy as np
 from numba import float64, int64, types
 
 from inerter.kernels import compiled, compiling_beside, part, typed
-from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, K, N
-from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at
-from inerter.kernels.march import TYPE
+from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, SEEN, K, N
+from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at, value_at
+from inerter.kernels.march import march_at
 
 Array = Any
-DONE, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(8)
+DONE, PAUSED, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(9)
 ACCEPTED, STRUCK, STRANDED = -1, -2, -3
-SEGMENT, MODE, EVENTS, SPECIAL, JUMPED, SWITCHES, WANTED, SETTLED, ACCOUNT, INPUTS, KNOWN = range(
-    11
-)  # places in `place`
+SEGMENT, MODE, EVENTS, SPECIAL, JUMPED, SWITCHES = range(6)  # places in `place`
+WANTED, SETTLED, ACCOUNT, INPUTS, KNOWN, LEFT, ENDED = range(6, 13)
 TRIAL, TOUCH, SIDE, CROSSED = range(4)  # rows of `flags`
 ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
 STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, then those of these sizes
@@ -87,13 +86,13 @@ def mode_number(number: Array, trial: Array) -> int:
     return int(number[code])
 
 
-def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, stop: int) -> int:
-    """Integrate up to knot `stop`.
+def integrate(address: int, steps: Array, now: Work, record: Record, h: float, stop: int) -> int:
+    """Integrate up to knot `stop`, whole steps by the march at an address.
 
-    Returns DONE, or why it stopped before: after MODE_UNKNOWN (the states are in `flags`) and EVENTS_FULL it goes on
-    from the same place once the mode is built or there is room.
+    Returns DONE, or why it stopped before: after PAUSED (no pieces are LEFT), MODE_UNKNOWN (the states are in `flags`)
+    and EVENTS_FULL it goes on from the same place once there are more, the mode is built, or there is room.
     """
-    place, work, sizes = now.place, now.work, now.sizes
+    place, work, sizes, march = now.place, now.work, now.sizes, march_at(address)
     n, nr, nu = sizes[N], sizes[NR], place[INPUTS]
     nobody: Any = np.int64(-1)  # a plain -1 would be a type of its own, and compile what takes it twice
     while place[SEGMENT] < stop:
@@ -102,16 +101,17 @@ def integrate(march: Any, steps: Array, now: Work, record: Record, h: float, sto
         if abs(length - h) < 1e-9 * h:
             length = h
         value, slope, value_before, slope_before = record.value, record.slope, record.value_before, record.slope_before
-        knot_numbers(value, slope, value_before, slope_before, k, length, work[NUMBERS])
-        if place[MODE] < 0:
+        if place[MODE] < 0:  # what jumps here jumps in a mode
+            knot_numbers(value_before, slope_before, value_before, slope_before, k, length, work[NUMBERS])
             code = switch(now, record.events, record.time[k], length, nobody)
             if code != DONE:
                 return code
             _sample(record.states, record.visited, record.slot[k], place[MODE], work, n)
+        knot_numbers(value, slope, value_before, slope_before, k, length, work[NUMBERS])
         while record.special[place[SPECIAL]] < k:
             place[SPECIAL] += 1
         m = place[MODE]
-        if place[ACCOUNT] == 0 and work[CLOCK, 0] == 0.0 and place[JUMPED] == 0:
+        if place[ACCOUNT] == 0 and work[CLOCK, 0] == 0.0 and place[JUMPED] == 0 and place[ENDED] == 0:
             place[SEGMENT] = march(
                 steps[m],
                 now.limits[m],
@@ -194,14 +194,27 @@ def cross(now: Work, events: Array, begun: Array, branch_road: Array, gauss: Arr
         m, t = place[MODE], work[CLOCK, 0]
         if length > PIECES * now.reach[m]:
             return STIFF
+        if place[LEFT] <= 0:
+            return PAUSED
+        place[LEFT] -= 1
         d = min(length - t, now.reach[m])
         inputs_from(work[NUMBERS], nr, nu, length, t, d, coefficients)
         count = series(now.maps[m], work[STATE], coefficients, n, nu, d, state)
         best = 2.0
         who: Any = np.int64(-1)
+        ends, ended = d == length - t, place[ENDED] != 0
+        place[ENDED] = 0
         for e in range(elements):
             if now.flags[TOUCH, e] < ORDERS:
-                s = _crossing(now.maps[m, guard + e], now.limits[m, e], now.flags, e, n, nu, count, work)
+                row = now.maps[m, guard + e]
+                slips = now.elements[e, KIND] == FRICTION and now.state[m, e] != 0 and now.limit[e] > 0.0
+                if slips and ended and _lies_still(row, work, n, nu, min(count, ORDERS), now.reach[m] / d):
+                    now.flags[CROSSED, e] = now.state[m, e]
+                    best, who = 0.0, e
+                    break
+                s = _crossing(row, now.limits[m, e], now.flags, e, n, nu, count, work, ends)
+                if slips and ends and _comes_to_zero(work[POLYNOMIAL], count):
+                    place[ENDED] = 1
                 if s < best:
                     best, who = s, e
         s = min(best, 1.0)
@@ -238,11 +251,17 @@ def _polynomial(state: Array, count: int, i: int, s: float) -> float:
     return float(total)
 
 
-@part("float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1])", borrowing=True)
-def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array) -> float:
+@part(
+    "float64(float64[::1], float64[::1], int64[:,::1], int64, int64, int64, int64, float64[:,::1], boolean)",
+    borrowing=True,
+)
+def _crossing(
+    row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, count: int, work: Array, ends: bool
+) -> float:
     """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
 
-    CROSSED is then the limit, if it is crossed with a slope beyond all rounding, else 0.
+    CROSSED is then the limit, if it is crossed with a slope beyond all rounding, else 0. A limit that is just reached
+    where the segment `ends` is left to the next one: inputs may turn there.
     """
     if limits[0] == -np.inf and limits[1] == np.inf:
         return 2.0
@@ -270,10 +289,48 @@ def _crossing(row: Array, limits: Array, flags: Array, e: int, n: int, nu: int, 
         if zeros == 0:
             g[0] += side * limit
         root = first_root(g, count - zeros, work[POLYNOMIAL + 2])
+        if ends and root > 1.0 - _MET:
+            size = swing + abs(c[0]) + abs(limit)
+            root = 2.0 if value_at(g, count - zeros, 1.0) > -_ROUNDING * size else root
         if root < best:
             best = root
             flags[CROSSED, e] = side if slope_at(g, count - zeros, root) < -1e-6 * swing else 0
     return best
+
+
+@part("boolean(float64[::1], int64)", borrowing=True)
+def _comes_to_zero(c: Array, count: int) -> bool:
+    """Whether a polynomial is zero at 1, and not before."""
+    total, size = 0.0, 0.0
+    for k in range(count):
+        total += c[k]
+        size += abs(c[k])
+    return abs(total) <= _ROUNDING * size and abs(c[0]) > _MET * size
+
+
+@part("boolean(float64[::1], float64[:,::1], int64, int64, int64, float64)", borrowing=True)
+def _lies_still(row: Array, work: Array, n: int, nu: int, count: int, longer: float) -> bool:
+    """Whether a slip that has come to zero has ended for good: its velocity and the rates of it are rounding.
+
+    What the piece would add up to if it were so many times `longer` counts: in a short one a slip that begins is slow.
+    """
+    value, size, scale = row[n + nu], abs(row[n + nu]), 1.0
+    change = 0.0
+    for k in range(count):
+        total = 0.0
+        for j in range(n):
+            total += row[j] * work[X + k, j]
+            size += abs(row[j] * work[X, j]) if k == 0 else 0.0
+        if k < 4:
+            for j in range(nu):
+                total += row[n + j] * work[U + k, j]
+                size += abs(row[n + j] * work[U, j]) if k == 0 else 0.0
+        if k == 0:
+            value += total
+        else:
+            scale *= longer
+            change += abs(total) * scale
+    return bool(abs(value) + change <= _ROUNDING * size)
 
 
 @part("int64(int64[:,::1])", borrowing=True)
@@ -297,7 +354,7 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
     if place[EVENTS] + elements > events.shape[0]:
         return EVENTS_FULL
     if before >= 0:
-        _drop_drift(now, before, length)
+        _as_seen(now, before, length)
     for e in range(elements):
         trial[e] = now.state[before, e] if before >= 0 else (0 if now.limit[e] > 0.0 else 1)
     if who >= 0 and now.flags[CROSSED, who] != 0:
@@ -334,41 +391,28 @@ def switch(now: Work, events: Array, start: float, length: float, who: int) -> i
     for i in range(now.sizes[N]):
         work[STATE, i] = work[GUESS, i]
     for e in range(elements):
-        state, own = now.state[m, e], now.elements[e, OWN_POSITION]
-        if own >= 0 and state != 0:
-            work[STATE, now.sizes[NA] + own] = state * now.limit[e]
-        if before >= 0 and state != now.state[before, e]:
+        if before >= 0 and trial[e] != now.state[before, e]:
             i = place[EVENTS]
             events[i, 0] = start + work[CLOCK, 0]
-            events[i, 1], events[i, 2], events[i, 3] = e, now.state[before, e], state
+            events[i, 1], events[i, 2], events[i, 3] = e, now.state[before, e], trial[e]
             place[EVENTS] = i + 1
     place[MODE] = m
     return DONE
 
 
 @part(borrowing=True)
-def _drop_drift(now: Work, m: int, length: float) -> None:
-    """Take away the rounding that has gathered in what locks and the springs' balance of mode m keep at zero.
+def _as_seen(now: Work, m: int, length: float) -> None:
+    """Make the state what mode m has seen of it: without the rounding that drifted off the mode's conditions.
 
     A velocity of 1e-13 m/s that a long stick has left behind would otherwise choose the direction of the slip.
     """
-    sizes, work, maps, reaction = now.sizes, now.work, now.maps[m], now.reaction[m]
-    n, nu, elements, residual = sizes[N], now.place[INPUTS], sizes[K], work[RESIDUAL]
+    sizes, work, n, nu = now.sizes, now.work, now.sizes[N], now.place[INPUTS]
     inputs_from(work[NUMBERS], sizes[NR], nu, length, work[CLOCK, 0], length, work[U : U + 8])
-    first = 0
-    for group in range(2):
-        last, broken = first + now.state[m, elements + group], False
-        for i in range(first, last):
-            row = maps[sizes[ENTRY] + i]
-            residual[i] = over_columns(row, work[STATE], work[U], n, nu)
-            size = _size(row, work[SCALE], work[U], n, nu) + abs(row[n + nu])
-            broken = broken or abs(residual[i]) > 1e-10 * size
-        for j in range(n):
-            work[GUESS, j] = work[STATE, j] + _asked(reaction, j, residual, first, last)
-        if not broken:
-            for j in range(n):
-                work[STATE, j] = work[GUESS, j]
-        first = last
+    for i in range(n):
+        work[GUESS, i] = over_columns(now.maps[m, sizes[SEEN] + i], work[STATE], work[U], n, nu)
+    for i in range(n):
+        work[STATE, i] = work[GUESS, i]
+        work[SCALE, i] = max(work[SCALE, i], abs(work[STATE, i]))
 
 
 @part(borrowing=True)
@@ -378,6 +422,7 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     First the conditions on entry, then each guard by the sign of its first derivative that is not zero.
     """
     sizes, maps, reaction, work, trial = now.sizes, now.maps[m], now.reaction[m], now.work, now.flags[TRIAL]
+    now.place[LEFT] -= 1
     n, nu, elements, d = sizes[N], now.place[INPUTS], sizes[K], min(now.reach[m], length)
     coefficients, residual = work[U : U + 8], work[RESIDUAL]
     inputs_from(work[NUMBERS], sizes[NR], nu, length, work[CLOCK, 0], d, coefficients)
@@ -385,11 +430,10 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
     speed, length_scale = 0.0, 0.0  # what has not moved yet is no finer than what has
     for i in range(n):
         work[GUESS, i] = work[STATE, i]
-        size = max(work[SCALE, i], abs(work[STATE, i]))
         if i < sizes[NA]:
-            speed = max(speed, size)
+            speed = max(speed, work[SCALE, i])
         else:
-            length_scale = max(length_scale, size)
+            length_scale = max(length_scale, work[SCALE, i])
     for i in range(n):
         work[SIZE, i] = speed if i < sizes[NA] else length_scale
     for e in range(elements):  # only a gap that is at its limit can touch
@@ -400,16 +444,18 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
                 term = now.lengths[e, j] * (work[STATE, at] if at < n else work[U, at - n])
                 beyond += term
                 size += abs(term)
-            if abs(beyond) > 1e-9 * size:
+            if abs(beyond) > _MET * size + _ROUNDING * length_scale:
                 now.place[WANTED] = 0
                 return e
+            if now.elements[e, OWN_POSITION] >= 0:
+                work[GUESS, sizes[NA] + now.elements[e, OWN_POSITION]] = trial[e] * now.limit[e]
     first = 0
     for group in range(3):
         last = first + now.state[m, elements + group]
         broken = False
         for i in range(first, last):
             row = maps[sizes[ENTRY] + i]
-            residual[i] = over_columns(row, work[STATE], work[U], n, nu)
+            residual[i] = over_columns(row, work[GUESS], work[U], n, nu)
             broken = broken or abs(residual[i]) > 1e-10 * (_size(row, work[SIZE], work[U], n, nu) + abs(row[n + nu]))
         if broken:
             largest = 0.0
@@ -436,7 +482,7 @@ def judge(now: Work, m: int, length: float, who: int) -> int:
         was = now.state[max(before, 0), e]  # slip up and slip down have the same guard
         slips = now.elements[e, KIND] == FRICTION and trial[e] * was != 0
         met = before >= 0 and e == who and (trial[e] == was or slips)
-        row, limits = maps[sizes[GUARD] + e], now.limits[m, e]
+        row, limits = maps[sizes[GUARD] + e], now.limits[m, elements + e]
         side = _violated(maps, row, limits, now.flags, now.place, work, e, n, nu, d, met)
         if side != 0:
             now.place[WANTED] = side if trial[e] == 0 else 0
@@ -610,7 +656,7 @@ _tuple: Any = types.NamedTuple
 integrate = compiled(  # now, while another process compiles the kernels of modes
     integrate,
     types.int64(
-        TYPE,
+        types.int64,
         _TABLES,
         _tuple((_TABLE, _INT_TABLE, _INTS, *_MECHANICS, *_MODES), Work),
         _tuple((_FLOATS, _TABLE, _TABLE, _TABLE, _TABLE, *_HISTORY, _TABLE, _TABLE), Record),

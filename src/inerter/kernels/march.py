@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 from numba import types
+from numba.core import cgutils
 from numba.experimental import function_type
-from numba.extending import typeof_impl
+from numba.extending import intrinsic
 
 from inerter.kernels import compiled, part
 from inerter.kernels.arrays import SHARP
@@ -35,28 +37,31 @@ SIGNATURE = types.int64(
     types.int64,  # first segment whose squares count
 )
 
-TYPE: Any = types.FunctionType(SIGNATURE)
 _SIZES = (types.int64,) * 6 + (types.boolean, types.Array(types.int64, 1, "C", readonly=True))
 
 
-class March(types.WrapperAddressProtocol):
-    """A march as an argument of other compiled code, which so need not be compiled anew for each."""
+@dataclass(frozen=True)
+class March:
+    """A march for other compiled code, which takes its address and so need not be compiled anew for each."""
 
-    def __init__(self, function: Any) -> None:
-        self.function = function
-        address_of: Any = function_type._get_wrapper_address
-        self.address = int(address_of(function, SIGNATURE))
-
-    def __wrapper_address__(self) -> int:
-        return self.address
-
-    def signature(self) -> Any:
-        return SIGNATURE
+    function: Any
+    address: int
 
 
-@typeof_impl.register(March)
-def _type_of(march: March, context: object) -> Any:
-    return TYPE  # the compiler would make it anew at each call, which takes longer than a short integration
+def _march_at(typing: Any, address: Any) -> Any:
+    """The march at an address: to pass the function itself runs Python code within the call, which Ctrl-C can break."""
+    kind: Any = types.FunctionType(SIGNATURE)
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        struct_of: Any = cgutils.create_struct_proxy
+        function = struct_of(kind)(context, builder)
+        function[0] = builder.inttoptr(given[0], cgutils.voidptr_t)
+        return function._getvalue()
+
+    return kind(types.int64), generate
+
+
+march_at: Any = intrinsic(_march_at)
 
 
 def padded(rows: int) -> int:
@@ -180,4 +185,6 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
             h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
         )  # fmt: skip
 
-    return March(compiled(march, SIGNATURE, fused=True, borrowing=True))
+    function = compiled(march, SIGNATURE, fused=True, borrowing=True)
+    address_of: Any = function_type._get_wrapper_address
+    return March(function, int(address_of(function, SIGNATURE)))

@@ -35,6 +35,7 @@ from inerter.kernels.arrays import (
     OUTPUT,
     OUTPUTS,
     OWN_POSITION,
+    SEEN,
     SHARP,
     K,
     N,
@@ -188,25 +189,26 @@ def independent_locks(locks: Array, elements: Array, state: Array) -> Any:
 
 @part("boolean(float64[:,::1], float64[:,::1])", apart=True)
 def solve_rows(S: Array, right: Array) -> bool:
-    """Solve S y = right for every column, rows and columns of S brought to one size; `right` becomes y."""
+    """Solve S y = right for every column, rows and columns of S brought to one size; `right` becomes y.
+
+    S becomes the sizes of what elimination added up in the place of each of its values.
+    """
     size, width = S.shape[0], right.shape[1]
-    columns = np.zeros(size)
+    rows, columns = np.zeros(size), np.zeros(size)
     for j in range(size):
-        largest = 0.0
         for i in range(size):
-            largest = max(largest, abs(S[i, j]))
-        columns[j] = 1.0 / largest if largest > 0.0 else 1.0
+            columns[j] = max(columns[j], abs(S[i, j]))
+        columns[j] = columns[j] if columns[j] > 0.0 else 1.0
     for i in range(size):
-        largest = 0.0
         for j in range(size):
-            S[i, j] *= columns[j]
-            largest = max(largest, abs(S[i, j]))
-        if not (largest > 0.0):
+            S[i, j] /= columns[j]
+            rows[i] = max(rows[i], abs(S[i, j]))
+        if not (rows[i] > 0.0):
             return False
         for j in range(size):
-            S[i, j] /= largest
+            S[i, j] /= rows[i]
         for j in range(width):
-            right[i, j] /= largest
+            right[i, j] /= rows[i]
     pivots = np.zeros(size, np.int64)
     if not factor(S, pivots):
         return False
@@ -216,8 +218,29 @@ def solve_rows(S: Array, right: Array) -> bool:
             column[i] = right[i, j]
         solve(S, pivots, column)
         for i in range(size):
-            right[i, j] = column[i] * columns[i]
+            right[i, j] = column[i] / columns[i]
+    added_up(S, pivots)
+    for i in range(size):
+        for j in range(size):
+            S[i, j] *= rows[i] * columns[j]
     return True
+
+
+@part("void(float64[:,::1], int64[::1])", apart=True)
+def added_up(LU: Array, pivots: Array) -> None:
+    """Replace factors by |L| |U|, rows in the order of the matrix: rounding of elimination is as large, not less."""
+    n = LU.shape[0]
+    for i in range(n - 1, -1, -1):
+        for j in range(n - 1, -1, -1):
+            total = abs(LU[i, j]) if i < j else 0.0
+            for k in range(min(i, j + 1)):
+                total += abs(LU[i, k] * (LU[k, j] if k < j else 1.0 / LU[k, k]))
+            LU[i, j] = total if i != j else total + abs(1.0 / LU[i, i])
+    for k in range(n - 1, -1, -1):
+        row = pivots[k]
+        if row != k:
+            for j in range(n):
+                LU[k, j], LU[row, j] = LU[row, j], LU[k, j]
 
 
 @part("void(float64[:,::1], int64, int64, float64[:,::1], float64)", apart=True)
@@ -255,6 +278,46 @@ def drop_rounding(A: Array, bound: Array) -> None:
         for j in range(A.shape[1]):
             if abs(A[i, j]) < ROUNDING * bound[i, j]:
                 A[i, j] = 0.0
+
+
+@part("void(float64[:,::1], float64[:,::1], int64)", apart=True)
+def after_entry(maps: Array, mended: Array, entry: int) -> None:
+    """Have all rows see the state as the conditions on entry leave it: drift off them then changes nothing."""
+    rows, n, conditions, width = maps.shape[0], mended.shape[0], mended.shape[1], maps.shape[1]
+    asked, bound = block(maps, entry, entry + conditions, 0, width), sizes_of(maps)
+    add(bound, 0, 0, product(product(block(bound, 0, rows, 0, n), sizes_of(mended)), sizes_of(asked)), 1.0)
+    for _ in range(2):  # what rounding of the first time leaves, the second removes
+        add(maps, 0, 0, product(product(block(maps, 0, rows, 0, n), mended), asked), 1.0)
+    drop_rounding(maps, bound)
+    for i in range(conditions):
+        for j in range(width):
+            maps[entry + i, j] = asked[i, j]
+
+
+@part("boolean(float64[:,::1], int64)", apart=True)
+def is_zero(rows: Array, i: int) -> bool:
+    """Whether a row is zero."""
+    zero = True
+    for j in range(rows.shape[1]):
+        zero = zero and rows[i, j] == 0.0
+    return zero
+
+
+@part("void(float64[:,::1], int64, int64, float64[:,::1])", apart=True)
+def unwatched(maps: Array, guard: int, n: int, limits: Array) -> None:
+    """Limits of the guards while the mode lasts, behind them those on entry: what is constant need not be watched."""
+    k, width = limits.shape[0] // 2, maps.shape[1]
+    guards, rates = block(maps, guard, guard + k, 0, n), block(maps, 0, n, 0, width)
+    change = product(guards, rates)
+    bound = product(sizes_of(guards), sizes_of(rates))
+    drop_rounding(change, bound)
+    for e in range(k):
+        limits[k + e, 0], limits[k + e, 1] = limits[e, 0], limits[e, 1]
+        moves = not is_zero(change, e)
+        for j in range(n, width - 1):
+            moves = moves or maps[guard + e, j] != 0.0
+        if not moves:
+            limits[e, 0], limits[e, 1] = -np.inf, np.inf
 
 
 @typed(
@@ -334,13 +397,13 @@ def build(
     velocity = inner(L, H_a)
     add(S, row, 0, velocity, 1.0)
     add(right, row, n + 2 * nr, inner(L, H_z), -1.0)
-    solved, terms = np.zeros((nv + nl, width + nv + nl)), sizes_of(S)
+    solved = np.zeros((nv + nl, width + nv + nl))
     add(solved, 0, 0, right, 1.0)
     add(solved, 0, width, unit(nv + nl), 1.0)
     if not solve_rows(S, solved):
         return False
     bound = sizes_of(right)  # of the residual of the solution that elimination finds
-    add(bound, 0, 0, product(terms, sizes_of(block(solved, 0, nv + nl, 0, width))), 1.0)
+    add(bound, 0, 0, product(S, sizes_of(block(solved, 0, nv + nl, 0, width))), 1.0)
     bound = product(sizes_of(block(solved, 0, nv + nl, width, width + nv + nl)), bound)
     right = block(solved, 0, nv + nl, 0, width)
     drop_rounding(right, bound)
@@ -421,6 +484,13 @@ def build(
     add(reaction, na, nc, product(block(motion, 0, ng, na, nv), moved), -1.0)
     add(reaction, n, nc, product(locks_w, moved), -1.0)
     add(reaction, n, nc + nz, product(locks_w, Y), 1.0)
+    add(maps, sizes[SEEN], 0, unit(n), 1.0)
+    after_entry(maps, block(reaction, 0, n, 0, nc + nz), entry)
+    for e in range(k):
+        slips = elements[e, KIND] == FRICTION and state[e] != 0 and not still[e] and limit[e] > 0.0
+        if slips and is_zero(maps, guard + e):  # what cannot move sticks
+            limits[e, 0 if state[e] > 0 else 1] = state[e]
+    unwatched(maps, guard, n, limits)
     return True
 
 

@@ -33,7 +33,7 @@ _DRIFT = 1e-3  # a motion that changes by less over the time asked about is a dr
 
 def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str, ...]]:
     """`system` with the velocities across its frictions with a force as outputs, and their names."""
-    branches = (system.graph.branches[i] for i in system.nonlinear)
+    branches = (system.graph.branches[i] for i in sorted(i for group in system.nonlinear for i in group))
     across = {
         f"velocity across friction {i}": Output("", "m/s", "", velocity=branch.nodes, road_velocity=branch.roads)
         for i, branch in enumerate(branches)

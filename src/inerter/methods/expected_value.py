@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -22,6 +21,7 @@ from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds, worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.cars import Vehicle
@@ -93,7 +93,7 @@ class ExpectedValue:
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
-        with ThreadPoolExecutor(self.jobs or os.cpu_count() or 1) as pool:
+        with threads(self.jobs) as pool:
             return self._estimate(vehicle, index, pool)
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
@@ -101,7 +101,7 @@ class ExpectedValue:
         names = list(points)
         columns = np.column_stack([points[name] for name in names]) if names else np.zeros((1, 0))
         result = np.full((columns.shape[0], len(indices)), np.nan)
-        with ThreadPoolExecutor(self.jobs or os.cpu_count() or 1) as pool:
+        with threads(self.jobs) as pool:
             for i, row in enumerate(columns.tolist()):
                 design = vehicle.with_values(dict(zip(names, row, strict=True))) if names else vehicle
                 for j, index in enumerate(indices):

@@ -107,7 +107,7 @@ class Runs:
                 f"in realisation {number + 1} the state still changes by {mismatch:.1e} of its size over a period; "
                 f"take a longer one",
             )
-        trajectory = trajectory_of(run, None, "", run.state)
+        trajectory = trajectory_of(run, None, "")
         self.squares.append(np.array([self.drive.power(trajectory[name]) for name in self.outputs]))
         self.inputs.append(power)
         self.powers.append(np.array([np.mean(trajectory[name][:-1] ** 2) for name in self.frictions]))

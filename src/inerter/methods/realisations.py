@@ -100,7 +100,7 @@ def run(system: PiecewiseSystem, way: Drive, outputs: Sequence[str], plain: Sequ
         return Ran(found, integration.warning, periods)
     integration, steady = settle(system, inputs, state, energy=False)
     integration.advance(inputs.time.size - 1)
-    trajectory = trajectory_of(integration, steady, "", state)
+    trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
         return Ran(np.full(len(names), np.nan), integration.status, steady.periods)
     count = trajectory.time.size - 1

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass
 from itertools import count as count_from
-from threading import Event, Lock
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,9 @@ from inerter.kernels.events import EVENTS
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import InputTable, assign, check_holds, tabulate, whole_steps
-from inerter.simulation.start import Initial, initial_state
+from inerter.simulation.start import Initial, ending_of, initial_state
+from inerter.simulation.threads import threads
+from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.cars import Vehicle
@@ -88,6 +90,8 @@ def simulate_many(
     if not is_number(settled):
         raise SimulationError(f"The time from which on values count is a number of seconds, got {settled!r}.")
     count = _count(road, forces, displacement)
+    joined = isinstance(initial, Trajectory)
+    begin = initial.end if isinstance(initial, Trajectory) else 0.0
     knots, skipped = whole_steps(duration, step), round(settled / step)
     if not 0 <= skipped < knots:
         raise SimulationError(f"The part that does not count, {settled:g} s, must be shorter than {duration:g} s.")
@@ -103,34 +107,29 @@ def simulate_many(
             system = systems[i] = systems[i] or _system(cars[i], names)
             signals, delays = assign(system.mechanism, moved, pushed, shaken, speed)
             check_holds(system, signals)
-        table = tables[j].take(signals, delays, duration, step)
+        table = tables[j].take(signals, delays, duration, step, begin, joined)
         with preparing:
-            state = initial_state(system, table.value[0], initial)
-            integration = event_driven.start(system, table, state, names, keep=False, settled=skipped)
+            state, after = initial_state(system, table.value[0], initial, table.slope[0]), ending_of(initial)
+            integration = event_driven.start(system, table, state, names, keep=False, settled=skipped, after=after)
         integration.advance(table.time.size - 1)
         events[i, j], status[i, j] = integration.place[EVENTS], integration.status
         if integration.status.ok:
             squares[i, j] = integration.record.sums[0] / (knots - skipped)
 
     runs = [(i, j) for j in range(count) for i in range(len(cars))]
-    waiting, done, stopping = iter(runs), count_from(1), Event()
+    waiting, done = iter(runs), count_from(1)
 
     def work() -> None:
         for i, j in waiting:
-            if stopping.is_set():
-                return
             run(i, j)
             if progress is not None:
                 with preparing:
                     progress(next(done) / len(runs))
 
-    threads = min(jobs or os.cpu_count() or 1, len(runs))
-    with ThreadPoolExecutor(threads) as pool:
-        try:
-            for thread in as_completed([pool.submit(work) for _ in range(threads)]):
-                thread.result()
-        finally:
-            stopping.set()
+    workers = min(jobs or os.cpu_count() or 1, len(runs))
+    with threads(workers) as pool:
+        for worker in as_completed([pool.submit(work) for _ in range(workers)]):
+            worker.result()
     system = systems[0]
     assert system is not None
     units = tuple(system.outputs[name].unit for name in names)
@@ -144,11 +143,17 @@ class _Tables:
         self.runs, self.known, self.lock = runs, dict[tuple[object, ...], InputTable](), Lock()
 
     def take(
-        self, signals: Sequence[Signal | None], delays: Sequence[float], duration: float, step: float
+        self,
+        signals: Sequence[Signal | None],
+        delays: Sequence[float],
+        duration: float,
+        step: float,
+        begin: float,
+        joined: bool,
     ) -> InputTable:
         key = (tuple(map(id, signals)), tuple(delays))
         with self.lock:
-            table = self.known[key] = self.known.get(key) or tabulate(signals, delays, duration, step)
+            table = self.known[key] = self.known.get(key) or tabulate(signals, delays, duration, step, 1, begin, joined)
             self.runs -= 1
             if self.runs == 0:
                 self.known.clear()

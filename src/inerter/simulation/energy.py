@@ -15,8 +15,8 @@ from inerter.systems.piecewise import PiecewiseSystem
 Matrix = NDArray[np.float64]
 
 
-def energy_of(integration: Integration, start: Matrix) -> Energy:
-    """Where the energy went from the state `start` on."""
+def energy_of(integration: Integration) -> Energy:
+    """Where the energy went since the integration began."""
     system, table = integration.system, integration.table
     names = [*(r.name for r in system.mechanism.roads), *(f.name for f in system.mechanism.forces)]
     sums = integration.work[ENERGY]
@@ -24,17 +24,16 @@ def energy_of(integration: Integration, start: Matrix) -> Energy:
     knot = int(integration.place[SEGMENT])
     return Energy(
         inputs={name: float(w) for name, w in zip(names, sums, strict=False)},
-        stored=_stored(system, table, integration.state, knot, -1) - _stored(system, table, start, 0, 1),
+        stored=_stored(system, table, integration.state, knot) - _stored(system, table, integration.begun, 0),
         dampers={b.label: float(w) for b, w in branches if isinstance(b.element, Damper)},
         friction={b.label: float(w) for b, w in branches if isinstance(b.element, Friction)},
     )
 
 
-def _stored(system: PiecewiseSystem, table: InputTable, state: Matrix, knot: int, side: int) -> float:
-    """Kinetic and elastic energy [J]."""
+def _stored(system: PiecewiseSystem, table: InputTable, state: Matrix, knot: int) -> float:
+    """Kinetic and elastic energy [J] just before a knot."""
     roads, na = len(system.mechanism.roads), system.motions[0].shape[1]
-    z = (table.value if side > 0 else table.value_before)[knot, :roads]
-    rate = (table.slope if side > 0 else table.slope_before)[knot, :roads]
+    z, rate = table.value_before[knot, :roads], table.slope_before[knot, :roads]
     speeds = system.kinetic @ state[:na] + system.kinetic_road @ rate
     lengths = system.elongations[0] @ state[na:] + system.elongations[1] @ z
     k = np.array([float(b.element.value) if isinstance(b.element, Spring) else 0.0 for b in system.graph.branches])  # type: ignore[arg-type]

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, SimulationError, Status, StatusKind
 from inerter.kernels import events as kernel
-from inerter.kernels.arrays import ENTRY, ETA, GUARD, Mechanics, Modes
-from inerter.kernels.march import lines_of, march_of
+from inerter.kernels.arrays import ENTRY, ETA, GUARD, SEEN, Mechanics, Modes
+from inerter.kernels.march import March, lines_of, march_of
 from inerter.networks.elements import Damper, Gap
 from inerter.simulation.inputs import InputTable
+from inerter.simulation.threads import check_wanted
+from inerter.simulation.trajectory import Ending
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
 Matrix = NDArray[np.float64]
 MOST_ELEMENTS = 12
+_SEGMENTS, _PIECES = 200_000, 4000  # at most between two looks at the keyboard: some 10 ms
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 
 
@@ -29,9 +31,10 @@ class Integration:
 
     system: PiecewiseSystem
     table: InputTable
-    march: Any
+    march: March
     mechanics: Mechanics
     modes: Modes
+    begun: Matrix  # the state at the start, before anything that jumps there
     used: NDArray[np.int64]
     work: Matrix
     flags: NDArray[np.int64]
@@ -43,23 +46,27 @@ class Integration:
     warning: Status = OK  # of a run that went to its end
 
     def advance(self, stop: int) -> None:
-        """Integrate up to knot `stop`, or until something is wrong, which `status` then tells."""
-        while self.status.ok:
+        """Integrate up to knot `stop`, or until something is wrong, which `status` then tells.
+
+        Raises `CancelledError` in a thread of `threads` whose work is not wanted any more.
+        """
+        while self.status.ok and self.place[kernel.SEGMENT] < stop:
+            check_wanted()
+            self.place[kernel.LEFT] = _PIECES
+            until = min(stop, int(self.place[kernel.SEGMENT]) + _SEGMENTS)
             m, c = self.modes, self.mechanics
             now = kernel.Work(
                 self.work, self.flags, self.place, c.sizes, c.elements, c.limit, c.lengths,
                 m.number, m.state, m.maps, m.reaction, m.limits, m.reach,
             )  # fmt: skip
-            code = kernel.integrate(self.march, m.steps, now, self.record, self.table.step, stop)
-            if code == kernel.DONE:
-                return
+            code = kernel.integrate(self.march.address, m.steps, now, self.record, self.table.step, until)
             if code == kernel.MODE_UNKNOWN:
                 if not self.build(self.flags[kernel.TRIAL]):
                     self.status = self._failed(_SINGULAR)
             elif code == kernel.EVENTS_FULL:
                 events = self.record.events
                 self.record = self.record._replace(events=np.concatenate([events, np.empty_like(events)]))
-            else:
+            elif code not in (kernel.DONE, kernel.PAUSED):
                 self.status = self._failed(_FAILURES[code])
 
     def build(self, states: NDArray[np.int64]) -> bool:
@@ -78,6 +85,13 @@ class Integration:
         modes.reach[m] = discretise(self.mechanics.sizes, self.used, modes.maps[m], modes.steps[m], self.table.step)
         return True
 
+    def go_on_from(self, ending: Ending) -> None:
+        """Begin in the mode in which another integration of the same mechanism ended."""
+        states, n = np.array(ending.mode, dtype=np.int64), self.system.order
+        self.mode(states)
+        self.place[kernel.MODE] = self.record.visited[:1] = self.modes.number[_code(states)]
+        self.work[kernel.SCALE, :n] = np.maximum(self.work[kernel.SCALE, :n], ending.scale)
+
     @property
     def now(self) -> float:
         """Time reached [s]."""
@@ -89,9 +103,21 @@ class Integration:
         return self.work[kernel.STATE, : self.system.order].copy()
 
     @property
+    def ending(self) -> Ending:
+        """What to go on with."""
+        mode = self.modes.state[self.place[kernel.MODE], : len(self.system.nonlinear)]
+        scale = np.maximum(self.work[kernel.SCALE, : self.system.order], np.abs(self.state))
+        return Ending(self.system.mechanism, tuple(mode.tolist()), scale)
+
+    @property
     def eta(self) -> slice:
         """Rows of the maps that hold a', w and the nonlinear elements' forces."""
         return slice(int(self.mechanics.sizes[ETA]), int(self.mechanics.sizes[ENTRY]))
+
+    @property
+    def seen(self) -> slice:
+        """Rows of the maps that hold the state as the mode sees it."""
+        return slice(int(self.mechanics.sizes[SEEN]), int(self.mechanics.sizes[SEEN]) + self.system.order)
 
     @property
     def guards(self) -> slice:
@@ -131,7 +157,7 @@ _FAILURES = {
     kernel.NO_MODE: "no combination of slip, stick and contact can go on",
     kernel.NOT_FINITE: "the motion grows beyond all bounds",
     kernel.STIFF: "something answers more than 10 000 times faster than the step (a damper on a small inertance, "
-    "most often); take a step of that order, or leave out what is so fast,",
+    "most often); take a step of that order, or leave out what is so fast",
 }
 _SINGULAR = "the forces in a combination of slip, stick and contact are not determined"
 
@@ -145,11 +171,12 @@ def start(
     keep: bool = True,
     account: bool = False,
     settled: int = 0,
+    after: Ending | None = None,
 ) -> Integration:
     """An integration at its beginning.
 
     `keep` the states at all samples; `outputs` are to be squared and added up from knot `settled` on; `account` for
-    the energy.
+    the energy. It goes on in the mode in which another one of the same mechanism ended, if it comes `after` one.
 
     Raises `SimulationError` if there are more frictions and gaps than combinations of their states can be numbered.
     """
@@ -164,17 +191,17 @@ def start(
     over = np.array([np.concatenate(row) for row in rows]).reshape(len(rows), n + nu + na + nw + k)
     roads, channels = len(system.mechanism.roads), table.value.shape[1]
     used = _used(system, table, bool(rows))
-    starts = np.cumsum([0, n, k, na + nw + k, nw + k, len(rows)])
+    starts = np.cumsum([0, n, k, na + nw + k, nw + k, len(rows), n])
     dampers = sum(isinstance(b.element, Damper) for b in system.graph.branches)
     mechanics = Mechanics(
-        sizes=np.array([na, nw, roads, n, k, dampers, len(outputs), *starts[1:5]], dtype=np.int64),
+        sizes=np.array([na, nw, roads, n, k, dampers, len(outputs), *starts[1:6]], dtype=np.int64),
         **vars(system.mechanics),
         over=over,
     )
     branches = system.graph.branches if account else ()
     samples, channels = table.samples if keep else 0, table.value.shape[1]
     jumps = channels if table.jumps else 0
-    sharp = any(isinstance(system.graph.branches[i].element, Gap) for i in system.nonlinear)
+    sharp = any(isinstance(element, Gap) for element in system.nonlinear_elements)
     columns, followed, swaying = lines_of(n, used.size, k, len(outputs), jumps, sharp)
     work = np.zeros(
         (kernel.ROWS, max(64, columns + followed + swaying + n, nu, 4 * channels, channels + len(branches)))
@@ -196,23 +223,25 @@ def start(
         gauss=np.array([0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS]),
     )
     record.states[:1] = state
-    place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0], np.int64)
+    place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0, 0, 0], np.int64)
     march = march_of(n, tuple(used.tolist()), k, len(outputs), jumps, sharp)
     capacity, width = min(3**k, 9), n + nu + 1
     modes = Modes(
         number=np.full(3**k, -1, np.int64),
         state=np.zeros((capacity, k + 3), np.int64),
-        maps=np.zeros((capacity, int(starts[5]), width)),
+        maps=np.zeros((capacity, int(starts[6]), width)),
         reaction=np.zeros((capacity, n + k, nw + k)),
-        limits=np.zeros((capacity, k, 2)),
+        limits=np.zeros((capacity, 2 * k, 2)),
         steps=np.zeros((capacity, columns + jumps, followed + swaying)),
         reach=np.zeros(capacity),
     )
     flags = np.zeros((4, k), np.int64)
-    integration = Integration(system, table, march, mechanics, modes, used, work, flags, place, record, account)
+    integration = Integration(system, table, march, mechanics, modes, state, used, work, flags, place, record, account)
     if k == 1 and mechanics.limit[0] > 0.0:  # all three will be met: save the ways back to have them built
         for s in (0, 1, -1):
             integration.build(np.array([s]))
+    if after is not None and after.mechanism == system.mechanism:
+        integration.go_on_from(after)
     return integration
 
 

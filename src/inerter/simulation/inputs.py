@@ -19,6 +19,7 @@ from inerter.vehicle.mechanism import Mechanism
 Matrix = NDArray[np.float64]
 _SAME = 1e-9  # of a step: knots that differ by less are one
 MEMORY_LIMIT = 4 * 2**30
+_LARGEST = 1e100
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,8 +115,11 @@ def tabulate(
     step: float,
     every: int = 1,
     start: float = 0.0,
+    joined: bool = False,
 ) -> InputTable:
     """All inputs along the knots from `start` to `start` + `duration` [s], with a sample at every `every`-th step.
+
+    Where the run is `joined` to one that ended at `start`, what breaks just there is felt.
 
     Raises `SimulationError` if a step is longer than a signal's table or than half its shortest period, or if a
     signal ends too early.
@@ -124,7 +128,7 @@ def tabulate(
     check_steps(signals, step, start + duration)
     grid: Matrix = start + step * np.arange(count + 1, dtype=np.float64)
     broken = [
-        np.zeros(0) if s is None else _breaks(s, d, grid[0], grid[-1], step)
+        np.zeros(0) if s is None else _breaks(s, d, grid[0], grid[-1], step, joined)
         for s, d in zip(signals, delays, strict=True)
     ]
     between = np.unique(np.concatenate([np.zeros(0), *broken]))
@@ -147,6 +151,8 @@ def tabulate(
             value[:, i], slope[:, i] = signal.sample(time - delay)
         else:
             value[:, i], slope[:, i] = signal.grid(start - delay, step, count + 1)
+        if not abs(value[:, i].sum()) + abs(slope[:, i].sum()) < _LARGEST:
+            raise SimulationError(f"The signal {signal.label!r} is too large to compute with: beyond 1e100.")
         if broken[i].size:
             before.append((i, *_from_the_left(signal, delay, broken[i], time, step)))
     value_before, slope_before = value, slope
@@ -186,10 +192,22 @@ def parts_of(interval: float, delays: Sequence[float]) -> int:
     return 1
 
 
-def _breaks(signal: Signal, delay: float, first: float, last: float, step: float) -> Matrix:
-    """The times after `first` and up to `last`, included, at which a delayed signal breaks."""
-    times = signal.breaks(first - delay, last - delay + 0.5 * step) + delay
-    return times[times <= last + _SAME * step]
+def just_before(signals: Sequence[Signal | None], delays: Sequence[float], time: float, step: float) -> Matrix:
+    """(2, inputs): values and slopes of all inputs from the left at a time [s]; zero without a signal."""
+    at, found = np.array([time]), np.zeros((2, len(signals)))
+    for i, (signal, delay) in enumerate(zip(signals, delays, strict=True)):
+        if signal is not None:
+            breaks = _breaks(signal, delay, time, time, step, joined=True)
+            left = _from_the_left(signal, delay, breaks, at, step)[1:] if breaks.size else signal.sample(at - delay)
+            found[:, i] = np.ravel(left)
+    return found
+
+
+def _breaks(signal: Signal, delay: float, first: float, last: float, step: float, joined: bool) -> Matrix:
+    """The times after `first` (`joined`: from it on) and up to `last`, included, at which a delayed signal breaks."""
+    begin = first - 0.5 * step if joined else first
+    times = signal.breaks(begin - delay, last - delay + 0.5 * step) + delay
+    return times[(times >= first - _SAME * step) & (times <= last + _SAME * step)]
 
 
 def _from_the_left(

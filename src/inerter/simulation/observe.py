@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,58 +14,89 @@ from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.trajectory import Event, Repetition, Trajectory
 from inerter.systems.outputs import Output
-from inerter.systems.piecewise import output_rows
+from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
 Matrix = NDArray[np.float64]
+_ROUNDING = 1e-14  # of a sum, relative to its terms
 _FRICTION = {-1: "slip down", 0: "stick", 1: "slip up"}
 _GAP = {-1: "lower contact", 0: "open", 1: "upper contact"}
 
 
-def trajectory_of(integration: Integration, steady: Repetition | None, label: str, state: Matrix) -> Trajectory:
-    system, table, record = integration.system, integration.table, integration.record
-    kinds = [_FRICTION if isinstance(system.graph.branches[i].element, Friction) else _GAP for i in system.nonlinear]
-    labels = system.elements
-    rows = record.events[: integration.place[EVENTS]]
-
-    def events() -> tuple[Event, ...]:
-        listed = ((t, int(e), int(a), int(b)) for t, e, a, b in rows.tolist())
-        return tuple(Event(t, labels[e], kinds[e][a], kinds[e][b]) for t, e, a, b in listed)
-
-    reached, roads = table.samples, len(system.mechanism.roads)
+def trajectory_of(integration: Integration, steady: Repetition | None, label: str) -> Trajectory:
+    system, table, reached = integration.system, integration.table, integration.table.samples
     if not integration.status.ok:
         reached = int(np.sum(table.slot[: integration.place[SEGMENT] + 1] >= 0))
-    first = integration.modes.state[record.visited[0]]
-    states = {name: kind[int(s)] for name, kind, s in zip(labels, kinds, first, strict=False)}
-    visited, history = record.visited[:reached], np.ascontiguousarray(record.states[:reached])
-
-    def output(wanted: Output) -> Matrix:
-        on_x, on_u, on_eta = output_rows(system, wanted)
-        n, nu = on_x.size, on_u.size
-        eta = integration.modes.maps[: integration.count, integration.eta]
-        over = np.concatenate([on_x, on_u, [0.0]]) + np.einsum("i,mij->mj", on_eta, eta)
-        out = np.empty(reached)
-        channel = [*range(roads)] * 3 + [*range(roads, nu - 2 * roads)]
-        used = [i for i in range(nu) if np.any(over[:, n + i]) and table.moving[channel[i]]]
-        over = np.ascontiguousarray(np.concatenate([over[:, :n], over[:, [n + i for i in used]], over[:, -1:]], axis=1))
-        inputs = np.empty((reached, len(used)))
-        for column, i in enumerate(used):
-            inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i])[:reached]
-        evaluate(over, visited, history, inputs, out)
-        return out
-
+    rows = integration.record.events[: integration.place[EVENTS]]
     return Trajectory(
         time=table.sampled[:reached],
         status=integration.status if not integration.status.ok else integration.warning,
         outputs=system.outputs,
-        states=states,
-        energy=energy_of(integration, state if steady is None else record.states[0]) if integration.account else None,
+        states=_states(integration, rows),
+        energy=energy_of(integration) if integration.account else None,
         repetition=steady,
         final_state=integration.state,
         end=integration.now,
         label=label,
-        _evaluate=output,
-        _list_events=events,
+        _ending=integration.ending if integration.status.ok else None,
+        _evaluate=partial(_evaluate, integration, reached),
+        _list_events=partial(_listed, system, rows),
     )
+
+
+def _named(system: PiecewiseSystem) -> list[list[tuple[str, dict[int, str]]]]:
+    """For each friction and gap of the kernels the elements that it stands for: their labels, and names of its states.
+
+    A friction whose ends are turned slips down when the others slip up.
+    """
+    named = []
+    for element, group in zip(system.nonlinear_elements, system.nonlinear, strict=True):
+        names = _FRICTION if isinstance(element, Friction) else _GAP
+        turned = {state: names[-state] for state in names}
+        named.append([(system.graph.branches[i].label, names if s > 0.0 else turned) for i, s in group.items()])
+    return named
+
+
+def _states(integration: Integration, events: Matrix) -> dict[str, str]:
+    """The state of every element at the start; what changes at once is an event, too."""
+    found: dict[str, str] = {}
+    first = integration.modes.state[integration.record.visited[0]]
+    for e, elements in enumerate(_named(integration.system)):
+        own = events[events[:, 1] == e]
+        state = int(own[0, 2]) if own.size else int(first[e])
+        found |= {label: names[state] for label, names in elements}
+    return found
+
+
+def _listed(system: PiecewiseSystem, events: Matrix) -> tuple[Event, ...]:
+    named = _named(system)
+    return tuple(
+        Event(time, label, names[int(before)], names[int(after)])
+        for time, e, before, after in events.tolist()
+        for label, names in named[int(e)]
+    )
+
+
+def _evaluate(integration: Integration, reached: int, wanted: Output) -> Matrix:
+    """An output at the samples that were reached."""
+    system, table, record = integration.system, integration.table, integration.record
+    on_x, on_u, on_eta = output_rows(system, wanted)
+    n, nu, roads = on_x.size, on_u.size, len(system.mechanism.roads)
+    maps = integration.modes.maps[: integration.count]
+    weights = np.concatenate([on_x, on_eta])
+    rows = np.concatenate([maps[:, integration.seen], maps[:, integration.eta]], axis=1)
+    direct = np.concatenate([np.zeros(n), on_u, np.zeros(1)])
+    over = np.einsum("i,mij->mj", weights, rows) + direct
+    terms = np.einsum("i,mij->mj", np.abs(weights), np.abs(rows)) + np.abs(direct)
+    over[np.abs(over) < _ROUNDING * terms] = 0.0  # what sticks does not move
+    out = np.empty(reached)
+    channel = [*range(roads)] * 3 + [*range(roads, nu - 2 * roads)]
+    used = [i for i in range(nu) if np.any(over[:, n + i]) and table.moving[channel[i]]]
+    over = np.ascontiguousarray(np.concatenate([over[:, :n], over[:, [n + i for i in used]], over[:, -1:]], axis=1))
+    inputs = np.empty((reached, len(used)))
+    for column, i in enumerate(used):
+        inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i])[:reached]
+    evaluate(over, record.visited[:reached], np.ascontiguousarray(record.states[:reached]), inputs, out)
+    return out
 
 
 def sampled_input(table: InputTable, derivative: int, channel: int) -> Matrix:

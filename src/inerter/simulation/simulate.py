@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Literal
 
-import numpy as np
-
 from inerter.checks import is_number
 from inerter.errors import SimulationError
 from inerter.kernels.events import SEGMENT
@@ -14,13 +12,13 @@ from inerter.signals.signal import Signal
 from inerter.simulation import event_driven, stepped
 from inerter.simulation.inputs import MEMORY_LIMIT, assign, check_holds, tabulate, whole_steps
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.start import Initial, initial_state
+from inerter.simulation.start import Initial, ending_of, initial_state
 from inerter.simulation.steady import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.cars import Vehicle
 
-_CHUNK = 200_000  # segments between two looks at the keyboard
+_REPORTS = 100  # of progress
 
 
 def simulate(
@@ -67,24 +65,25 @@ def simulate(
     if integrator not in ("event-driven", "time-stepping"):
         raise SimulationError(f'The integrator is "event-driven" or "time-stepping", got {integrator!r}.')
     check_holds(system, signals)
+    joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
     if integrator == "time-stepping":
         if periodic or energy:
             raise SimulationError("A periodic steady state and the energy account need the event-driven integrator.")
-        at = np.array([0.0 if s is None else s(begin - d) for s, d in zip(signals, delays, strict=True)])
-        return stepped.run(system, signals, delays, initial_state(system, at, initial), begin, length, step, int(every))
-    table = tabulate(signals, delays, length, step, int(every), begin)
-    state, steady = initial_state(system, table.value[0], initial), None
-    integration = event_driven.start(system, table, state, account=energy)
+        return stepped.run(system, signals, delays, initial, begin, length, step, int(every))
+    table = tabulate(signals, delays, length, step, int(every), begin, joined)
+    state, steady = initial_state(system, table.value[0], initial, table.slope[0]), None
+    integration = event_driven.start(system, table, state, account=energy, after=ending_of(initial))
     if periodic:
         integration, steady = settle(system, table, state, energy)
     segments = table.time.size - 1
-    while integration.status.ok and integration.place[SEGMENT] < segments:
-        integration.advance(min(segments, int(integration.place[SEGMENT]) + _CHUNK))
+    reports = 1 if progress is None else _REPORTS
+    for part in range(1, reports + 1):
+        integration.advance(segments * part // reports)
         if progress is not None:
             progress(integration.place[SEGMENT] / segments)
     label = "; ".join(dict.fromkeys(s.label for s in signals if s is not None))
-    return trajectory_of(integration, steady, label, state)
+    return trajectory_of(integration, steady, label)
 
 
 def _length(duration: float | None, period: float | None, periodic: bool) -> float:

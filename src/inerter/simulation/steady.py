@@ -74,7 +74,7 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
         if not run.status.ok or mismatch <= _ENOUGH:
             break
         begun = run.state
-        run = event_driven.start(system, table, begun)
+        run = event_driven.start(system, table, begun, after=run.ending)
         run.advance(last)
         mismatch = run.mismatch(begun)
     return run, mismatch
@@ -84,7 +84,7 @@ def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bo
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
     again = repeating(table)
     quick, settled = _repeated(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
-    recorded = event_driven.start(system, again, quick.state, account=energy)
+    recorded = event_driven.start(system, again, quick.state, account=energy, after=quick.ending)
     recorded.status = quick.status
     if quick.status.ok and settled.mismatch > _ENOUGH:
         recorded.warning = _unsettled(settled)

@@ -12,6 +12,7 @@ The force of a damper on a road that jumps contains the jump, spread over a step
 from __future__ import annotations
 
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,8 @@ from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
 
-CHUNK = 1 << 15  # steps whose inputs are laid out at once
+CHUNK = 1 << 15  # steps whose inputs are laid out at once, if they take no longer than ...
+_PAUSE = 0.1  # [s] between two looks at the keyboard
 _ENDED = {
     STUCK: "no friction and contact forces that fit were found",
     INFINITE: "the velocities grew beyond all numbers",
@@ -204,13 +206,14 @@ def _march(scheme: Scheme, table: StepTable, known: Matrix, every: int) -> tuple
     )
     matrices = (scheme.predict, scheme.G, scheme.pull, scheme.Z, scheme.inertia, scheme.moved, scheme.h)
     ended, reached = DONE, 0
-    for first in range(0, steps, CHUNK):
-        inputs = _inputs(table, first, min(first + CHUNK, steps))
+    chunk = min(CHUNK, 1 << 10)
+    while reached < steps and ended == DONE:
+        begun, inputs = perf_counter(), _inputs(table, reached, min(reached + chunk, steps))
         ended, reached = march(
-            *matrices, scheme.starts, scheme.ends, inputs, first, steps, every, known, law, scratch, samples
+            *matrices, scheme.starts, scheme.ends, inputs, reached, steps, every, known, law, scratch, samples
         )
-        if ended != DONE:
-            break
+        spent = perf_counter() - begun
+        chunk = max(1, chunk // 2) if spent > _PAUSE else min(CHUNK, 2 * chunk) if spent < 0.5 * _PAUSE else chunk
     return samples, ended, reached
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import SimulationError, Status
 from inerter.systems.outputs import Output, find
+from inerter.vehicle.mechanism import Mechanism
 
 if TYPE_CHECKING:
     import xarray
@@ -67,6 +68,15 @@ class Repetition:
 
 
 @dataclass(frozen=True, eq=False)
+class Ending:
+    """What a simulation of the same mechanism needs, beside the state, to go on as if nothing had been between."""
+
+    mechanism: Mechanism
+    mode: tuple[int, ...]  # states of friction and gaps
+    scale: Matrix  # largest size of the state so far
+
+
+@dataclass(frozen=True, eq=False)
 class Trajectory:
     """A simulated motion; `run["name"]` is an output along `time`.
 
@@ -82,6 +92,7 @@ class Trajectory:
     final_state: Matrix = field(default_factory=lambda: np.zeros(0))  # to go on from: simulate(..., initial=...)
     end: float = 0.0  # [s] when that is
     label: str = ""  # of the signals
+    _ending: Ending | None = field(repr=False, default=None)
     _evaluate: Callable[[Output], Matrix] = field(repr=False, default=lambda output: np.zeros(0))
     _list_events: Callable[[], tuple[Event, ...]] = field(repr=False, default=tuple)
     _known: dict[str, Any] = field(repr=False, default_factory=dict)

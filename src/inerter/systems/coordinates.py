@@ -219,6 +219,18 @@ def independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
 
 
 @_remembered
+def dependencies(rows: Matrix) -> Matrix:
+    """Sums of rows that vanish, as columns: each row that depends on those before it, less what these make of it."""
+    first = independent_rows(rows)
+    rest = [i for i in range(len(rows)) if i not in first]
+    found = np.zeros((len(rows), len(rest)))
+    found[rest] = np.eye(len(rest))
+    if first and rest:
+        found[first] = -clean(rows[rest] @ np.linalg.pinv(rows[first])).T
+    return found
+
+
+@_remembered
 def pseudo_inverse(matrix: Matrix) -> Matrix:
     """The Moore-Penrose inverse."""
     return np.asarray(np.linalg.pinv(matrix))

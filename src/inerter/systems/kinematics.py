@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from types import UnionType
 from typing import Any
 
 import numpy as np
@@ -45,7 +44,7 @@ class Kinematics:
     lengths: Matrix
     elements: NDArray[np.int64]
     ports: Matrix  # of the external forces, over nodes
-    nonlinear: tuple[int, ...]
+    nonlinear: tuple[dict[int, int], ...]  # branches that act as one, and their direction in it
     needs_acceleration: tuple[bool, ...]
     moves_elements: tuple[bool, ...]
     weighs: bool  # whether R and V depend on values of inertia, as where a node is between two inerters alone
@@ -111,8 +110,9 @@ def _found(layout: _Layout) -> Kinematics:
     nodes, roads = _stack(branches, graph)
     rates = (nodes @ R, nodes @ N, roads + nodes @ V)
     places = _places(mechanism, graph)
-    kinds: tuple[type[Element] | UnionType, ...] = (Friction | Gap, Damper, Spring)
-    special, dampers, springs = ([i for i, b in enumerate(branches) if isinstance(b.element, k)] for k in kinds)
+    together = _together(branches)
+    special = [next(iter(group)) for group in together]
+    dampers, springs = ([i for i, b in enumerate(branches) if isinstance(b.element, k)] for k in (Damper, Spring))
     positions = np.hstack([places.nodes @ R, places.nodes @ N, places.roads + places.nodes @ V])
     names = [[FRICTION if isinstance(branches[i].element, Friction) else GAP, places.own[i]] for i in special]
     jolted = np.any(np.abs(inertia.roads + inertia.nodes @ V) > 1e-12, axis=0)
@@ -128,7 +128,7 @@ def _found(layout: _Layout) -> Kinematics:
         lengths=_dense(np.hstack(places.elongations)[special]),
         elements=np.array(names, dtype=np.int64).reshape(len(special), 2),
         ports=ports,
-        nonlinear=tuple(special),
+        nonlinear=together,
         needs_acceleration=tuple(jolted | _locked_to(rates, special)),
         moves_elements=tuple(_moved_by(rates, [i for i in special if value_of(branches[i].element) > 0.0])),
         weighs=weighs,
@@ -138,6 +138,28 @@ def _found(layout: _Layout) -> Kinematics:
 
 
 _remembered = lru_cache(maxsize=256)(_found)
+
+
+def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
+    """Gaps, and frictions: those between the same two ends as one, with 1 or -1 for each by how its ends are turned."""
+    groups: list[dict[int, int]] = []
+    for i, branch in enumerate(branches):
+        if isinstance(branch.element, Friction | Gap):
+            turned = [_turned(branches[next(iter(group))], branch) for group in groups]
+            if any(turned):
+                at = int(np.flatnonzero(turned)[0])
+                groups[at][i] = turned[at]
+            else:
+                groups.append({i: 1})
+    return tuple(groups)
+
+
+def _turned(first: Branch, other: Branch) -> int:
+    """1 or -1 if two frictions that hold are between the same two ends, in the same order or the other one; else 0."""
+    if not all(isinstance(b.element, Friction) and _holds(b.element) for b in (first, other)):
+        return 0
+    row, beside = (np.concatenate([b.nodes, b.roads]) for b in (first, other))
+    return 1 if np.array_equal(row, beside) else -1 if np.array_equal(-row, beside) else 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,7 +268,7 @@ def _check_locks(found: Kinematics) -> None:
     """Raises `MechanismError` if closing gaps would stop an inertia at once, or if a lock's force is not determined."""
     na, nw = found.motions[0].shape[1], found.motions[1].shape[1]
     ng, k = found.places.nodes.shape[0], len(found.nonlinear)
-    special = [found.graph.branches[i] for i in found.nonlinear]
+    special = [found.graph.branches[next(iter(group))] for group in found.nonlinear]
     labels = [branch.label for branch in special]
     H_a, H_w, H_z = np.split(found.moving[ng : ng + k], [na, na + nw], axis=1)
     gaps = [i for i, branch in enumerate(special) if isinstance(branch.element, Gap)]

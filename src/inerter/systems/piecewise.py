@@ -14,15 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import DesignError
+from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Damper, Element, Inerter, Spring
 from inerter.systems.graph import Graph
 from inerter.systems.kinematics import Kinematics, kinematics, value_of, with_elements
 from inerter.systems.outputs import Output
 from inerter.vehicle.cars import Vehicle, check_vehicle
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import Mechanism, check_values
 
 Matrix = NDArray[np.float64]
+_LOST = 1e14  # ratio of inertias at which the smaller one is rounding of the larger
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +49,7 @@ class PiecewiseSystem:
     kinematics: Kinematics
     graph: Graph
     mechanics: Mechanics
-    nonlinear: tuple[int, ...]  # branches that are friction or gaps
+    nonlinear: tuple[dict[int, float], ...]  # branches of friction or gaps that act as one; shares of its force
     outputs: dict[str, Output]
     rates: tuple[Matrix, Matrix, Matrix]  # of all branches, over a, w, z'
     elongations: tuple[Matrix, Matrix]  # of springs and gaps (zero for others), over g, z
@@ -81,9 +82,9 @@ class PiecewiseSystem:
         return 3 * len(self.mechanism.roads) + len(self.mechanism.forces)
 
     @property
-    def elements(self) -> tuple[str, ...]:
-        """Labels of the nonlinear elements."""
-        return tuple(self.graph.branches[i].label for i in self.nonlinear)
+    def nonlinear_elements(self) -> tuple[Element, ...]:
+        """One of each nonlinear group."""
+        return tuple(self.graph.branches[next(iter(group))].element for group in self.nonlinear)
 
 
 def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
@@ -97,6 +98,7 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     free = ", ".join(mechanism.free_values())
     if free:
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+    check_values(mechanism)
     return _system(mechanism, kinematics(mechanism))
 
 
@@ -142,13 +144,14 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
     inerters = (value_of(b.element) for b in graph.branches if isinstance(b.element, Inerter))
     inertia = np.array([*(c.inertia for c in mechanism.coordinates), *inerters])
     kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
+    _check_inertia(kinetic, inertia)
     resistance = _weighted(graph, Damper, np.hstack(rates[:2]), np.hstack(rates))
     return PiecewiseSystem(
         mechanism=mechanism,
         kinematics=known,
         graph=graph,
         mechanics=_mechanics(known, resistance, kinetic, kinetic_road, inertia),
-        nonlinear=known.nonlinear,
+        nonlinear=tuple(_shares(graph, group) for group in known.nonlinear),
         outputs=known.outputs,
         rates=rates,
         elongations=places.elongations,
@@ -163,6 +166,18 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
         needs_acceleration=known.needs_acceleration,
         moves_elements=known.moves_elements,
     )
+
+
+def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
+    """Raises `MechanismError` if an inertia is lost beside another one that moves with it."""
+    if inertia.size and inertia.max() > _LOST * inertia.min():
+        M = kinetic.T @ (inertia[:, None] * kinetic)
+        size = 1.0 / np.sqrt(np.diag(M))
+        if np.linalg.eigvalsh(M * size * size[:, None])[0] < 1.0 / _LOST:
+            raise MechanismError(
+                f"Inertias from {inertia.min():g} to {inertia.max():g} kg move together, and numbers of 16 digits "
+                "cannot hold both. Leave out what is so small, and join rigidly what is so heavy."
+            )
 
 
 def _mechanics(
@@ -188,8 +203,15 @@ def _mechanics(
         rates=known.moving,
         lengths=known.lengths,
         elements=known.elements,
-        limit=np.array([value_of(known.graph.branches[i].element) for i in known.nonlinear]),
+        limit=np.array([sum(value_of(known.graph.branches[i].element) for i in group) for group in known.nonlinear]),
     )
+
+
+def _shares(graph: Graph, group: dict[int, int]) -> dict[int, float]:
+    """What each branch of a group has of its force: frictions side by side share it by their sizes."""
+    sizes = {i: value_of(graph.branches[i].element) for i in group}
+    whole = sum(sizes.values())
+    return {i: turned * (sizes[i] / whole if len(group) > 1 else 1.0) for i, turned in group.items()}
 
 
 def _weighted(graph: Graph, kind: type[Element], left: Matrix, right: Matrix) -> Matrix:
@@ -244,7 +266,8 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
                 on_eta[:na] += value * E_a
                 on_u[acceleration] += value * E_z
             case _:
-                on_eta[na + nw + system.nonlinear.index(int(i))] += share
+                for number, group in enumerate(system.nonlinear):
+                    on_eta[na + nw + number] += share * group.get(int(i), 0.0)
     if output.road.size:
         on_u[z] += output.road
     if output.road_velocity.size:

@@ -15,6 +15,7 @@ from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import NAME, Free, Network, check_network
 from inerter.networks.transform import name_free_values, with_values
 
+_SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]
 GROUND: Port = {}
 
@@ -239,6 +240,24 @@ def _check_ports(mechanism: Mechanism) -> None:
         if tyre.road not in roads:
             known = ", ".join(sorted(roads)) or "none"
             raise MechanismError(f"Tyre {tyre.name!r} stands on {tyre.road!r}, which is not a road (roads: {known}).")
+
+
+def check_values(mechanism: Mechanism) -> None:
+    """Raises `MechanismError` for an element or inertia that is so small or large that others are lost beside it."""
+    for mount in mechanism.mounts():
+        for element in mount.network.elements():
+            if not isinstance(element.value, Free):
+                _check_size("value", element.label, element.value, element.unit)
+    for coordinate in mechanism.coordinates:
+        _check_size("inertia", coordinate.name, coordinate.inertia, "kg m^2" if coordinate.angle else "kg")
+
+
+def _check_size(what: str, of: str, value: float, unit: str) -> None:
+    if value != 0.0 and not _SMALLEST <= value <= _LARGEST:
+        raise MechanismError(
+            f"The {what} of {of!r} is {value:g} {unit}, and numbers of 16 digits can only be computed with from "
+            f"{_SMALLEST:g} to {_LARGEST:g} {unit}. Leave out what is so small, and join rigidly what is so stiff."
+        )
 
 
 def _travel(strut: Strut) -> dict[str, float]:

@@ -1,0 +1,163 @@
+"""Static equilibrium over roads that lie still.
+
+It is found from forces, not from displacements: springs in loops between given ends share what strains the loop by
+their compliances, which add up without cancellation. Every condition is one on elongations, so that neither the frame
+in which heights are measured nor the direction in which a device is written matters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import SimulationError
+from inerter.networks.elements import Gap, Spring
+from inerter.systems.coordinates import dependencies, independent_rows, null_space
+from inerter.systems.kinematics import value_of
+from inerter.systems.piecewise import PiecewiseSystem
+
+Matrix = NDArray[np.float64]
+_BALANCED = 1e-9  # of the sizes that are added up
+_ROUNDING = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """Where everything is at rest; friction carries nothing."""
+
+    elongation: Matrix  # (branches,) of springs and gaps [m]; zero for others
+    displacement: Matrix  # (nodes,) [m]
+
+
+def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Equilibrium:
+    """The rest over `road` heights [m] under external `force` [N].
+
+    Springs carry the load; a gap that carries some of it is closed. Gaps that are left to themselves are as close to
+    their middle, and then other elements as close to no elongation, as the rest allows.
+
+    Raises `SimulationError` if the springs cannot carry the load.
+    """
+    parts = _parts(system, road, force)
+    loose = np.flatnonzero(parts.half_width > 0.0)
+    for sides in sorted(product((0, 1, -1), repeat=loose.size), key=lambda sides: sum(map(abs, sides))):
+        found = _touching(parts, {int(i): side for i, side in zip(loose, sides, strict=True) if side})
+        if found is not None:
+            return found
+    raise SimulationError(
+        "The static load is not carried by springs: some part of it rests on dampers, inerters or friction alone, "
+        "which give way. Start at rest, or add a spring where the load passes."
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """Branches as rows over nodes, with their elongations where no node is displaced, and the load on the nodes."""
+
+    rows: Matrix
+    offset: Matrix  # [m]
+    load: Matrix  # [N]
+    compliance: Matrix  # [m/N] of springs; zero for others
+    half_width: Matrix  # [m] of gaps; zero for others
+    springs: list[int]
+    gaps: list[int]
+    others: list[int]
+
+
+def _parts(system: PiecewiseSystem, road: Matrix, force: Matrix) -> _Parts:
+    branches = system.graph.branches
+    springs, gaps = ([i for i, b in enumerate(branches) if isinstance(b.element, kind)] for kind in (Spring, Gap))
+    values = np.array([value_of(b.element) for b in branches])
+    compliance, half_width = np.zeros((2, values.size))
+    compliance[springs], half_width[gaps] = 1.0 / values[springs], values[gaps]
+    return _Parts(
+        rows=np.array([b.nodes for b in branches]).reshape(len(branches), len(system.graph.nodes)),
+        offset=np.array([b.roads for b in branches]).reshape(len(branches), road.size) @ road,
+        load=force @ system.kinematics.ports,
+        compliance=compliance,
+        half_width=half_width,
+        springs=springs,
+        gaps=gaps,
+        others=[i for i in range(len(branches)) if i not in springs and i not in gaps],
+    )
+
+
+def _touching(parts: _Parts, closed: dict[int, int]) -> Equilibrium | None:
+    """The equilibrium with these gaps, and no others, at their upper (1) or lower (-1) ends; None if there is none."""
+    rigid = [i for i in parts.gaps if i in closed or parts.half_width[i] == 0.0]
+    held, open_ = [*parts.springs, *rigid], [i for i in parts.gaps if i not in rigid]
+    elongation = np.zeros(parts.offset.size)
+    elongation[rigid] = [closed.get(i, 0) * parts.half_width[i] for i in rigid]
+    force = _forces(parts, held, parts.load, elongation[held] - parts.offset[held])
+    if force is None:
+        return None
+    elongation[held] += parts.compliance[held] * force
+    displacement = _solution(parts.rows[held], elongation[held] - parts.offset[held])
+    ways = null_space(parts.rows[held])
+    for branches in (open_, parts.others):
+        displacement, ways = _drawn_in(parts, branches, displacement, ways)
+    elongation[open_] = _sum(parts.rows[open_], displacement, parts.offset[open_])
+    if np.any(np.abs(elongation[open_]) > parts.half_width[open_] * (1.0 + _BALANCED)):
+        return None
+    # what does not press is at its end only if others would otherwise be further out
+    toward = _forces(parts, held, -parts.rows[open_].T @ elongation[open_], np.zeros(len(held)))
+    for i, side in closed.items():
+        at, loaded = held.index(i), _BALANCED * np.abs(force).max()
+        pressing = force[at] if abs(force[at]) > loaded or toward is None else toward[at]
+        if side * pressing < 0.0:
+            return None
+    return Equilibrium(elongation, displacement)
+
+
+def _forces(parts: _Parts, held: list[int], load: Matrix, given: Matrix) -> Matrix | None:
+    """Forces in the held branches that balance `load`, where their strains and `given` elongations fit together.
+
+    The stiffest branches carry the load; each other one closes a loop with them, around which a force is in balance.
+    """
+    order = np.argsort(parts.compliance[held], kind="stable")
+    rows, give, given = parts.rows[held][order], parts.compliance[held][order], given[order]
+    force, loops = np.zeros(len(held)), dependencies(rows)
+    if np.any(load):
+        stiffest = independent_rows(rows)
+        force[stiffest] = _solution(rows[stiffest].T, load)
+        if np.abs(rows.T @ force - load).max(initial=0.0) > _BALANCED * np.abs(load).max():
+            return None
+    misfit = _sum(loops.T, given + give * force)
+    own = np.einsum("ij,i,ij->j", loops, give, loops)
+    scale = 1.0 / np.sqrt(np.where(own > 0.0, own, 1.0))
+    strained = scale[:, None] * (loops.T @ (give[:, None] * loops)) * scale
+    try:  # elimination keeps the digits of small forces beside large ones
+        around = np.linalg.solve(strained, scale * misfit)
+    except np.linalg.LinAlgError:  # a loop of closed gaps alone
+        around = _solution(strained, scale * misfit)
+    force = force - loops @ (scale * around)
+    strain = give * force
+    if np.any(np.abs(loops.T @ (given + strain)) > _BALANCED * (np.abs(loops.T) @ (np.abs(given) + np.abs(strain)))):
+        return None
+    return np.asarray(force[np.argsort(order)])
+
+
+def _drawn_in(parts: _Parts, branches: Sequence[int], displacement: Matrix, ways: Matrix) -> tuple[Matrix, Matrix]:
+    """Displacements moved within `ways` to where some branches are shortest; and the ways that leave these alone."""
+    rows = parts.rows[list(branches)]
+    along = rows @ ways
+    if not along.size:
+        return displacement, ways
+    far = _sum(rows, displacement, parts.offset[list(branches)])
+    return displacement - ways @ _solution(along, far), ways @ null_space(along)
+
+
+def _sum(rows: Matrix, x: Matrix, offset: Matrix | float = 0.0) -> Matrix:
+    """Rows times x plus an offset, zero where that is rounding of the terms."""
+    total = rows @ x + offset
+    return np.where(np.abs(total) <= _ROUNDING * (np.abs(rows) @ np.abs(x) + np.abs(offset)), 0.0, total)
+
+
+def _solution(rows: Matrix, right: Matrix) -> Matrix:
+    """The least solution of least squares."""
+    if not np.any(right):
+        return np.zeros(rows.shape[1])
+    return np.asarray(np.linalg.lstsq(rows, right, rcond=1e-12)[0])

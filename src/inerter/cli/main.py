@@ -5,7 +5,7 @@ Exit codes: 0 done; 1 the work failed or was interrupted; 2 the request was wron
 
 from __future__ import annotations
 
-import os
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated, Literal
@@ -13,8 +13,10 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
-from inerter.cli.interrupts import interruptible
+from inerter.cli.interrupts import came, heed, interruptible, tell
+from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
+from inerter.writing import sweep
 
 EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
@@ -33,6 +35,7 @@ app = App(
     help="What an inerter does for a vehicle, and which design is best.",
     help_epilogue=EXAMPLES,
     help_format="plaintext",
+    suppress_keyboard_interrupt=False,
 )
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
@@ -264,28 +267,42 @@ def reproduce(
 
 
 def main() -> None:
-    """Entry point: run the command, and turn errors into a sentence and an exit code."""
-    sys.exit(call(sys.argv[1:]))
+    """Run the command line of this process, and end it."""
+    endure()
+    heed()
+    try:
+        code = call(sys.argv[1:])
+    except KeyboardInterrupt:  # while another was told
+        code = 1
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sweep()
+    sys.exit(code)
 
 
 def call(arguments: list[str]) -> int:
-    """Run the command line with `arguments`; returns the exit code."""
+    """Run the command line with `arguments`, and turn errors into a sentence and an exit code, which is returned."""
     try:
         with interruptible():
             code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
+        if (lost := problem()) is not None:
+            return _fail(f"standard output: {lost.strerror}. The results are written all the same.", 1)
         return code if isinstance(code, int) else 0
+    except KeyboardInterrupt as error:
+        tell(error)
+        return 1
     except CycloptsError as error:
         return _fail(f"{error}\nTry: inerter --help", 2)
     except InerterError as error:
         return _fail(str(error), 1 if isinstance(error, WorkError) else 2)
-    except KeyboardInterrupt:
-        return _fail("interrupted.", 1)
-    except BrokenPipeError:  # the reader of stdout has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
     except OSError as error:
         return _fail(f"{error.filename or 'system'}: {error.strerror or error}", 1)
+    except Exception:
+        if came():  # some library made another error of it
+            tell()
+            return 1
+        raise
 
 
 def _fail(message: str, code: int) -> int:

@@ -22,8 +22,10 @@ from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
 from inerter.study.budgets import budget_cases
 from inerter.study.file import load_study
-from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study, study_notes
+from inerter.study.run import FIGURES, REPORT, SUMMARY, StudyResult, check_study, run_study, study_notes
+from inerter.study.suggest import some
 
+_MOST = 20  # designs that are told one by one
 _JSON = {"improvement_error": "improvement_error_percent"}
 
 
@@ -62,7 +64,7 @@ def check(study: Path) -> int:
     budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
     swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
     print(
-        f"{study}: ok. {loaded.model}; layouts {', '.join(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
+        f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
         f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
     )
     for note in study_notes(loaded):
@@ -105,8 +107,10 @@ def _processes(jobs: int | None) -> int:
 
 def _judge(result: StudyResult) -> int:
     """Say what is not an ordinary number; the work has failed if a case has no number at all."""
-    for line in result.failures:
+    for line in result.failures[:_MOST]:
         _say(line)
+    if len(result.failures) > _MOST:
+        _say(f"and {len(result.failures) - _MOST} more like these; {result.folder / SUMMARY} tells all")
     failed = bool(result.data.status.str.startswith("failed").any())
     return 1 if failed or any(found.status == StatusKind.FAILED for found in result.budgets) else 0
 

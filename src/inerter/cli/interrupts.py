@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-_PATIENCE = 1.5  # [s] that work has to put its things away
+_PATIENCE = 1.2  # [s] that work has to put its things away
 _kept: list[Callable[[], str]] = []
 _came, _told = threading.Event(), threading.Event()
 

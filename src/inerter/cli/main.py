@@ -5,6 +5,7 @@ Exit codes: 0 done; 1 the work failed or was interrupted; 2 the request was wron
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from pathlib import Path
@@ -41,9 +42,22 @@ app = App(
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
 Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Processes to use; all cores if left out.")]
 Resume = Annotated[
-    bool, Parameter(negative="", show_default=False, help="Continue an interrupted run; finished cases are kept.")
+    bool,
+    Parameter(
+        negative="",
+        show_default=False,
+        help="Continue an interrupted run: what its journal holds is not computed again.",
+    ),
 ]
-Force = Annotated[bool, Parameter(negative="", show_default=False, help="Replace the results that the folder holds.")]
+Force = Annotated[
+    bool,
+    Parameter(
+        negative="",
+        show_default=False,
+        help="Replace the results in the folder when the new ones are whole. "
+        "What inerter did not write there, or somebody changed since, stays.",
+    ),
+]
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
 ]
@@ -219,7 +233,9 @@ def rig(
         Path,
         Parameter(name=["--output", "-o"], help="The file to write: .csv, .tsv, .txt, .tdms, .mf4 or .mat."),
     ],
-    force: Annotated[bool, Parameter(negative="", show_default=False, help="Replace the file if it exists.")] = False,
+    force: Annotated[
+        bool, Parameter(negative="", show_default=False, help="Replace a record that this command wrote.")
+    ] = False,
 ) -> int:
     """Run a virtual test rig, and write what its sensors read of a device that is known.
 
@@ -245,7 +261,8 @@ def reproduce(
     /,
     *,
     only: Annotated[
-        tuple[Part, ...], Parameter(help="The parts to reproduce, each with its own --only; all if left out.")
+        tuple[Part, ...],
+        Parameter(negative="", help="The parts to reproduce, each with its own --only; all if left out."),
     ] = (),
     output: Output = None,
     jobs: Jobs = None,
@@ -276,7 +293,9 @@ def main() -> None:
         code = 1
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-    sweep()
+    if came():
+        sweep()
+        os._exit(code)  # compiled code that was cut short may not survive the interpreter's own end
     sys.exit(code)
 
 

@@ -99,7 +99,11 @@ def _cells(line: str, delimiter: str | None) -> list[str]:
         return []
     if delimiter is None:
         return line.split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
+    try:
+        cells = next(csv.reader([line], delimiter=delimiter))
+    except csv.Error:  # a cell beyond all length, a carriage return within the line: for those who look into cells
+        cells = line.split(delimiter)
+    return [cell.strip() for cell in cells]
 
 
 def _is_number(cell: str) -> bool:

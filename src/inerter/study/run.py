@@ -10,7 +10,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from inerter.errors import InerterError, StatusKind, StudyError
+from inerter.errors import InerterError, StatusKind
 from inerter.files.common.folder import Intent, Results, claimed
 from inerter.files.common.origin import versions
 from inerter.methods.linear import CONVENTIONS, linear_problem
@@ -19,8 +19,10 @@ from inerter.optimisation.optimise import check_variables
 from inerter.study import journal as journals
 from inerter.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
 from inerter.study.cases import Outcome, cases, design_notes
+from inerter.study.problems import at, refusal
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.results import dataset, summary_csv
+from inerter.study.suggest import some
 from inerter.study.values import Study, write_resolved
 from inerter.study.workers import Crew, crewed, run_all
 from inerter.vehicle.cars import Vehicle
@@ -71,10 +73,10 @@ def check_study(study: Study) -> None:
             try:
                 _check_design(study, study.design(layout, swept))
             except InerterError as error:
-                problems.append(f"{study.path}: layouts.{layout}: {error}")
+                problems.append(at(("layouts", layout), str(error)))
                 break
     if problems:
-        raise StudyError("\n".join(problems))
+        raise refusal(study.path, problems)
 
 
 def _check_design(study: Study, vehicle: Vehicle) -> None:
@@ -103,8 +105,8 @@ def study_notes(study: Study) -> list[str]:
             notes.setdefault(note, []).append(layout)
     used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
     unused = [name for name in study.elements if name not in used]
-    return [f"{', '.join(layouts)}: {note}" for note, layouts in notes.items()] + (
-        [f"no layout uses {', '.join(unused)}"] if unused else []
+    return [f"{some(layouts)}: {note}" for note, layouts in notes.items()] + (
+        [f"no layout uses {some(unused)}"] if unused else []
     )
 
 

@@ -69,7 +69,7 @@ class Results:
         top = self.top or self
         own = (self.place / name).relative_to(top.place).as_posix()
         self.place.mkdir(exist_ok=True)
-        (listing(top.place) or Listing()).with_files({own: Entry(self.intent.by)}).write(top.place)
+        (listing(top.place) or Listing()).with_files({own: Entry(self.intent.by, journal=True)}).write(top.place)
 
     def publish(self) -> None:
         """Move everything that was drafted to its place, or nothing where a file that is not ours is in the way."""
@@ -108,6 +108,7 @@ def _results(intent: Intent) -> Iterator[Results]:
             results = Results(folder, place, draft, intent)
             yield results
             results.publish()
+        _seal(place)
         if beside:
             (new / _WHOLE).touch()
             with undisturbed():
@@ -115,6 +116,13 @@ def _results(intent: Intent) -> Iterator[Results]:
     finally:
         if intent.resume is None and not (new / _WHOLE).exists():
             shutil.rmtree(new, ignore_errors=True)
+
+
+def _seal(folder: Path) -> None:
+    """The journals of a folder will not grow any more."""
+    known = listing(folder) or Listing()
+    grown = {name: entry for name, entry in known.files.items() if entry.journal and not entry.digests}
+    known.with_files({n: replace(e, digests=(digest(folder / n),)) for n, e in grown.items()}).write(folder)
 
 
 @contextmanager
@@ -172,6 +180,8 @@ def _check(intent: Intent) -> None:
 def _check_files(intent: Intent, known: Listing) -> None:
     folder, own = intent.folder, known.by(intent.by)
     there = [name for name in dict.fromkeys((*own, *intent.names)) if os.path.lexists(folder / name)]
+    if intent.resume:  # its lines are looked at one by one
+        there = [name for name in there if name not in own or not own[name].journal or is_linked(folder, name)]
     strange = [name for name in there if not (_is_folder if name.endswith("/") else _is_ours)(folder, name, own)]
     if strange:
         raise StudyError(f"{folder}: {_told_apart(strange)} Move it away, or {_ELSEWHERE}.")
@@ -343,7 +353,8 @@ def _tidy(folder: Path, made: list[Path]) -> None:
 
 def _clean(folder: Path) -> None:
     """Remove what was under way when a process was killed."""
-    for place in (folder, folder / MARK):
+    known = (listing(folder) or Listing()).files
+    for place in {folder, folder / MARK, *((folder / name).parent for name in known)}:
         for path in place.glob(".inerter-????????"):
             shutil.rmtree(path, ignore_errors=True)
 

@@ -17,16 +17,17 @@ MARK = ".inerter"  # the folder of the list, of the lock, and of what is under w
 _NAME = f"{MARK}/files.json"
 _ABOUT = (
     "What inerter wrote in this folder, with the SHA-256 of each file. --force replaces these files and no others, and "
-    "of these only such as nobody has changed since. A journal tells by its own lines whether it was changed."
+    "of these only such as nobody has changed since. The lines of a journal that grows tell whether it was changed."
 )
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A file that was written: by which command, and the hashes that it may have; none for a journal, which grows."""
+    """A file that was written: by which command, and the hashes that it may have; none for a journal that grows."""
 
     by: str
     digests: tuple[str, ...] = ()
+    journal: bool = False
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Listing:
     def write(self, folder: Path) -> None:
         """Write the list into its folder."""
         files: dict[str, dict[str, Any]] = {
-            name: {"by": entry.by, **({"sha256": entry.digests} if entry.digests else {})}
+            name: {"by": entry.by, "sha256": entry.digests, **({"journal": True} if entry.journal else {})}
             for name, entry in sorted(self.files.items())
         }
         write_text(folder / _NAME, json.dumps({"about": _ABOUT, "files": files}, indent=1) + "\n")
@@ -57,7 +58,10 @@ def listing(folder: Path) -> Listing | None:
     """The list of a folder; None if there is none that can be read."""
     try:
         files = json.loads((folder / _NAME).read_bytes())["files"]
-        found = {name: Entry(str(e["by"]), tuple(map(str, e.get("sha256", ())))) for name, e in files.items()}
+        found = {
+            name: Entry(str(entry["by"]), tuple(map(str, entry["sha256"])), bool(entry.get("journal")))
+            for name, entry in files.items()
+        }
     except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return None
     return Listing(found) if all(map(_is_below, found)) else None
@@ -74,7 +78,7 @@ def is_own(folder: Path, name: str, known: Listing) -> bool:
     path, entry = folder / name, known.files.get(name)
     if entry is None or is_linked(folder, name) or not path.is_file():
         return False
-    return digest(path) in entry.digests if entry.digests else is_intact(path)
+    return digest(path) in entry.digests or (entry.journal and not entry.digests and is_intact(path))
 
 
 def is_linked(folder: Path, name: str) -> bool:

@@ -335,44 +335,47 @@ def mine(home: Path) -> None:
         (home / name).write_text("mine")
 
 
+def chosen(count: int, every: bool) -> range:
+    """All steps, or some of them."""
+    return range(1, count + 1, 1 if every else max(count // 8, 1))
+
+
+EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.campaign)], ids=["some", "every"])
+
+
+@EVERY
 @pytest.mark.parametrize("command", [RUN, SIMULATE, REPRODUCE], ids=lambda c: c[0])
-def test_a_kill_at_any_step_of_force_leaves_old_or_new_results(command: list[str], home: Path, tmp_path: Path) -> None:
-    """And the same command, once more, finishes; what is the user's stays in either case."""
+def test_a_kill_at_a_step_of_force_leaves_old_or_new_results(command: list[str], every: bool, home: Path) -> None:
+    """And a further command finishes; what is the user's stays in either case."""
     assert call(command) == 0
     mine(home)
     old = results_of(home / "out")
-    shutil.copytree(home / "out", home / "saved", symlinks=True)
+    saved(home)
     (home / "study.toml").write_text(OTHER)
     (home / "simulation.toml").write_text(SIMULATION_FILE.replace('"1 mm"', '"2 mm"'))
     count = steps_of([*command, "--force"])
     new = results_of(home / "out")
     assert command is REPRODUCE or new != old
-    assert count > 60
-    for after in range(1, count + 1, 1 if command is SIMULATE else 7):
-        shutil.rmtree(home / "out")
-        shutil.copytree(home / "saved", home / "out", symlinks=True)
+    for after in chosen(count, every):
+        restored(home)
         assert killed([*command, "--force"], after) == 9
         found = results_of(home / "out")
         for name, content in found.items():
             assert content in (old.get(name), new.get(name)), (after, name)
         assert {name for name in old if name not in found} <= set(old) - set(new)
-        again = [*command, "--resume"] if (home / "out" / ".inerter" / "new").exists() and command is RUN else None
-        assert call(again or [*command, "--force"]) == 0, after
-        assert results_of(home / "out") == new, after
+        going_on = command is RUN and (home / "out" / ".inerter" / "new").exists()
+        assert call([*command, "--resume" if going_on else "--force"]) == 0, after
+        assert without_journals(results_of(home / "out")) == without_journals(new), after
         assert is_whole(home / "out")
         assert not list(home.rglob(".inerter-*"))
 
 
-def without_journals(found: dict[str, Any]) -> dict[str, Any]:
-    """In these, the same lines may stand in another order."""
-    return {name: content for name, content in found.items() if not name.endswith(".jsonl")}
-
-
+@EVERY
 @pytest.mark.parametrize("command", [RUN, REPRODUCE], ids=lambda c: c[0])
-def test_a_kill_at_any_step_can_be_resumed(command: list[str], home: Path) -> None:
+def test_a_kill_at_a_step_can_be_resumed(command: list[str], every: bool, home: Path) -> None:
     count = steps_of(command)
     whole = without_journals(results_of(home / "out"))
-    for after in range(1, count + 1, 3 if command is RUN else 11):
+    for after in chosen(count, every):
         shutil.rmtree(home / "out")
         assert killed(command, after) == 9
         assert call([*command, "--resume"]) == 0, after
@@ -380,24 +383,26 @@ def test_a_kill_at_any_step_can_be_resumed(command: list[str], home: Path) -> No
         assert is_whole(home / "out")
 
 
-def test_a_kill_while_a_record_is_written_leaves_the_old_or_the_new_one(home: Path) -> None:
-    command = ["rig", "rig.toml", "-o", "new.csv"]
+@EVERY
+def test_a_kill_while_a_record_is_written_leaves_the_old_or_the_new_one(every: bool, home: Path) -> None:
+    command = ["rig", "rig.toml", "-o", "out/new.csv"]
+    (home / "out").mkdir()
     assert call(command) == 0
-    old = (home / "new.csv").read_bytes()
-    listed = (home / ".inerter" / "files.json").read_bytes()
+    old = (home / "out" / "new.csv").read_bytes()
+    saved(home)
     (home / "rig.toml").write_text(RIG_FILE.replace('"1 mm"', '"2 mm"'))
     count = steps_of([*command, "--force"])
-    new = (home / "new.csv").read_bytes()
-    for after in range(1, count + 1):
+    new = (home / "out" / "new.csv").read_bytes()
+    for after in chosen(count, every):
+        restored(home)
         assert killed([*command, "--force"], after) == 9
-        assert (home / "new.csv").read_bytes() in (old, new)
+        assert (home / "out" / "new.csv").read_bytes() in (old, new)
         assert call([*command, "--force"]) == 0, after
-        assert (home / "new.csv").read_bytes() == new
-        (home / "new.csv").write_bytes(old)
-        (home / ".inerter" / "files.json").write_bytes(listed)
+        assert (home / "out" / "new.csv").read_bytes() == new
 
 
-def test_an_error_at_any_step_is_one_sentence(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@EVERY
+def test_an_error_at_a_step_is_one_sentence(every: bool, home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A disk that is full at one of them, whichever library takes it."""
 
     def full() -> None:
@@ -405,18 +410,35 @@ def test_an_error_at_any_step_is_one_sentence(home: Path, capsys: pytest.Capture
 
     assert call(RUN) == 0
     mine(home)
+    old = results_of(home / "out")
     (home / "study.toml").write_text(OTHER)
-    shutil.copytree(home / "out", home / "saved", symlinks=True)
+    saved(home)
     count = steps_of([*RUN, "--force"])
     new = results_of(home / "out")
-    for after in range(1, count + 1, 3):
-        shutil.rmtree(home / "out")
-        shutil.copytree(home / "saved", home / "out", symlinks=True)
+    for after in chosen(count, every):
+        restored(home)
         capsys.readouterr()
         with cut(after, full):
             code = call([*RUN, "--force"])
         said = [line for line in capsys.readouterr().err.splitlines() if line.startswith("inerter: ")]
         assert code in (0, 1), after  # where it is about what may be left, the work is done
         assert code == 0 or (len(said) == 1 and "No space left" in said[0]), said
+        found = results_of(home / "out")
+        assert all(content in (old.get(name), new.get(name)) for name, content in found.items())
         assert call([*RUN, "--force"]) == 0
         assert results_of(home / "out") == new
+
+
+def saved(home: Path) -> None:
+    shutil.copytree(home / "out", home / "saved", symlinks=True)
+
+
+def restored(home: Path) -> None:
+    """Bring the folder back to what was saved."""
+    shutil.rmtree(home / "out")
+    shutil.copytree(home / "saved", home / "out", symlinks=True)
+
+
+def without_journals(found: dict[str, Any]) -> dict[str, Any]:
+    """In these, the same lines may stand in another order."""
+    return {name: content for name, content in found.items() if not name.endswith(".jsonl")}

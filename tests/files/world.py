@@ -6,15 +6,18 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from itertools import count
+from math import sin
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 from unittest.mock import patch
 
 from inerter.files.common.listing import MARK, digest, listing
+from inerter.report.identification import write_fit
 from inerter.study.cases import Case, Outcome
 from inerter.study.file import load_study
-from inerter.study.identification_run import Identified
+from inerter.study.identification_run import RESIDUALS, Identified
 from inerter.study.run import run_study
 from inerter.writing import write_text
 
@@ -52,7 +55,10 @@ frequency = "5 Hz"
 """
 SIMULATION_FILE = f'[vehicle]\nmodel = "rig"\n{RIG}[simulation]\nduration = "20 ms"\nstep = "1 ms"\n'
 RIG_FILE = f'{RIG}[rig]\nduration = "0.1 s"\nsampling = "100 Hz"\n'
-TABLE = "time [s],displacement [mm],force [N]\n" + "".join(f"{i / 100},{i % 7},{i % 5}\n" for i in range(60))
+TABLE = "time [s],displacement [mm],force [N]\n" + "".join(
+    f"{i / 200},{sin(0.1 * i):.3f},{-20.0 * sin(0.1 * i) + 0.05 * (i * i % 11 - 5):.3f}\n" for i in range(300)
+)
+_numbers = count()
 PARTS = ("study.toml", "simulation.toml", "rig.toml", "bench.csv")
 
 
@@ -98,6 +104,13 @@ def page(found: Any, folder: Path, *others: Any) -> None:
     write_text(folder / "report.html", "page\n" * 100)
 
 
+def fit(found: Any, folder: Path) -> None:
+    """What writes a fit, with something that differs from one to the next."""
+    write_fit(found, folder)
+    with (folder / RESIDUALS).open("a") as stream:
+        stream.write(f"# {next(_numbers)}\n")
+
+
 @contextmanager
 def cheap(identified: Identified | None = None) -> Iterator[None]:
     """Inside, commands write as ever, but search, fit and draw nothing.
@@ -119,6 +132,7 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
         )
         change("inerter.cli.simulation.draw_simulation", drawn("simulation.svg", "simulation.png"))
         change("inerter.cli.identify.write_identification", page)
+        change("inerter.cli.identify.write_fit", fit)
         if identified is not None:
             change("inerter.cli.identify.run_identification", lambda *arguments: identified)
         change("inerter.report.reproduction.write_reproduction", page)

@@ -22,6 +22,9 @@ _SWEEPS = 100
 _REFLECTIONS = 2000
 _SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pushes included
 _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
+_STICKS = 4.0 / np.pi  # first harmonic of friction over the force through it if held, from which on it sticks
+_WEAK = 0.5  # the same up to which its motion is nearly sinusoidal ...
+_MINOR = 0.35  # ... if its force makes no more than this part of the response
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
 
@@ -90,7 +93,8 @@ def reflect(Z: Array, velocity: Array, damper: Array, limit: Array, extra: Array
 
 @part()
 def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
-    """Gain of the first output with every friction slipping or sticking as it must, and whether that settled.
+    """Gain of the first output with every friction slipping or sticking as it must, whether that settled, and whether
+    every friction is so weak, or so strong, that one harmonic tells what it does.
 
     One friction is one closed form. Several are solved one after the other until none changes. Each sees the others
     as a damper and a force: waves, which a passive mechanism does not amplify, and which are small if the damper is
@@ -114,7 +118,7 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
                 M[j, k] = Z[j, k] * (damper[k] - reference)
             M[j, j] += 1.0
         if not factor(M, pivots):
-            return np.nan, False
+            return np.nan, False, False
         solve(M, pivots, velocity)
         for k in range(count):
             for j in range(count):
@@ -150,7 +154,16 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
         for k in range(count):
             v -= Z[j, k] * extra[k]
         response += G[0, 1 + j] * (extra[j] + (damper[j] - reference) * v)
-    return abs(response) / amplitude, settled
+    sure = True
+    for j in range(count):
+        push = velocity[j]
+        for k in range(count):
+            if k != j:
+                push -= Z[j, k] * extra[k]
+        held, part = abs(push), limit[j] * abs(Z[j, j])  # times the admittance: forces
+        major = abs(G[0, 1 + j]) * limit[j] > _MINOR * abs(response)
+        sure = sure and (part >= _STICKS * held or (part <= _WEAK * held and not major))
+    return abs(response) / amplitude, settled, sure
 
 
 @part()
@@ -158,7 +171,7 @@ def gain_at(system: Array, omega: float, limit: Array, amplitude: float, referen
     """Gain at one frequency, infinite at a pole."""
     A, B, C, D, scale = system
     if not transfer(A, B, C, D, scale, omega, G):
-        return np.inf, True
+        return np.inf, True, True
     return balance(G, limit, amplitude, reference)
 
 
@@ -290,7 +303,7 @@ def peaks(
     for _ in range(6):
         new = np.empty(points.size)
         for k in range(points.size):
-            new[k], settled = gain_at(system, points[k], limit, amplitude, reference, G)
+            new[k], settled, _ = gain_at(system, points[k], limit, amplitude, reference, G)
             fine = fine and settled
         grid, values = merged(grid, values, points, new)
         points = finer(grid, values)
@@ -329,19 +342,21 @@ def gains(
     reference: float,
     omegas: Array,
 ) -> Any:
-    """Frequencies, the gain at each, and whether all went well: at `omegas`, or at the `peaks` where none is given.
+    """Frequencies, the gain at each, whether all went well, and whether one harmonic tells what friction does there.
 
-    There are none where the system cannot be closed.
+    At `omegas`, or at the `peaks` where none is given, which are not judged. There are none where the system cannot be
+    closed.
     """
     A, B, C, D, _, _, good = close(row, descriptor)
     if not good:
-        return np.zeros(0), np.zeros(0), False
+        return np.zeros(0), np.zeros(0), False, False
     system = (A, B, C, D, units(A))
     G = np.empty((C.shape[0], B.shape[1]), np.complex128)
     if omegas.size == 0:
-        return peaks(system, row, limit, dampers, descriptor, amplitude, reference, G)
-    values, fine = np.empty(omegas.size), True
+        found, heights, fine = peaks(system, row, limit, dampers, descriptor, amplitude, reference, G)
+        return found, heights, fine, True
+    values, fine, sure = np.empty(omegas.size), True, True
     for k in range(omegas.size):
-        values[k], settled = gain_at(system, omegas[k], limit, amplitude, reference, G)
-        fine = fine and settled
-    return omegas, values, fine
+        values[k], settled, told = gain_at(system, omegas[k], limit, amplitude, reference, G)
+        fine, sure = fine and settled, sure and told
+    return omegas, values, fine, sure

@@ -30,7 +30,8 @@ class Estimate:
     realisations: int = 0  # random inputs that were averaged
     peaks: tuple[Peak, ...] = ()  # local maxima of the gain, for an index that is a peak gain
     notes: tuple[str, ...] = ()  # what the method left out
-    samples: tuple[float, ...] = field(default=(), repr=False)  # the values that were averaged
+    samples: tuple[float, ...] = field(default=(), repr=False)  # the value on each random input
+    period: int | None = None  # of each random input [s]
 
 
 class Objective(Protocol):
@@ -55,6 +56,15 @@ class Objective(Protocol):
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Those smooth functions and their gradients (components,), (components, values)."""
+        ...
+
+
+@runtime_checkable
+class Averaging(Protocol):
+    """A method whose value is a mean over random inputs."""
+
+    def fixed(self, realisations: int, period: int | None = None) -> Method:
+        """The same with so many random inputs, whatever their scatter, of this length [s] if one is given."""
         ...
 
 
@@ -116,7 +126,7 @@ def evaluate_many(
     """Indices of many designs of one layout: an array (designs, indices).
 
     `values` gives for each free value of `vehicle` an array of one length (or one number for all designs); they
-    need not lie between its bounds. Where `evaluate` would call the value inaccurate, it is nan here.
+    need not lie between its bounds. Where `evaluate` would not say `ok`, the value is nan here.
 
     Raises `DesignError` if a free value is missing, unknown, not positive or not finite, or if lengths differ; and
     what `evaluate` raises.

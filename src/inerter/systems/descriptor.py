@@ -16,19 +16,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, LinearSystemError, MechanismError
 from inerter.networks.elements import Damper, Element, Free, Inerter, Spring
-from inerter.systems.coordinates import Coordinates, find_coordinates
+from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph, linear_graph
-from inerter.systems.linear import LinearSystem
+from inerter.systems.linear import Fine, LinearSystem, Origin
+from inerter.systems.polynomials import TransferFunctions
+from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
+Rows = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
+_ROUNDING = float(np.finfo(np.longdouble).eps)
+_TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +56,9 @@ class Descriptor:
     outputs: tuple[str, ...]
     variables: dict[str, Free]
     notes: tuple[str, ...]
+    sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
+    mechanism: Mechanism
+    graph: Graph
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
@@ -61,30 +71,61 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
         raise DesignError(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
-    p = np.array([1.0, *(values[name] for name in descriptor.variables)])
-    S, R, F, Y_eta, Y_x, Y_u = (
-        np.tensordot(p, stack, 1)
-        for stack in (descriptor.S, descriptor.R, descriptor.F, descriptor.Y_eta, descriptor.Y_x, descriptor.Y_u)
-    )
-    size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
+    p = np.array([1.0, *(values[name] for name in descriptor.variables)], dtype=np.longdouble)
+    d = descriptor
+    S, R, F, Y_eta, Y_x, Y_u = (_summed(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (_summed(p.astype(float), stack) for stack in d.sizes)
+    T, T_error = _solved(S, np.hstack([R, F]), S_size, np.hstack([R_size, F_size]))
+    X, Y = np.hstack([d.X_x, d.X_u]), np.hstack([Y_x, Y_u])
+    top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
+    size = np.abs(T).astype(float)
+    with np.errstate(invalid="ignore"):  # nothing times infinite: as unsure
+        top_error = np.abs(d.X_eta) @ (T_error + _ROUNDING * size) + _ROUNDING * np.abs(X)
+        bottom_error = np.abs(Y_eta).astype(float) @ T_error
+    bottom_error += _TERMS * _ROUNDING * (np.hstack([Y_x_size, Y_u_size]) + Y_eta_size @ size)
     n = R.shape[1]
-    scaled, right = S / size, np.hstack([R, F]) / size
-    solved = np.linalg.solve(scaled, right)
-    rest = right.astype(np.longdouble) - scaled.astype(np.longdouble) @ solved.astype(np.longdouble)
-    solved = solved + np.linalg.solve(scaled, np.asarray(rest, dtype=float))
-    T_x, T_u = solved[:, :n], solved[:, n:]
-    if np.any(F):  # an input that reaches an acceleration by rounding only would make an r.m.s. value infinite
-        T_u = np.where(np.abs(T_u) > 1e-14 * np.abs(np.linalg.inv(scaled)) @ np.abs(F / size), T_u, 0.0)
+    for matrix, error in ((top[:, n:], top_error[:, n:]), (bottom[:, n:], bottom_error[:, n:])):
+        matrix[np.abs(matrix) <= error] = 0.0  # white noise that reaches an output by rounding only would be infinite
+    errors = top_error[:, :n], top_error[:, n:], bottom_error[:, :n], bottom_error[:, n:]
+    fine = Fine((top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]), errors)
+    A, B, C, D = (matrix.astype(float) for matrix in fine.matrices)
     return LinearSystem(
-        A=descriptor.X_x + descriptor.X_eta @ T_x,
-        B=descriptor.X_u + descriptor.X_eta @ T_u,
-        C=Y_x + Y_eta @ T_x,
-        D=Y_u + Y_eta @ T_u,
-        states=descriptor.states,
-        inputs=descriptor.inputs,
-        outputs=descriptor.outputs,
-        notes=descriptor.notes,
+        A=A,
+        B=B,
+        C=C,
+        D=D,
+        states=d.states,
+        inputs=d.inputs,
+        outputs=d.outputs,
+        notes=d.notes,
+        origin=Origin(partial(_functions, d, dict(values)), (A, B, C, D), fine, d.inputs, d.outputs),
     )
+
+
+def _summed(p: NDArray[Any], stack: Matrix) -> Matrix:
+    return stack[0] if p.size == 1 else np.tensordot(p, stack, 1)
+
+
+def _solved(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
+    """S^-1 right in extended precision, and its error: infinite where S is singular to rounding."""
+    size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
+    scaled, right = S / size, right / size
+    try:
+        inverse = np.linalg.inv(scaled.astype(float))
+    except np.linalg.LinAlgError:
+        return np.zeros_like(right), np.full(right.shape, np.inf)
+    solved = step = (inverse @ right.astype(float)).astype(np.longdouble)
+    for _ in range(3):
+        step = inverse @ (right - scaled @ solved).astype(float)
+        solved = solved + step
+    terms = (S_size @ np.abs(solved).astype(float) + right_size) / size.astype(float)
+    return solved, np.abs(step) + _TERMS * _ROUNDING * (np.abs(inverse) @ terms)
+
+
+def _functions(
+    descriptor: Descriptor, values: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
+) -> TransferFunctions:
+    return transfer_functions(descriptor.mechanism, descriptor.graph, values, inputs, outputs)
 
 
 def describe(
@@ -169,8 +210,10 @@ class _Equations:
         self.a, self.g = slice(0, self.na), slice(self.na, self.na + self.ng)
         k, n, e, m = 1 + len(self.variables), self.na + self.ng, int(edges[-1]), len(self.inputs)
         self.k, self.n, self.e, self.m = k, n, e, m
-        self.S, self.R, self.F = np.zeros((k, e, e)), np.zeros((k, e, n)), np.zeros((k, e, m))
-        self.rows: list[tuple[Matrix, Matrix, Matrix]] = []
+        self.balance = np.zeros((k, e, e + n + m), np.longdouble)  # S, -R and -F beside each other
+        self.size = np.zeros_like(self.balance)
+        self.rows: list[Rows] = []
+        self.row_sizes: list[Rows] = []
         self.extra: list[tuple[str, Matrix, Matrix, Matrix]] = []  # integrators: name, rows on eta, x, u
 
     def _variables(self) -> dict[str, Free]:
@@ -185,12 +228,12 @@ class _Equations:
 
     def _by_value(self, element: Element, array: Matrix) -> Matrix:
         """`array` times the element's value, as a stack over the design variables."""
-        stack = np.zeros((self.k, *array.shape))
+        stack = np.zeros((self.k, *array.shape), np.longdouble)
         value = element.value
         if isinstance(value, Free):
             stack[1 + list(self.variables).index(str(value.name))] = array
         else:
-            stack[0] = value * array
+            stack[0] = value * array.astype(np.longdouble)
         return stack
 
     def add_balance(self) -> None:
@@ -202,33 +245,39 @@ class _Equations:
         ]
         for branch in (*masses, *self.graph.branches):
             on = np.zeros(self.e)  # how the element's force acts on each row of the balance
-            on[self.a1], on[self.u1] = branch.nodes @ c.R, branch.nodes @ c.U
-            on[self.y], on[self.z] = branch.nodes @ c.Y, branch.nodes @ c.Z
-            eta, x, u = self._elongation_rate(branch)
-            self.S += self._by_value(branch.element, np.outer(on, eta))
-            self.R -= self._by_value(branch.element, np.outer(on, x))
-            self.F -= self._by_value(branch.element, np.outer(on, u))
+            on[self.a1], on[self.u1], on[self.y], on[self.z] = c.rate(branch.nodes)
+            self._add(branch.element, on, self._elongation_rate(branch))
             if isinstance(branch.element, Inerter):
                 momentum = np.zeros(self.e)
-                momentum[self.u0] = branch.nodes @ c.U
+                momentum[self.u0] = on[self.u1]
                 eta, x, _ = self._velocity(branch.nodes)
-                self.S += self._by_value(branch.element, np.outer(momentum, eta))
-                self.R -= self._by_value(branch.element, np.outer(momentum, x))
+                self._add(branch.element, momentum, (eta, x, np.zeros(self.m)))
         for j, row in enumerate(self.force_rows):
-            column = len(self.road_names) + j
-            self.F[0, self.a1, column] = row @ c.R
-            self.F[0, self.y, column] = row @ c.Y
-            self.F[0, self.z, column] = row @ c.Z
+            force = np.zeros(self.e)
+            force[self.a1], _, force[self.y], force[self.z] = c.rate(row)
+            column = self.e + self.n + len(self.road_names) + j
+            self.balance[0, :, column], self.size[0, :, column] = -force, np.abs(force)
 
-    def _blank(self) -> tuple[Matrix, Matrix, Matrix]:
+    def _add(self, element: Element, on: Matrix, to: Rows) -> None:
+        """Add an element that acts so on the rows of the balance."""
+        value, place, on = element.value, 0, on.astype(np.longdouble)
+        if isinstance(value, Free):
+            place = 1 + list(self.variables).index(str(value.name))
+        else:
+            on = value * on
+        term = np.multiply.outer(on, np.concatenate(to))
+        self.balance[place] += term
+        self.size[place] += np.abs(term)
+
+    def _blank(self) -> Rows:
         return np.zeros(self.e), np.zeros(self.n), np.zeros(self.m)
 
-    def _elongation_rate(self, branch: Branch) -> tuple[Matrix, Matrix, Matrix]:
+    def _elongation_rate(self, branch: Branch) -> Rows:
         """What the element's value multiplies: its elongation, velocity or acceleration, as rows on eta, x and u."""
         eta, x, u = self._blank()
         match branch.element:
             case Inerter():
-                eta[self.a1], eta[self.u1] = branch.nodes @ self.split.R, branch.nodes @ self.split.U
+                eta[self.a1], eta[self.u1] = self.split.rate(branch.nodes)[:2]
             case Damper():
                 eta, x, u = self._velocity(branch.nodes, branch.roads)
             case Spring():
@@ -237,10 +286,9 @@ class _Equations:
                 eta, x = self._elongation(row)
         return eta, x, u
 
-    def _velocity(self, nodes: Matrix, roads: Matrix | None = None) -> tuple[Matrix, Matrix, Matrix]:
+    def _velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
         eta, x, u = self._blank()
-        x[self.a] = nodes @ self.split.R
-        eta[self.u0], eta[self.y] = nodes @ self.split.U, nodes @ self.split.Y
+        x[self.a], eta[self.u0], eta[self.y], _ = self.split.rate(nodes)
         if roads is not None and roads.size:
             u[: len(self.road_names)] = roads[self.road_columns]
         return eta, x, u
@@ -253,14 +301,9 @@ class _Equations:
 
     def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
         """The combination of spring elongations that is this displacement whatever moves, if there is one."""
-        c = self.split
-        motions = np.hstack([c.R, c.U, c.Y, c.Z])
-        moves = np.hstack([self.spring_rows @ motions, self.spring_roads])
-        target = np.hstack([nodes @ motions, roads[self.road_columns]])
-        weights = np.linalg.lstsq(moves.T, target, rcond=1e-12)[0]
-        weights = np.where(np.abs(weights) < 1e-13, 0.0, weights)
-        fits = np.allclose(moves.T @ weights, target, rtol=0.0, atol=1e-9 * max(1.0, float(np.abs(target).max())))
-        return weights if fits else None
+        return combination(
+            np.hstack([self.spring_rows, self.spring_roads]), np.hstack([nodes, roads[self.road_columns]])
+        )
 
     def possible_outputs(self) -> list[str]:
         """Names of the outputs that need no state of their own."""
@@ -296,12 +339,12 @@ class _Equations:
             rows = self._constant(*self._velocity(coordinates[stem]))
         elif stem in coordinates and what == "acceleration":
             eta, x, u = self._blank()
-            eta[self.a1], eta[self.u1] = coordinates[stem] @ self.split.R, coordinates[stem] @ self.split.U
+            eta[self.a1], eta[self.u1] = self.split.rate(coordinates[stem])[:2]
             rows = self._constant(eta, x, u)
         elif name in displacements:
             rows = self._displacement_output(name, *displacements[name])
         elif mounts.get(stem) == what:
-            rows = self._force(stem)
+            rows, sizes = self._force(stem)
         elif stem in branches and what == "velocity":
             rows = self._constant(*self._velocity(branches[stem].nodes, branches[stem].roads))
         else:
@@ -309,13 +352,14 @@ class _Equations:
             known += [f"{mount}_{w}" for mount, w in mounts.items()]
             raise LinearSystemError(f"There is no output named {name!r} (there are: {', '.join(known)}).")
         self.rows.append(rows)
+        self.row_sizes.append(sizes if mounts.get(stem) == what else _absolute(rows))
         self.outputs.append(name)
 
-    def _constant(self, *rows: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size))]) for row in rows)
+    def _constant(self, *rows: Matrix) -> Rows:
+        eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size), row.dtype)]) for row in rows)
         return eta, x, u
 
-    def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> tuple[Matrix, Matrix, Matrix]:
+    def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> Rows:
         weights = self.displacement(nodes, roads)
         if weights is not None:
             return self._constant(*self._elongation(weights), np.zeros(self.m))
@@ -325,15 +369,16 @@ class _Equations:
         column[0, -1] = 1.0
         return eta, np.hstack([x, column]), u
 
-    def _force(self, mount: str) -> tuple[Matrix, Matrix, Matrix]:
-        eta, x, u = np.zeros((self.k, self.e)), np.zeros((self.k, self.n)), np.zeros((self.k, self.m))
+    def _force(self, mount: str) -> tuple[Rows, Rows]:
+        """The force of a mounted network, and the size of its terms."""
+        size, total = self._constant(*self._blank()), self._constant(*map(_fine, self._blank()))
         for i in self.graph.mounts[mount].carriers:
             branch = self.graph.branches[i]
-            on_eta, on_x, on_u = self._elongation_rate(branch)
-            eta += self._by_value(branch.element, on_eta)
-            x += self._by_value(branch.element, on_x)
-            u += self._by_value(branch.element, on_u)
-        return eta, x, u
+            for stack, sizes, row in zip(total, size, self._elongation_rate(branch), strict=True):
+                term = self._by_value(branch.element, row)
+                stack += term
+                sizes += np.abs(term).astype(float)
+        return total, size
 
     def finish(self, order: list[str]) -> Descriptor:
         """All arrays, with integrators behind the other states and inputs in the order asked for."""
@@ -341,31 +386,46 @@ class _Equations:
         n = self.n + q
         X_eta, X_x, X_u = np.zeros((n, self.e)), np.zeros((n, n)), np.zeros((n, self.m))
         X_eta[self.a, self.a1] = np.eye(self.na)
-        X_eta[self.g, self.y] = c.P @ self.spring_rows @ c.Y
-        X_x[self.g, self.a] = c.P @ self.spring_rows @ c.R
-        X_u[self.g, : len(self.road_names)] = c.P @ self.spring_roads
+        X_x[self.g, self.a], X_eta[self.g, self.y], X_u[self.g, : len(self.road_names)] = c.rates
         for i, (_, eta, x, u) in enumerate(self.extra, start=self.n):
             X_eta[i], X_x[i, : self.n], X_u[i] = eta, x, u
-        Y_x = np.zeros((self.k, len(self.rows), n))
-        for i, (_, x, _) in enumerate(self.rows):
-            Y_x[:, i, : x.shape[1]] = x
         columns = [self.inputs.index(name) for name in order]
+        Y, Y_sizes = (self._output_stacks(rows, columns) for rows in (self.rows, self.row_sizes))
+        S, R, F = self._balance_stacks(self.balance, columns)
         return Descriptor(
-            S=self.S,
-            R=np.concatenate([self.R, np.zeros((self.k, self.e, q))], axis=2),
-            F=self.F[:, :, columns],
+            S=S,
+            R=-R,
+            F=-F,
             X_eta=X_eta,
             X_x=X_x,
             X_u=X_u[:, columns],
-            Y_eta=np.array([eta for eta, _, _ in self.rows]).reshape(-1, self.k, self.e).swapaxes(0, 1).copy(),
-            Y_x=Y_x,
-            Y_u=np.array([u for _, _, u in self.rows]).reshape(-1, self.k, self.m).swapaxes(0, 1)[:, :, columns],
+            Y_eta=Y[0],
+            Y_x=Y[1],
+            Y_u=Y[2],
             states=self._state_names(),
             inputs=tuple(order),
             outputs=tuple(self.outputs),
             variables=self.variables,
             notes=self.graph.notes,
+            sizes=tuple(size.astype(float) for size in (*self._balance_stacks(self.size, columns), *Y_sizes)),
+            mechanism=self.mechanism,
+            graph=self.graph,
         )
+
+    def _balance_stacks(self, balance: Matrix, columns: list[int]) -> list[Matrix]:
+        """Stacks over eta, over all states, and over the inputs in the order asked for."""
+        S, R, F = np.split(balance, [self.e, self.e + self.n], axis=2)
+        later = np.zeros((self.k, self.e, len(self.extra)), balance.dtype)
+        return [S, np.concatenate([R, later], axis=2), F[:, :, columns]]
+
+    def _output_stacks(self, rows: list[Rows], columns: list[int]) -> list[Matrix]:
+        """Rows of the outputs, some of which were added before the last state, as stacks over eta, x and u."""
+        widths = (self.e, self.n + len(self.extra), self.m)
+        stacks = [np.zeros((self.k, len(rows), width), np.longdouble) for width in widths]
+        for i, over in enumerate(rows):
+            for stack, row in zip(stacks, over, strict=True):
+                stack[:, i, : row.shape[1]] = row
+        return [*stacks[:2], stacks[2][:, :, columns]]
 
     def _state_names(self) -> tuple[str, ...]:
         velocities = [f"{self.graph.nodes[int(np.argmax(column))]}_velocity" for column in self.split.R.T]
@@ -375,3 +435,12 @@ class _Equations:
             elongations.append("_".join(labels) + ("_elongation" if len(labels) == 1 else "_mean_elongation"))
         names = [*velocities, *elongations, *(name for name, *_ in self.extra)]
         return tuple(n if names.count(n) == 1 else f"{n}{names[: i + 1].count(n)}" for i, n in enumerate(names))
+
+
+def _absolute(rows: Rows) -> Rows:
+    eta, x, u = rows
+    return np.abs(eta), np.abs(x), np.abs(u)
+
+
+def _fine(array: Matrix) -> Matrix:
+    return array.astype(np.longdouble)

@@ -92,8 +92,13 @@ def undisturbed() -> Iterator[None]:
             signal.raise_signal(signal.SIGINT)
 
 
+def characters(text: str) -> str:
+    """A text in which what is no character, as file names may have it, is escaped."""
+    return text.encode(errors="backslashreplace").decode()
+
+
 def write_text(path: Path, text: str) -> None:
-    """Write a text as a whole; what is no character, as file names may have it, is escaped."""
+    """Write a text as a whole, in `characters`."""
     with whole(path) as draft:
         draft.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
 

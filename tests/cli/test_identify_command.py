@@ -169,7 +169,7 @@ def test_an_interruption_keeps_the_fit(
     monkeypatch.setattr("inerter.cli.identify.write_identification", stop)
     folder = fitted / "stopped"
     arguments = [str(fitted / "bench.csv"), "--config", str(fitted / "rig.toml"), "-o", str(folder)]
-    assert call(["identify", *arguments]) == 1
+    assert call(["identify", *arguments]) == 130
     assert "fit.json is complete" in capsys.readouterr().err
     assert json.loads((folder / "fit.json").read_text())["status"] == "ok"
 

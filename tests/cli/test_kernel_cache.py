@@ -5,29 +5,34 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
-PROGRAM = """
-import sys
-from inerter.kernels import compiled, typed
-import inerter.kernels.stepping
-print("done")
+KERNEL = """
+from inerter.kernels import typed
+
+
+@typed("float64(float64)")
+def doubled(x):
+    return 2.0 * x
 """
 WORDS = "the cache of compiled kernels cannot be written"
 
 
 def compile_with(cache: Path | None, temporary: Path) -> tuple[str, str]:
-    """Compile a kernel module in a process with that cache; what it prints."""
-    environment = {**os.environ, "TMPDIR": str(temporary)}
+    """Compile a small kernel in a process with that cache; what it prints."""
+    (temporary.parent / "small.py").write_text(KERNEL, encoding="utf-8")
+    (temporary.parent / "__init__.py").touch()  # as in a package of kernels
+    environment = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": str(temporary.parent)}
+    environment |= {"PYTHONDONTWRITEBYTECODE": "1"}
     environment = {name: value for name, value in environment.items() if name not in ("HOME", "XDG_CACHE_HOME")}
-    environment |= {"XDG_CACHE_HOME": str(cache)} if cache else {"HOME": "/nobody"}
+    environment |= {"XDG_CACHE_HOME": str(cache)} if cache else {"HOME": "/nobody/here"}
     found = subprocess.run(
-        [sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True, timeout=280
-    )
+        [sys.executable, "-c", "import small; print(small.doubled(21.0))"],
+        env=environment, capture_output=True, text=True, check=True, timeout=280,
+    )  # fmt: skip
     return found.stdout, found.stderr
 
 
@@ -52,7 +57,7 @@ def no_right(path: Path) -> None:
 
 def full(path: Path) -> None:
     path.mkdir()
-    mount(path, "size=64k")
+    mount(path, "size=8k")
 
 
 def read_only(path: Path) -> None:
@@ -76,10 +81,21 @@ def test_a_cache_that_cannot_be_written_is_told_and_done_without(
         out, err = compile_with(cache, temporary)
     finally:
         subprocess.run(["umount", "-l", cache], capture_output=True, check=False)
-    assert out == "done\n"
+    assert out == "42.0\n"
     assert err.count(WORDS) == 1
     assert str(cache) in err
     assert "Traceback" not in err
+
+
+def test_nobody_at_home(temporary: Path) -> None:
+    out, err = compile_with(None, temporary)
+    assert out == "42.0\n"
+    assert err.count(WORDS) == 1
+
+
+def test_a_cache_that_can_be_written_is_used(tmp_path: Path, temporary: Path) -> None:
+    said = [compile_with(tmp_path / "cache", temporary)[1] for _ in range(2)]
+    assert said == ["inerter: compiling the numerical kernels; this happens once.\n", ""]
 
 
 def test_files_of_the_cache_that_were_cut_short_are_made_anew(tmp_path: Path, temporary: Path) -> None:
@@ -89,9 +105,5 @@ def test_files_of_the_cache_that_were_cut_short_are_made_anew(tmp_path: Path, te
         path.write_bytes(path.read_bytes()[: (0, 10, path.stat().st_size // 2)[number % 3]])
     for _ in range(2):
         out, err = compile_with(cache, temporary)
-        assert (out, err) == ("done\n", "")
+        assert (out, err) == ("42.0\n", "")
     assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))
-
-
-def test_nothing_is_left_in_the_temporary_folder(tmp_path: Path) -> None:
-    assert not list(Path(tempfile.gettempdir()).glob("inerter-*"))

@@ -14,10 +14,29 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 COMMAND = f"{shlex.quote(sys.executable)} -c 'from inerter.cli.start import main; main()'"
 
 
+TITLE = 'title = "Größe ☃"\n'
+STUDY = f"""{TITLE}\
+[vehicle]
+model = "quarter-car"
+sprung_mass = "250 kg"
+unsprung_mass = "35 kg"
+tyre_stiffness = "150 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "20 kN/m"
+c = "1 kN s/m"
+[layouts]
+S1 = "k | c"
+[study]
+indices = ["J1"]
+"""
+
+
 @pytest.fixture
 def home(tmp_path: Path) -> Path:
-    text = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8").replace('["J1", "J3", "J5"]', '["J1"]')
-    (tmp_path / "study.toml").write_text('title = "Größe ☃"\n' + text.split("\n", 1)[1], encoding="utf-8")
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     (tmp_path / "rattle.toml").write_bytes((EXAMPLES / "backlash_rattle.toml").read_bytes())
     return tmp_path
 
@@ -42,15 +61,23 @@ ENDS = {
 }
 
 
-@pytest.mark.parametrize("line", ENDS.values(), ids=ENDS)
-@pytest.mark.parametrize("arguments", ["run study.toml -j 1 -o out", "simulate rattle.toml -o out"])
+RUN, SIMULATE = "run study.toml -j 1 -o out", "simulate rattle.toml -o out"
+
+
+SAMPLE = [(ENDS[name], RUN) for name in ("no reader at all", "nothing open")]
+REST = [(line, command) for line in ENDS.values() for command in (RUN, SIMULATE) if (line, command) not in SAMPLE]
+
+
+@pytest.mark.parametrize(
+    ("line", "arguments"), [*SAMPLE, *(pytest.param(*each, marks=pytest.mark.campaign) for each in REST)]
+)
 def test_results_are_whole_whoever_listens(line: str, arguments: str, home: Path) -> None:
     code, out, err = shell(line.format(arguments), home)
     assert code == 0
     assert "Traceback" not in out + err
     assert "Exception" not in out + err
     assert (home / "out" / "figures").is_dir()
-    assert list((home / "out").glob("*.nc"))[0].read_bytes()[:4] == b"\x89HDF"  # nothing was printed into a file
+    assert next((home / "out").glob("*.nc")).read_bytes()[:4] == b"\x89HDF"  # nothing was printed into a file
 
 
 @pytest.mark.parametrize(
@@ -63,9 +90,7 @@ def test_a_terminal_that_knows_few_characters(environment: dict[str, str], home:
     assert code == 0
     assert "Traceback" not in out + err
     assert "Gr\\xf6\\xdfe" in out
-    code, out, err = shell(
-        "inerter run --help && inerter check study.toml && inerter run 'ü.toml'", home, **environment
-    )
+    code, out, err = shell("inerter check study.toml && inerter check 'ü.toml'", home, **environment)
     assert code == 2
     assert "Traceback" not in out + err
     assert out.isascii()
@@ -85,7 +110,7 @@ def test_a_name_that_is_no_text(home: Path) -> None:
     name = os.fsencode(home) + b"/caf\xe9.toml"
     os.rename(os.fsencode(home / "study.toml"), name)
     text = Path(os.fsdecode(name)).read_text(encoding="utf-8")
-    Path(os.fsdecode(name)).write_text(text.split("\n", 1)[1], encoding="utf-8")  # so that its name is its title
+    Path(os.fsdecode(name)).write_text(text.replace(TITLE, ""), encoding="utf-8")  # so that its name is its title
     code, out, err = shell("inerter run caf*.toml -j 1", home)
     assert code == 0, err
     assert "Traceback" not in out + err

@@ -16,12 +16,13 @@ import pytest
 import xarray as xr
 
 from inerter.errors import StudyError
+from inerter.files.common.folder import Intent, claimed
 from inerter.methods.method import evaluate
 from inerter.study.cases import Outcome, cases
 from inerter.study.file import load_study
 from inerter.study.journal import finished, journal_of
 from inerter.study.registry import INDEX, METHOD
-from inerter.study.run import check_study, run_study
+from inerter.study.run import NAMES, check_study, run_study
 
 SWEEP = """
 title = "Soft and stiff springs"
@@ -119,29 +120,35 @@ def test_resolved_study_gives_the_same_results(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=["kill -9", "Ctrl-C"])
-def test_interrupted_sweep_resumes_to_the_same_bytes(tmp_path: Path, how: signal.Signals) -> None:
-    study = write(tmp_path, points=100)
+@pytest.mark.parametrize(
+    ("points", "processes"), [(20, 1), pytest.param(100, 2, marks=pytest.mark.campaign)], ids=["one", "two processes"]
+)
+def test_interrupted_sweep_resumes_to_the_same_bytes(
+    tmp_path: Path, how: signal.Signals, points: int, processes: int
+) -> None:
+    study = load_study(write(tmp_path, points))
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    undisturbed = start(["run", str(study), "-o", str(whole), "-j", "1"])
-    process = start(["run", str(study), "-o", str(broken), "-j", "2"])
-    wait_for_cases(process, broken / "journal.jsonl", 30)
+    process = start(["run", str(study.path), "-o", str(broken), "-j", str(processes)])
+    wait_for_cases(process, broken / "journal.jsonl", points // 4)
     process.send_signal(how)
     _, problems = process.communicate(timeout=60)
     if how == signal.SIGINT:
-        assert process.returncode == 1
-        assert b"--resume" in problems
+        assert process.returncode == 130
+        kept_is_said = f"what was computed is kept. Continue with: inerter run {study.path} -o {broken} --resume"
+        assert f"inerter: interrupted; {kept_is_said}" in problems.decode()
         assert b"Traceback" not in problems
     kept = lines(broken / "journal.jsonl")
-    assert 30 < len(kept) < 1 + 400
-    finish(start(["run", str(study), "-o", str(broken), "-j", "2", "--resume"]))
-    finish(undisturbed)
+    assert points // 4 < len(kept) < 1 + 4 * points
+    run_study(study, broken, jobs=processes, resume=True)
+    run_study(study, whole)
     assert (broken / "summary.csv").read_bytes() == (whole / "summary.csv").read_bytes()
     after = lines(broken / "journal.jsonl")
     complete = [line for line in kept if line.endswith("}")]
     assert after[: len(complete)] == complete
-    assert len(after) == 1 + 400  # every case once: nothing finished was computed again
+    assert len(after) == 1 + 4 * points  # every case once: nothing finished was computed again
 
 
+@pytest.mark.campaign
 def test_workers_end_with_their_parent(tmp_path: Path) -> None:
     process = start(["run", str(write(tmp_path, points=1000)), "-o", str(tmp_path / "out"), "-j", "2"])
     children: list[int] = []
@@ -216,15 +223,12 @@ def test_journal_cut_before_its_first_line_begins_anew(tmp_path: Path, text: str
 
 
 def test_folder_in_use_is_refused(tmp_path: Path) -> None:
-    study = write(tmp_path, points=400)
-    process = start(["run", str(study), "-o", str(tmp_path / "out"), "-j", "1"])
-    try:
-        wait_for_cases(process, tmp_path / "out" / "journal.jsonl", 3)
-        with pytest.raises(StudyError, match="another run"):
-            run_study(load_study(study), tmp_path / "out", resume=True)
-    finally:
-        process.kill()
-        process.communicate()
+    study = load_study(write(tmp_path, points=2))
+    run_study(study, tmp_path / "out")
+    with claimed(Intent(tmp_path / "out", "run", NAMES, resume=True)):
+        for options in ({"force": True}, {"resume": True}, {}):
+            with pytest.raises(StudyError, match=r"another run is writing|is not empty"):
+                run_study(study, tmp_path / "out", **options)
 
 
 def test_resume_and_force_exclude_each_other(tmp_path: Path) -> None:

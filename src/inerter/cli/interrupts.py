@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+INTERRUPTED = 130  # the exit code that shells give what Ctrl-C has ended
 _PATIENCE = 1.2  # [s] that work has to put its things away
 _kept: list[Callable[[], str]] = []
 _came, _told = threading.Event(), threading.Event()
@@ -78,7 +79,7 @@ def _end_soon() -> None:
         process.kill()
     sweep()
     tell(_kept[-1]() if _kept else "")
-    os._exit(1)
+    os._exit(INTERRUPTED)
 
 
 def _unraisable(problem: Any) -> None:

@@ -1,6 +1,6 @@
 """The command `inerter`. Results go to stdout, progress and problems to stderr.
 
-Exit codes: 0 done; 1 the work failed or was interrupted; 2 the request was wrong.
+Exit codes: 0 done; 1 the work failed; 2 the request was wrong; 130 interrupted by Ctrl-C.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
-from inerter.cli.interrupts import came, heed, interruptible, tell
+from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
 from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
 from inerter.writing import sweep
@@ -28,7 +28,7 @@ EXAMPLES = """Examples:
   inerter identify fit.csv --model ball-screw
   inerter reproduce wang-su-2008 -o paper
 
-Exit codes: 0 done, 1 the work failed or was interrupted, 2 the request was wrong."""
+Exit codes: 0 done, 1 the work failed, 2 the request was wrong, 130 interrupted by Ctrl-C."""
 
 app = App(
     name="inerter",
@@ -290,7 +290,7 @@ def main() -> None:
     try:
         code = call(sys.argv[1:])
     except KeyboardInterrupt:  # while another was told
-        code = 1
+        code = INTERRUPTED
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     if came():
@@ -310,7 +310,7 @@ def call(arguments: list[str]) -> int:
         return code if isinstance(code, int) else 0
     except KeyboardInterrupt as error:
         tell(error)
-        return 1
+        return INTERRUPTED
     except CycloptsError as error:
         return _fail(f"{error}\nTry: inerter --help", 2)
     except InerterError as error:
@@ -320,7 +320,7 @@ def call(arguments: list[str]) -> int:
     except Exception:
         if came():  # some library made another error of it
             tell()
-            return 1
+            return INTERRUPTED
         raise
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 
+from inerter.cli.interrupts import INTERRUPTED
 from inerter.cli.streams import endure
 
 
@@ -20,4 +21,4 @@ def main() -> None:
 
 def _stop(number: int, frame: object) -> None:
     os.write(2, b"inerter: interrupted.\n")
-    os._exit(1)
+    os._exit(INTERRUPTED)

@@ -22,6 +22,7 @@ from inerter.study.schema import Axles, Range, StudyFile, SweepRange
 from inerter.study.suggest import nearest, some
 from inerter.study.values import MOUNTS, StrutLayout, Study, Sweep, elements_used, write_resolved
 from inerter.units import shown
+from inerter.writing import characters
 
 __all__ = ["StrutLayout", "Study", "Sweep", "load_study", "write_resolved"]
 
@@ -103,7 +104,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
     if baseline is None and len(layouts) > 1:
         baseline = next(iter(layouts))
     return Study(
-        title=path.stem if shape.title is None else shape.title,
+        title=characters(path.stem) if shape.title is None else shape.title,
         path=path,
         model=model,
         vehicle=vehicle,

@@ -19,6 +19,7 @@ from inerter.study.suggest import nearest, some
 from inerter.study.values import StrutLayout
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
+from inerter.writing import characters
 
 
 def load_simulation(path: str | Path) -> SimulationRequest:
@@ -48,7 +49,7 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
     if chosen is None and len(layouts) == 1:
         chosen = next(iter(layouts))
     return SimulationRequest(
-        title=path.stem if shape.title is None else shape.title,
+        title=characters(path.stem) if shape.title is None else shape.title,
         path=path,
         model=model,
         vehicle=vehicle,

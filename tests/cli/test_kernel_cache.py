@@ -28,7 +28,9 @@ def compile_with(cache: Path | None, temporary: Path) -> tuple[str, str]:
     environment = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": str(temporary.parent)}
     environment |= {"PYTHONDONTWRITEBYTECODE": "1"}
     environment = {name: value for name, value in environment.items() if name not in ("HOME", "XDG_CACHE_HOME")}
-    environment |= {"XDG_CACHE_HOME": str(cache)} if cache else {"HOME": "/nobody/here"}
+    environment |= (
+        {"XDG_CACHE_HOME": str(cache)} if cache else {"HOME": str(temporary.parent / "small.py")}
+    )  # no folder
     found = subprocess.run(
         [sys.executable, "-c", "import small; print(small.doubled(21.0))"],
         env=environment, capture_output=True, text=True, check=True, timeout=280,

@@ -129,8 +129,9 @@ def _compiled(function: F, signature: Any, fused: bool, borrowing: bool) -> F:
     before = settings.CACHE_DIR, settings.SLP_VECTORIZE
     settings.CACHE_DIR = str(folder)
     try:
+        empty = folder is not None and not any(folder.iterdir())
         kept = _cache_in(folder, function)
-        if folder and kept and not any(folder.iterdir()):
+        if empty and kept:
             _tell()
         options: dict[str, Any] = {"error_model": "numpy", "nogil": True}
         if fused:  # a product and a sum in one instruction, with one rounding, and four of them side by side

@@ -156,7 +156,7 @@ def check_single(path: Path, *, inputs: tuple[Path, ...], force: bool) -> None:
 
 
 def _check(intent: Intent) -> None:
-    """Raises `StudyError` for a intent that cannot be met; reads only."""
+    """Raises `StudyError` for an intent that cannot be met; reads only."""
     folder = intent.folder
     if intent.resume and intent.force:
         raise StudyError("--resume keeps what the folder holds and --force replaces it: give one of them.")
@@ -184,7 +184,7 @@ def _check_files(intent: Intent, known: Listing) -> None:
         there = [name for name in there if name not in own or not own[name].journal or is_linked(folder, name)]
     strange = [name for name in there if not (_is_folder if name.endswith("/") else _is_ours)(folder, name, own)]
     if strange:
-        raise StudyError(f"{folder}: {_told_apart(strange)} Move it away, or {_ELSEWHERE}.")
+        raise StudyError(f"{folder}: {_told_apart(strange)} Move that away, or {_ELSEWHERE}.")
     read = [name for name in there if intent.force and _is_input(folder / name, intent.inputs)]
     if read:
         raise StudyError(
@@ -217,7 +217,10 @@ def _not_ours(intent: Intent, commands: Iterable[str]) -> str:
 
 
 def _told_apart(names: list[str]) -> str:
-    return f"{_enumerated(names)} was not written by inerter, or changed since, so it is taken for your own and stays."
+    was, they, stay = ("was", "it is", "stays") if len(names) == 1 else ("were", "they are", "stay")
+    return (
+        f"{_enumerated(names)} {was} not written by inerter, or changed since, so {they} taken for your own and {stay}."
+    )
 
 
 def _enumerated(names: list[str]) -> str:
@@ -275,7 +278,7 @@ def _move(
     strange = [name for name in moved if not _may_replace(target, name, known, moved[name].by, inputs)]
     strange += [name for name in stale if not is_own(target, name, known)]
     if strange:
-        raise WorkError(f"{target}: {_told_apart(strange)} Move it away, and repeat the command.")
+        raise WorkError(f"{target}: {_told_apart(strange)} Move that away, and repeat the command.")
     for name in moved:
         settle(source / name)
     both = {

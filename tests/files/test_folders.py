@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import random
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -335,12 +336,14 @@ def mine(home: Path) -> None:
         (home / name).write_text("mine")
 
 
-def chosen(count: int, every: bool) -> range:
+def chosen(count: int, every: bool) -> list[int]:
     """All steps, or some of them."""
-    return range(1, count + 1, 1 if every else max(count // 8, 1))
+    steps = list(range(1, count + 1))
+    return steps if every else sorted(random.Random(count).sample(steps, min(count, 4)))
 
 
-EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.campaign)], ids=["some", "every"])
+LONG = [pytest.mark.campaign, pytest.mark.timeout(7200)]
+EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=LONG)], ids=["some", "every"])
 
 
 @EVERY

@@ -25,7 +25,7 @@ from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _PEAKS: Array = np.empty(0)  # frequencies that are not known yet
-_NEAR = 0.97  # of the highest gain: peaks that could be the highest
+_NEAR = 0.5  # of the highest gain: peaks that could be the highest, since an untold one may be off by that much
 _NUDGE = 1e-6  # relative change of a value for differences
 
 

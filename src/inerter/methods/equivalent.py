@@ -21,7 +21,7 @@ from inerter.errors import DesignError, IndicatorError
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Spring, Value
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import Descriptor, close, describe
-from inerter.systems.graph import linear_graph
+from inerter.systems.graph import full_graph, linear_graph
 from inerter.vehicle.mechanism import Mechanism, Tyre
 
 Array = NDArray[np.float64]
@@ -82,6 +82,17 @@ def check_gaps(mechanism: Mechanism) -> None:
                     f"with play. Use ExpectedValue() or ApproximateLinear(), which simulate it, or give the gap a "
                     f"half-width of 0."
                 )
+
+
+def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
+    """Raises `IndicatorError` for the velocity or force of a friction: a damper has its place."""
+    frictions = [branch.label for branch in full_graph(mechanism).branches if isinstance(branch.element, Friction)]
+    for name in names:
+        if name.rpartition("_")[0] in frictions:
+            raise IndicatorError(
+                f"Statistical linearisation does not tell {name!r}: it puts a damper in the place of the friction. "
+                f"Use ExpectedValue() or ApproximateLinear(), which simulate it."
+            )
 
 
 def has_friction(mechanism: Mechanism) -> bool:

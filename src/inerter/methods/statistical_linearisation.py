@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.indices.index import Combination, Index
-from inerter.methods.equivalent import check_gaps, has_friction
+from inerter.methods.equivalent import check_gaps, check_outputs, has_friction
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.method import Estimate, Objective
 from inerter.methods.norm import Norm
@@ -81,6 +81,7 @@ class StatisticalLinearisation:
         check_gaps(mechanism)
         if not has_friction(mechanism):
             return None
+        check_outputs(mechanism, [weighted.output for weighted in question.outputs])
         if question.combination is Combination.PEAK_GAIN:
             from inerter.methods.describing_function import harmonic_balance
 

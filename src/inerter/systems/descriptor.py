@@ -1,7 +1,8 @@
 """Equations of motion of a mechanism as one linear solve whose coefficients are affine in the element values.
 
 With the states x = (velocities a, elongations g), the inputs u (road velocities, then forces) and the unknowns
-eta = (accelerations of R and U, velocities of Y, elongations zeta, velocities of U) of `coordinates`:
+eta = (accelerations of R and U, velocities of Y, elongations zeta, velocities of U) of `coordinates`, and the
+velocities of Z where an output asks for them:
 
     S(p) eta = R(p) x + F(p) u
     x'       = X_eta eta + X_x x + X_u u
@@ -26,8 +27,9 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, LinearSystemError, MechanismError
 from inerter.networks.elements import Damper, Element, Free, Inerter, Spring
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
-from inerter.systems.graph import Branch, Graph, linear_graph
+from inerter.systems.graph import Branch, Graph, full_graph, linear_graph
 from inerter.systems.linear import Fine, LinearSystem, Origin
+from inerter.systems.outputs import Output, find, main_outputs, outputs
 from inerter.systems.polynomials import TransferFunctions
 from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
@@ -135,7 +137,7 @@ def describe(
 
     By default all inputs, and every output that needs no state of its own; the displacement of a body over a moving
     road is such a state (it drifts like the road) and comes only when it is named. A road that is not an input lies
-    still. By name there are also, for every element, its `<label>_velocity` as an output, and `<label>_force` as an
+    still. By name there is every other output of `systems.outputs` too, and, for every element, `<label>_force` as an
     input: a force beside the element, positive in tension.
 
     Raises `MechanismError` for what is ill-posed, `LinearSystemError` for a name that is not there.
@@ -147,7 +149,9 @@ def describe(
     for name in chosen:
         if name not in (*names, *beside):
             raise LinearSystemError(f"There is no input named {name!r} (there are: {', '.join(names) or 'none'}).")
-    equations = _Equations(mechanism, graph, [n for n in dict.fromkeys((*names, *beside)) if n in chosen])
+    equations = _Equations(
+        mechanism, graph, [n for n in dict.fromkeys((*names, *beside)) if n in chosen], outputs or ()
+    )
     equations.add_balance()
     for name in equations.possible_outputs() if outputs is None else outputs:
         equations.add_output(name)
@@ -156,7 +160,7 @@ def describe(
 
 def is_held_by_springs(mechanism: Mechanism) -> bool:
     """Whether springs determine the position of every coordinate when all roads lie still."""
-    equations = _Equations(mechanism, linear_graph(mechanism), [])
+    equations = _Equations(mechanism, linear_graph(mechanism), [], ())
     still = np.zeros(len(mechanism.roads))
     rows = np.eye(len(equations.graph.nodes))[: len(mechanism.coordinates)]
     return all(equations.displacement(row, still) is not None for row in rows)
@@ -167,6 +171,7 @@ class _Equations:
     mechanism: Mechanism
     graph: Graph
     inputs: list[str]
+    wanted: Sequence[str]
     outputs: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -204,9 +209,10 @@ class _Equations:
         c = self.split
         self.variables = self._variables()
         self.na, self.ng = c.R.shape[1], c.G.shape[1]
-        sizes = [self.na, c.U.shape[1], c.Y.shape[1], c.Z.shape[1], c.U.shape[1]]
+        self.known = outputs(self.mechanism, self.graph)
+        sizes = [self.na, c.U.shape[1], c.Y.shape[1], c.Z.shape[1], c.U.shape[1], c.Z.shape[1] * self._settling()]
         edges = np.cumsum([0, *sizes])
-        self.a1, self.u1, self.y, self.z, self.u0 = (slice(int(i), int(j)) for i, j in pairwise(edges))
+        self.a1, self.u1, self.y, self.z, self.u0, self.z1 = (slice(int(i), int(j)) for i, j in pairwise(edges))
         self.a, self.g = slice(0, self.na), slice(self.na, self.na + self.ng)
         k, n, e, m = 1 + len(self.variables), self.na + self.ng, int(edges[-1]), len(self.inputs)
         self.k, self.n, self.e, self.m = k, n, e, m
@@ -215,6 +221,11 @@ class _Equations:
         self.rows: list[Rows] = []
         self.row_sizes: list[Rows] = []
         self.extra: list[tuple[str, Matrix, Matrix, Matrix]] = []  # integrators: name, rows on eta, x, u
+
+    def _settling(self) -> bool:
+        """Whether an output asks how fast something moves that only springs hold."""
+        asked = [self.known[name].velocity for name in self.wanted if name in self.known]
+        return any(np.any(self.split.rate(row)[3]) for row in asked if row.size)
 
     def _variables(self) -> dict[str, Free]:
         elements = (branch.element for branch in self.graph.branches)
@@ -237,7 +248,7 @@ class _Equations:
         return stack
 
     def add_balance(self) -> None:
-        """Rows of the balance of forces on R, U, Y, Z, and of momentum on U."""
+        """Rows of the balance of forces on R, U, Y, Z, of momentum on U, and of how fast forces change on Z."""
         c = self.split
         masses = [
             Branch(Inerter(coordinate.inertia), coordinate.name, row, np.zeros(0))
@@ -252,9 +263,17 @@ class _Equations:
                 momentum[self.u0] = on[self.u1]
                 eta, x, _ = self._velocity(branch.nodes)
                 self._add(branch.element, momentum, (eta, x, np.zeros(self.m)))
+            if isinstance(branch.element, Spring) and self.z1.stop > self.z1.start:
+                change = np.zeros(self.e)
+                change[self.z1] = on[self.z]
+                self._add(branch.element, change, self._velocity(branch.nodes, branch.roads))
         for j, row in enumerate(self.force_rows):
             force = np.zeros(self.e)
             force[self.a1], _, force[self.y], force[self.z] = c.rate(row)
+            if self.z1.stop > self.z1.start and np.any(force[self.z]):
+                raise LinearSystemError(
+                    "How fast springs settle between each other under a force that jumps is not known."
+                )
             column = self.e + self.n + len(self.road_names) + j
             self.balance[0, :, column], self.size[0, :, column] = -force, np.abs(force)
 
@@ -288,7 +307,9 @@ class _Equations:
 
     def _velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
         eta, x, u = self._blank()
-        x[self.a], eta[self.u0], eta[self.y], _ = self.split.rate(nodes)
+        x[self.a], eta[self.u0], eta[self.y], settling = self.split.rate(nodes)
+        if self.z1.stop > self.z1.start:
+            eta[self.z1] = settling
         if roads is not None and roads.size:
             u[: len(self.road_names)] = roads[self.road_columns]
         return eta, x, u
@@ -306,79 +327,67 @@ class _Equations:
         )
 
     def possible_outputs(self) -> list[str]:
-        """Names of the outputs that need no state of their own."""
-        names = [f"{c.name}_{what}" for c in self.mechanism.coordinates for what in ("velocity", "acceleration")]
-        names += [f"{strut.name}_force" for strut in self.mechanism.struts]
-        names += [f"{tyre.name}_load" for tyre in self.mechanism.tyres]
-        for name, (nodes, roads) in self._displacements().items():
-            if self.displacement(nodes, roads) is not None:
-                names.append(name)
-        return names
-
-    def _displacements(self) -> dict[str, tuple[Matrix, Matrix]]:
+        """Names of what is asked for by default: motions and mounts, as far as they need no state of their own."""
         still = np.zeros(len(self.mechanism.roads))
-        found = {
-            f"{coordinate.name}_displacement": (row, still)
-            for coordinate, row in zip(self.mechanism.coordinates, np.eye(len(self.graph.nodes)), strict=False)
-        }
-        for strut in self.mechanism.struts:
-            found[f"{strut.name}_travel"] = (self.graph.mounts[strut.name].nodes, still)
-        for tyre in self.mechanism.tyres:
-            mount = self.graph.mounts[tyre.name]
-            found[f"{tyre.name}_deflection"] = (mount.nodes, mount.roads)
-        return found
+        known = ((name, self.known[name]) for name in main_outputs(self.mechanism))
+        return [
+            name
+            for name, output in known
+            if not output.displacement.size
+            or self.displacement(output.displacement, _or(output.road, still)) is not None
+        ]
 
     def add_output(self, name: str) -> None:
-        """One row of y: a velocity, an acceleration, a displacement, or the force of a mounted network."""
-        coordinates = {c.name: self._port({c.name: 1.0}) for c in self.mechanism.coordinates}
-        stem, _, what = name.rpartition("_")
-        displacements = self._displacements()
-        mounts = {m.name: "force" if m in self.mechanism.struts else "load" for m in self.mechanism.mounts()}
-        branches = {branch.label: branch for branch in self.graph.branches}
-        if stem in coordinates and what == "velocity":
-            rows = self._constant(*self._velocity(coordinates[stem]))
-        elif stem in coordinates and what == "acceleration":
-            eta, x, u = self._blank()
-            eta[self.a1], eta[self.u1] = self.split.rate(coordinates[stem])[:2]
-            rows = self._constant(eta, x, u)
-        elif name in displacements:
-            rows = self._displacement_output(name, *displacements[name])
-        elif mounts.get(stem) == what:
-            rows, sizes = self._force(stem)
-        elif stem in branches and what == "velocity":
-            rows = self._constant(*self._velocity(branches[stem].nodes, branches[stem].roads))
-        else:
-            known = [*(f"{c}_{w}" for c in coordinates for w in ("velocity", "acceleration")), *displacements]
-            known += [f"{mount}_{w}" for mount, w in mounts.items()]
-            raise LinearSystemError(f"There is no output named {name!r} (there are: {', '.join(known)}).")
+        """One row of y: the sum of what the output is made of."""
+        if name not in self.known and name in outputs(self.mechanism, full_graph(self.mechanism)):
+            raise LinearSystemError(
+                f"There is no output named {name!r} in linear analysis, which leaves friction out and closes gaps. "
+                f"Simulate the design: simulate(...), ExpectedValue() or ApproximateLinear()."
+            )
+        output = find(self.known, name, LinearSystemError)
+        rows = self._constant(*map(_fine, self._motion(output)))
+        sizes = _absolute(rows)
+        for i in np.flatnonzero(output.forces):
+            branch = self.graph.branches[i]
+            for stack, size, row in zip(rows, sizes, self._elongation_rate(branch), strict=True):
+                term = self._by_value(branch.element, row)
+                stack += term
+                size += np.abs(term)
+        if output.displacement.size or output.road.size:
+            rows = self._with_displacement(name, output, rows)
+            sizes = _absolute(rows)
         self.rows.append(rows)
-        self.row_sizes.append(sizes if mounts.get(stem) == what else _absolute(rows))
+        self.row_sizes.append(sizes)
         self.outputs.append(name)
+
+    def _motion(self, output: Output) -> Rows:
+        """An output's velocities, accelerations and external forces, as rows on eta, x and u."""
+        eta, x, u = self._blank()
+        if output.velocity.size or output.road_velocity.size:
+            eta, x, u = self._velocity(_or(output.velocity, np.zeros(len(self.graph.nodes))), output.road_velocity)
+        if output.acceleration.size:
+            eta[self.a1], eta[self.u1] = self.split.rate(output.acceleration)[:2]
+        for force, weight in zip(self.mechanism.forces, output.external, strict=False):
+            if force.name in self.inputs:
+                u[self.inputs.index(force.name)] += weight
+        return eta, x, u
 
     def _constant(self, *rows: Matrix) -> Rows:
         eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size), row.dtype)]) for row in rows)
         return eta, x, u
 
-    def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> Rows:
+    def _with_displacement(self, name: str, output: Output, rows: Rows) -> Rows:
+        """An output that is a displacement: a combination of spring elongations, or a state of its own."""
+        nodes = _or(output.displacement, np.zeros(len(self.graph.nodes)))
+        roads = _or(output.road, np.zeros(len(self.mechanism.roads)))
         weights = self.displacement(nodes, roads)
         if weights is not None:
             return self._constant(*self._elongation(weights), np.zeros(self.m))
         self.extra.append((name, *self._velocity(nodes, roads)))
-        eta, x, u = self._constant(*self._blank())
+        eta, x, u = rows
         column = np.zeros((self.k, len(self.extra)))
         column[0, -1] = 1.0
         return eta, np.hstack([x, column]), u
-
-    def _force(self, mount: str) -> tuple[Rows, Rows]:
-        """The force of a mounted network, and the size of its terms."""
-        size, total = self._constant(*self._blank()), self._constant(*map(_fine, self._blank()))
-        for i in self.graph.mounts[mount].carriers:
-            branch = self.graph.branches[i]
-            for stack, sizes, row in zip(total, size, self._elongation_rate(branch), strict=True):
-                term = self._by_value(branch.element, row)
-                stack += term
-                sizes += np.abs(term).astype(float)
-        return total, size
 
     def finish(self, order: list[str]) -> Descriptor:
         """All arrays, with integrators behind the other states and inputs in the order asked for."""
@@ -444,3 +453,8 @@ def _absolute(rows: Rows) -> Rows:
 
 def _fine(array: Matrix) -> Matrix:
     return array.astype(np.longdouble)
+
+
+def _or(row: Matrix, none: Matrix) -> Matrix:
+    """A row of an output, where an empty one is of zeros."""
+    return row if row.size else none

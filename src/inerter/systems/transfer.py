@@ -22,7 +22,7 @@ from inerter.vehicle.mechanism import Mechanism
 
 _ORDER = {Spring: 0, Damper: 1, Inerter: 2}  # power of s in the dynamic stiffness
 Row = dict[int, int]
-Load = tuple[int | None, Row]  # the number of a road, if the input is one, and the force on each node, if it is one
+Load = tuple[int | None, Row, str]  # the number of a road, or the force on each node, and the name of the input
 
 
 def transfer_functions(
@@ -35,7 +35,6 @@ def transfer_functions(
     """From road velocities and forces named `inputs` to the outputs named `wanted`, at `values` of the free values."""
     nodal = _Nodal(mechanism, graph, values)
     known = outputs(mechanism, graph)
-    known |= {f"{c.name}_displacement": known[f"{c.name}_displacement"] for c in mechanism.coordinates}
     rows = [_Row.of(known[name], nodal) for name in wanted]
     loads = [nodal.load(name) for name in inputs]
     samples = [nodal.sample(s, loads, rows) for s in range(1, 2 * len(graph.nodes) + 3)]
@@ -50,6 +49,7 @@ class _Row:
     nodes: tuple[Row, Row, Row]
     roads: tuple[Row, Row]
     forces: Row
+    external: frozenset[str]  # forces that it is
 
     @staticmethod
     def of(output: Output, nodal: _Nodal) -> _Row:
@@ -58,6 +58,7 @@ class _Row:
             (whole(output.displacement), whole(output.velocity), whole(output.acceleration)),
             (whole(output.road), whole(output.road_velocity)),
             {i: 1 for i, weight in enumerate(output.forces) if weight},
+            frozenset(name for name, weight in zip(nodal.names, output.external, strict=False) if weight),
         )
 
 
@@ -67,6 +68,7 @@ class _Nodal:
     def __init__(self, mechanism: Mechanism, graph: Graph, values: Mapping[str, float]) -> None:
         self.graph, self.size = graph, len(graph.nodes)
         self.roads = [road.name for road in mechanism.roads]
+        self.names = [force.name for force in mechanism.forces]
         ports = {force.name: force.port for force in mechanism.forces}
         names = [coordinate.name for coordinate in mechanism.coordinates]
         forces = {name: {names.index(at): lever for at, lever in port.items() if lever} for name, port in ports.items()}
@@ -93,8 +95,8 @@ class _Nodal:
         return {i: _times(float(x), self.lever_bits) for i, x in enumerate(row) if x}
 
     def load(self, name: str) -> Load:
-        """An input: the number of its road, if it is one, and the force on each node, if it is one."""
-        return (self.roads.index(name), {}) if name in self.roads else (None, self.forces[name])
+        """An input by name."""
+        return (self.roads.index(name), {}, name) if name in self.roads else (None, self.forces[name], name)
 
     def sample(self, s: int, loads: list[Load], rows: list[_Row]) -> list[int]:
         """The determinant at s and, times it, all outputs for each input (the displacement of a road, or a force)."""
@@ -108,18 +110,19 @@ class _Nodal:
             for i, a in nodes.items():
                 for j, b in nodes.items():
                     P[i][j] += stiffness * a * b
-                for j, (road, _) in enumerate(loads):
+                for j, (road, *_) in enumerate(loads):
                     if road in roads:
                         F[i][j] -= stiffness * a * roads[road]
-        for j, (_, force) in enumerate(loads):
+        for j, (_, force, _) in enumerate(loads):
             for i, lever in force.items():
                 F[i][j] += lever
         determinant, X = solved(P, F)
         sampled = [determinant]
         for row in rows:
-            for j, (road, _) in enumerate(loads):
+            for j, (road, _, name) in enumerate(loads):
                 x = [line[j] for line in X]
-                sampled.append(self._output(row, x, determinant, road, powers))
+                direct = determinant if name in row.external else 0
+                sampled.append(direct + self._output(row, x, determinant, road, powers))
         return sampled
 
     def _output(self, row: _Row, x: list[int], determinant: int, road: int | None, powers: tuple[int, ...]) -> int:
@@ -140,15 +143,16 @@ class _Nodal:
         """With the powers of two taken out, and 1/s where a road is given by its velocity."""
         both = self.value_bits + self.lever_bits
         shifts = [
-            (both if road is None else 0) - (both if row.forces else self.lever_bits)
+            (both if road is None else 0) - (both if row.forces or row.external else self.lever_bits)
             for row in rows
-            for road, _ in loads
+            for road, *_ in loads
         ]
         low = min(shifts, default=0)
-        velocities = any(road is not None for road, _ in loads)
+        velocities = any(road is not None for road, *_ in loads)
         whole = [scaled(n, 1 << (shift - low)) for n, shift in zip(numerators, shifts, strict=True)]
         whole = [
-            [0, *n] if velocities and road is None else n for n, (road, _) in zip(whole, loads * len(rows), strict=True)
+            [0, *n] if velocities and road is None else n
+            for n, (road, *_) in zip(whole, loads * len(rows), strict=True)
         ]
         bottom = scaled([0, *denominator] if velocities else denominator, 1 << max(-low, 0))
         if low > 0:

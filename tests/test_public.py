@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import inerter as it
+from inerter.cli.main import app
 
 ROOT = Path(__file__).parents[1]
 
@@ -32,8 +33,14 @@ def test_readme_has_the_two_commands() -> None:
 
 def test_documents_name_every_command() -> None:
     text = "".join(path.read_text(encoding="utf-8") for path in [ROOT / "README.md", *ROOT.glob("docs/*.md")])
-    for command in ("inerter run", "inerter check", "inerter reproduce wang-su-2008 --only linear", "--resume"):
-        assert command in text
+    commands = [name for name in app if not name.startswith("-")]
+    assert len(commands) >= 6
+    for command in commands:
+        assert f"inerter {command} " in text
+        for argument in app[command].assemble_argument_collection(parse_docstring=False):
+            options = [name for name in argument.names if name.startswith("-")]
+            told = [re.search(rf"(?<![\w-]){option}(?![\w-])", text) for option in options]
+            assert any(told) or not options, f"inerter {command} {options}"
 
 
 def test_names_of_the_first_release() -> None:

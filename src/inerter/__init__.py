@@ -7,10 +7,10 @@ norms and optimisation. Everything public is a name in this module; each is load
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    __version__: str
     from inerter.errors import InerterError as InerterError
     from inerter.errors import Status as Status
     from inerter.errors import StatusKind as StatusKind
@@ -87,7 +87,6 @@ if TYPE_CHECKING:
     from inerter.vehicle.mechanism import Tyre as Tyre
     from inerter.vehicle.mechanism import Weighted as Weighted
 
-__version__ = version("inerter")
 __all__ = [
     "GROUND",
     "LAYOUTS",
@@ -247,6 +246,8 @@ _HOME = {
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return import_module("importlib.metadata").version("inerter")  # which takes as long as all else here
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(f"inerter.{_HOME[name]}"), name)

@@ -75,7 +75,7 @@ def fitted(bench: it.Record, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_folder_holds_numbers_residuals_figures_and_the_page(fitted: Path) -> None:
     folder = fitted / "out"
-    assert {path.name for path in folder.iterdir()} - {".lock"} == FILES
+    assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
     drawn = {path.name for path in (folder / "figures").iterdir()}
     assert drawn == {
         f"{name}.svg" for name in ("profiles", "record", "fit", "window", "residuals", "loops", "response")
@@ -148,7 +148,7 @@ def test_a_fit_that_is_not_ok_is_written_and_returns_1(
     assert "explains 12.0 %" in err
     assert "cannot be told" in out
     assert "not to be relied on" in out
-    assert {path.name for path in folder.iterdir()} - {".lock"} == FILES
+    assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
     assert "Not to be relied on" in (folder / "report.html").read_text(encoding="utf-8")
 
 
@@ -169,7 +169,7 @@ def test_an_interruption_keeps_the_fit(
     monkeypatch.setattr("inerter.cli.identify.write_identification", stop)
     folder = fitted / "stopped"
     arguments = [str(fitted / "bench.csv"), "--config", str(fitted / "rig.toml"), "-o", str(folder)]
-    assert call(["identify", *arguments]) == 1
+    assert call(["identify", *arguments]) == 130
     assert "fit.json is complete" in capsys.readouterr().err
     assert json.loads((folder / "fit.json").read_text())["status"] == "ok"
 

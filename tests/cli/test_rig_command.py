@@ -97,17 +97,38 @@ def test_what_is_wrong_is_said(
     assert not (tmp_path / "bench.csv").exists()
 
 
-def test_a_file_is_not_overwritten_and_a_suffix_is_needed(
+def test_only_a_record_of_its_own_is_replaced(config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "bench.csv"
+    assert call(["rig", str(config), "-o", str(file)]) == 0
+    assert call(["rig", str(config), "-o", str(file)]) == 2
+    assert "Replace it with --force" in capsys.readouterr().err
+    assert call(["rig", str(config), "-o", str(file), "--force"]) == 0
+    file.write_text("measured")
+    for options in ([], ["--force"]):
+        assert call(["rig", str(config), "-o", str(file), *options]) == 2
+        message = capsys.readouterr().err
+        assert "so it stays" in message
+        assert "--force" not in message
+    assert file.read_text() == "measured"
+
+
+def test_a_record_never_replaces_what_it_is_made_from(
     config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "bench.csv").write_text("mine")
+    other = tmp_path / "config.txt"
+    other.hardlink_to(config)
+    assert call(["rig", str(config), "-o", str(other), "--force"]) == 2
+    assert "so it stays" in capsys.readouterr().err
+    assert config.read_text(encoding="utf-8") == other.read_text(encoding="utf-8") == SHORT
+
+
+def test_a_suffix_and_a_folder_are_needed(config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = sorted(tmp_path.rglob("*"))
     for name, words in (
-        ("bench.csv", "--force"),
         ("bench.xlsx", ".tdms"),
         ("no/bench.csv", "no such folder"),
         ("", "is a folder"),
     ):
         assert call(["rig", str(config), "-o", str(tmp_path / name)]) == 2
         assert words in capsys.readouterr().err
-    assert (tmp_path / "bench.csv").read_text() == "mine"
-    assert call(["rig", str(config), "-o", str(tmp_path / "bench.csv"), "--force"]) == 0
+    assert sorted(tmp_path.rglob("*")) == before

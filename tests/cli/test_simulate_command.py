@@ -34,7 +34,7 @@ def test_everything_is_written_and_said(rattle: Path, tmp_path: Path, capsys: py
     assert max(map(len, out.splitlines())) <= 80
     assert out.isascii()
     assert str(folder) in err
-    assert {path.name for path in folder.iterdir()} - {".lock"} == FILES
+    assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
     assert {path.name for path in (folder / "figures").iterdir()} == {"simulation.svg", "simulation.png"}
 
 
@@ -99,7 +99,7 @@ def test_what_there_is_is_written_when_the_status_is_not_ok(
     out, err = capsys.readouterr()
     assert "rattle.toml: inaccurate: after 300 periods" in err
     assert "Status: inaccurate" in out
-    assert {path.name for path in folder.iterdir()} - {".lock"} == FILES
+    assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
 
 
 def test_a_motion_that_stops_at_once_is_written_too(

@@ -71,6 +71,16 @@ def test_an_error_does_not_wait_for_what_is_under_way() -> None:
     assert time.monotonic() - start < 30.0
 
 
+def test_a_process_that_does_not_heed_its_end_is_not_waited_for() -> None:
+    """As one that Ctrl-C finds in a state in which it cannot end by itself."""
+    deaf = "__import__('signal').signal(15, __import__('signal').SIG_IGN), __import__('time').sleep(60)"
+    start = time.monotonic()
+    with pytest.raises(ZeroDivisionError):
+        evaluated([deaf, "__import__('time').sleep(1) or 1 / 0"])
+    assert time.monotonic() - start < 30.0
+    assert not active_children()
+
+
 def test_what_is_not_asked_for_any_more_is_not_begun() -> None:
     with Crew(2) as crew:
         crew.begin(os.getpid)

@@ -22,9 +22,10 @@ from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
 from inerter.study.budgets import budget_cases
 from inerter.study.file import load_study
-from inerter.study.run import FIGURES, REPORT, StudyResult, check_study, run_study, study_notes
-from inerter.study.workers import Crew
+from inerter.study.run import FIGURES, REPORT, SUMMARY, StudyResult, check_study, run_study, study_notes
+from inerter.study.suggest import some
 
+_MOST = 20  # designs that are told one by one
 _JSON = {"improvement_error": "improvement_error_percent"}
 
 
@@ -33,14 +34,15 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
     loaded = load_study(study)
     folder = output or Path(f"{study.stem}-results")
     processes = _processes(jobs)
-    try:
-        with interruptible(), progress(study.stem, "designs and budgets" if loaded.budgets else "designs") as callback:
-            result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback)
-    except KeyboardInterrupt:
-        _say(f"interrupted; what was computed is kept. Continue with: inerter run {study} -o {folder} --resume")
-        return 1
-    draw_study(result.data, folder / FIGURES)
-    write_report(result.data, loaded, folder / FIGURES, folder / REPORT, result.budgets)
+
+    def show(result: StudyResult, into: Path) -> None:
+        draw_study(result.data, into / FIGURES)
+        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
+
+    kept = f"what was computed is kept. Continue with: inerter run {study} -o {folder} --resume"
+    items = "designs and budgets" if loaded.budgets else "designs"
+    with interruptible(lambda: kept), progress(study.stem, items) as callback:
+        result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback, finish=show)
     _say(f"report: {folder / REPORT}")
     if as_json:
         print(_as_json(result))
@@ -62,7 +64,7 @@ def check(study: Path) -> int:
     budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
     swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
     print(
-        f"{study}: ok. {loaded.model}; layouts {', '.join(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
+        f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
         f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
     )
     for note in study_notes(loaded):
@@ -81,14 +83,17 @@ def reproduce(
 
     folder = output or Path(f"{KEY}-results")
     processes = _processes(jobs)
-    try:
-        with interruptible(), Crew(processes) as crew:
-            with steps(KEY) as callback:
-                found = paper.reproduce(folder, only=only, jobs=crew, resume=resume, force=force, progress=callback)
-            write_reproduction(found, folder, crew)
-    except KeyboardInterrupt:
-        _say(f"interrupted; what was computed is kept. Continue with --resume -o {folder}")
-        return 1
+    kept = f"what was computed is kept. Continue with --resume -o {folder}"
+    with interruptible(lambda: kept), steps(KEY) as callback:
+        found = paper.reproduce(
+            folder,
+            only=only,
+            jobs=processes,
+            resume=resume,
+            force=force,
+            progress=callback,
+            finish=write_reproduction,
+        )
     _say(f"report: {folder / REPORT}")
     print(json.dumps(tables(found), indent=2) if as_json else reproduction_text(found))
     return max([_judge(result) for result in found.studies.values()], default=0)
@@ -102,8 +107,10 @@ def _processes(jobs: int | None) -> int:
 
 def _judge(result: StudyResult) -> int:
     """Say what is not an ordinary number; the work has failed if a case has no number at all."""
-    for line in result.failures:
+    for line in result.failures[:_MOST]:
         _say(line)
+    if len(result.failures) > _MOST:
+        _say(f"and {len(result.failures) - _MOST} more like these; {result.folder / SUMMARY} tells all")
     failed = bool(result.data.status.str.startswith("failed").any())
     return 1 if failed or any(found.status == StatusKind.FAILED for found in result.budgets) else 0
 

@@ -12,13 +12,14 @@ from typing import Any
 from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
+from inerter.files.common.folder import Intent, claimed
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import as_options, identification_text
 from inerter.study.identification_file import IdentificationRequest, RecordRequest, load_identification
 from inerter.study.identification_run import FIT, read, run_identification
 from inerter.study.identification_schema import channel_units, gap_treatment
-from inerter.study.run import REPORT, claimed
+from inerter.study.run import REPORT
 from inerter.units import parse_quantity
 
 _QUANTITIES = {"interval": "s", "resample": "s", "period": "s", "force_range": "N", "force_bandwidth": "Hz"}
@@ -45,21 +46,22 @@ def identify(
         except RecordError as error:
             raise RecordError(as_options(str(error))) from None
     folder = output or Path(f"{paths[0].stem}-results")
-    with claimed(folder, own=OWN, resume=None, force=force):
-        try:
-            with interruptible(), fraction(f"fitting {request.name or 'the model'}") as callback:
+    inputs = (*paths, *(() if config is None else (config,)))
+    intent = Intent(folder, "identify", OWN, inputs, force=force)
+    kept = ["before there was a fit."]
+    try:
+        with interruptible(lambda: kept[-1]), claimed(intent) as results:
+            with fraction(f"fitting {request.name or 'the model'}") as callback:
                 found = run_identification(readings, request, callback)
-            write_fit(found, folder)
+            write_fit(found, results.draft)
+            results.publish()
+            kept.append(f"{folder / FIT} is complete." if results.place == folder else f"{folder} is as it was before.")
             print(json.dumps(identification_data(found), indent=2) if as_json else identification_text(found))
             sys.stdout.flush()
-            with interruptible(), fraction("drawing") as callback:
-                write_identification(found, folder, callback)
-        except RecordError as error:
-            raise RecordError(as_options(str(error))) from None
-        except KeyboardInterrupt:
-            kept = f"; {folder / FIT} is complete" if (folder / FIT).exists() else ", before there was a fit"
-            print(f"inerter: interrupted{kept}.", file=sys.stderr, flush=True)
-            return 1
+            with fraction("drawing") as callback:
+                write_identification(found, results.draft, callback)
+    except RecordError as error:
+        raise RecordError(as_options(str(error))) from None
     print(f"inerter: report: {folder / REPORT}", file=sys.stderr, flush=True)
     if not found.fit.status.ok:
         print(f"inerter: {found.title}: {found.fit.status}", file=sys.stderr, flush=True)

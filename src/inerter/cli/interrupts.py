@@ -1,25 +1,88 @@
-"""Ctrl-C as one exception, wherever it arrives."""
+"""Ctrl-C as one exception, wherever it arrives, and an end soon after it, whatever stands in its way."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+INTERRUPTED = 130  # the exit code that shells give what Ctrl-C has ended
+_PATIENCE = 1.2  # [s] that work has to put its things away
+_kept: list[Callable[[], str]] = []
+_came, _told = threading.Event(), threading.Event()
 
 
 @contextmanager
-def interruptible() -> Iterator[None]:
-    """Ctrl-C leaves the block as KeyboardInterrupt.
+def interruptible(kept: Callable[[], str] = lambda: "") -> Iterator[None]:
+    """Ctrl-C leaves the block as KeyboardInterrupt with the words of `kept`, which say what is kept of the work.
 
     The call of a compiled function may go on after the signal's exception is set and return its result: Python then
     raises SystemError ("returned a result with an exception set") whose cause is the KeyboardInterrupt, or another
     such error from a call inside, and so on down to it.
     """
+    if not _kept:
+        _told.clear()
+    _kept.append(kept)
     try:
         yield
-    except SystemError as error:
+    except (KeyboardInterrupt, SystemError) as error:
         cause: BaseException | None = error
         while isinstance(cause, SystemError):
             cause = cause.__cause__
         if isinstance(cause, KeyboardInterrupt):
-            raise KeyboardInterrupt from None
+            raise KeyboardInterrupt(*(cause.args or (kept(),))) from None
         raise
+    finally:
+        _kept.pop()
+
+
+def heed() -> None:
+    """From here on Ctrl-C raises KeyboardInterrupt, and ends the process if that has not ended it soon."""
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # as it is for work in the background
+        signal.signal(signal.SIGINT, _interrupt)
+        sys.unraisablehook = _unraisable
+
+
+def tell(kept: object = "") -> None:
+    """Say once that the work was interrupted, and what is kept of it."""
+    if not _told.is_set():
+        _told.set()
+        print(f"inerter: interrupted{'; ' if str(kept) else '.'}{kept}", file=sys.stderr, flush=True)
+
+
+def came() -> bool:
+    """Whether Ctrl-C was pressed."""
+    return _came.is_set()
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    if not came():
+        _came.set()
+        threading.Thread(target=_end_soon, daemon=True).start()
+    raise KeyboardInterrupt
+
+
+def _end_soon() -> None:
+    """End the process from a thread of its own: some library may have swallowed the exception, or wait without end."""
+    time.sleep(_PATIENCE)
+    from multiprocessing import active_children
+
+    from inerter.writing import sweep
+
+    for process in active_children():
+        process.kill()
+    sweep()
+    tell(_kept[-1]() if _kept else "")
+    os._exit(INTERRUPTED)
+
+
+def _unraisable(problem: Any) -> None:
+    """An interrupt where Python can only report it, and not raise it, is not worth a word: the end comes anyway."""
+    if not issubclass(problem.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(problem)

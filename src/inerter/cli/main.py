@@ -1,11 +1,12 @@
 """The command `inerter`. Results go to stdout, progress and problems to stderr.
 
-Exit codes: 0 done; 1 the work failed or was interrupted; 2 the request was wrong.
+Exit codes: 0 done; 1 the work failed; 2 the request was wrong; 130 interrupted by Ctrl-C.
 """
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated, Literal
@@ -13,8 +14,10 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
-from inerter.cli.interrupts import interruptible
+from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
+from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
+from inerter.writing import sweep
 
 EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
@@ -25,7 +28,7 @@ EXAMPLES = """Examples:
   inerter identify fit.csv --model ball-screw
   inerter reproduce wang-su-2008 -o paper
 
-Exit codes: 0 done, 1 the work failed or was interrupted, 2 the request was wrong."""
+Exit codes: 0 done, 1 the work failed, 2 the request was wrong, 130 interrupted by Ctrl-C."""
 
 app = App(
     name="inerter",
@@ -33,14 +36,28 @@ app = App(
     help="What an inerter does for a vehicle, and which design is best.",
     help_epilogue=EXAMPLES,
     help_format="plaintext",
+    suppress_keyboard_interrupt=False,
 )
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
 Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Processes to use; all cores if left out.")]
 Resume = Annotated[
-    bool, Parameter(negative="", show_default=False, help="Continue an interrupted run; finished cases are kept.")
+    bool,
+    Parameter(
+        negative="",
+        show_default=False,
+        help="Continue an interrupted run: what its journal holds is not computed again.",
+    ),
 ]
-Force = Annotated[bool, Parameter(negative="", show_default=False, help="Replace the results that the folder holds.")]
+Force = Annotated[
+    bool,
+    Parameter(
+        negative="",
+        show_default=False,
+        help="Replace the results in the folder when the new ones are whole. "
+        "What inerter did not write there, or somebody changed since, stays.",
+    ),
+]
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
 ]
@@ -216,7 +233,9 @@ def rig(
         Path,
         Parameter(name=["--output", "-o"], help="The file to write: .csv, .tsv, .txt, .tdms, .mf4 or .mat."),
     ],
-    force: Annotated[bool, Parameter(negative="", show_default=False, help="Replace the file if it exists.")] = False,
+    force: Annotated[
+        bool, Parameter(negative="", show_default=False, help="Replace a record that this command wrote.")
+    ] = False,
 ) -> int:
     """Run a virtual test rig, and write what its sensors read of a device that is known.
 
@@ -242,7 +261,8 @@ def reproduce(
     /,
     *,
     only: Annotated[
-        tuple[Part, ...], Parameter(help="The parts to reproduce, each with its own --only; all if left out.")
+        tuple[Part, ...],
+        Parameter(negative="", help="The parts to reproduce, each with its own --only; all if left out."),
     ] = (),
     output: Output = None,
     jobs: Jobs = None,
@@ -264,28 +284,44 @@ def reproduce(
 
 
 def main() -> None:
-    """Entry point: run the command, and turn errors into a sentence and an exit code."""
-    sys.exit(call(sys.argv[1:]))
+    """Run the command line of this process, and end it."""
+    endure()
+    heed()
+    try:
+        code = call(sys.argv[1:])
+    except KeyboardInterrupt:  # while another was told
+        code = INTERRUPTED
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if came():
+        sweep()
+        os._exit(code)  # compiled code that was cut short may not survive the interpreter's own end
+    sys.exit(code)
 
 
 def call(arguments: list[str]) -> int:
-    """Run the command line with `arguments`; returns the exit code."""
+    """Run the command line with `arguments`, and turn errors into a sentence and an exit code, which is returned."""
     try:
         with interruptible():
             code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
+        if (lost := problem()) is not None:
+            return _fail(f"standard output: {lost.strerror}. The results are written all the same.", 1)
         return code if isinstance(code, int) else 0
+    except KeyboardInterrupt as error:
+        tell(error)
+        return INTERRUPTED
     except CycloptsError as error:
         return _fail(f"{error}\nTry: inerter --help", 2)
     except InerterError as error:
         return _fail(str(error), 1 if isinstance(error, WorkError) else 2)
-    except KeyboardInterrupt:
-        return _fail("interrupted.", 1)
-    except BrokenPipeError:  # the reader of stdout has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
     except OSError as error:
         return _fail(f"{error.filename or 'system'}: {error.strerror or error}", 1)
+    except Exception:
+        if came():  # some library made another error of it
+            tell()
+            return INTERRUPTED
+        raise
 
 
 def _fail(message: str, code: int) -> int:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from inerter.cli.interrupts import interruptible
 from inerter.errors import StudyError
+from inerter.files.common.folder import check_single, single
 from inerter.records.writers import WRITERS, write_record
 from inerter.report.rig import rig_text
 from inerter.study.rig_file import load_rig, record_of
@@ -14,15 +16,19 @@ from inerter.study.rig_file import load_rig, record_of
 def rig(config: Path, output: Path, *, force: bool) -> int:
     """Run the virtual rig of a file, and write what its sensors read; returns the exit code."""
     request = load_rig(config)
-    _check_output(output, force)
-    record = record_of(config, request)
-    write_record(record, output)
+    inputs = (config, *request.signal.inputs)
+    _check_output(output)
+    check_single(output, inputs=inputs, force=force)
+    with interruptible():
+        record = record_of(config, request)
+        with single(output, inputs=inputs, force=force) as draft:
+            write_record(record, draft)
     print(rig_text(request, record))
     print(f"inerter: record: {output}", file=sys.stderr)
     return 0
 
 
-def _check_output(output: Path, force: bool) -> None:
+def _check_output(output: Path) -> None:
     """Before any work, whether a record can be written there; raises `StudyError` otherwise."""
     if output.is_dir():
         raise StudyError(f"{output}: is a folder; give the name of a file, such as -o {output / 'bench.csv'}.")
@@ -30,5 +36,3 @@ def _check_output(output: Path, force: bool) -> None:
         raise StudyError(f"{output}: records are written to {', '.join(WRITERS)}. Name a file with such a suffix.")
     if not output.parent.is_dir():
         raise StudyError(f"{output.parent}: there is no such folder. Make it, or choose another with -o.")
-    if output.exists() and not force:
-        raise StudyError(f"{output}: exists. Replace it with --force, or choose another name with -o.")

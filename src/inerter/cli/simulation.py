@@ -7,6 +7,7 @@ import math
 import sys
 from pathlib import Path
 
+from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.errors import StudyError
 from inerter.figures.simulation import Window, draw_simulation, readable_window
@@ -14,7 +15,7 @@ from inerter.report.simulation import simulation_data, simulation_text
 from inerter.study.request import SimulationRequest
 from inerter.study.run import FIGURES
 from inerter.study.simulation_file import load_simulation
-from inerter.study.simulation_run import run_simulation
+from inerter.study.simulation_run import SimulationResult, run_simulation
 
 
 def simulate(file: Path, output: Path | None, window: str | None, *, force: bool, as_json: bool) -> int:
@@ -22,18 +23,27 @@ def simulate(file: Path, output: Path | None, window: str | None, *, force: bool
     request = load_simulation(file)
     wanted = None if window is None else _window(window, request)
     folder = output or Path(f"{file.stem}-results")
-    with fraction(file.stem) as callback:
-        result = run_simulation(request, folder, force=force, progress=callback)
-    shown = None
-    if result.run.time.size > 1:
-        shown = wanted if wanted and wanted[0] < result.run.time[-2] else readable_window(result)
-        draw_simulation(result, folder / FIGURES, shown)
+
+    def draw(result: SimulationResult, into: Path) -> None:
+        if (shown := _shown(result, wanted)) is not None:
+            draw_simulation(result, into / FIGURES, shown)
+
+    with interruptible(), fraction(file.stem) as callback:
+        result = run_simulation(request, folder, force=force, progress=callback, finish=draw)
+    shown = _shown(result, wanted)
     print(json.dumps(simulation_data(result), indent=2) if as_json else simulation_text(result, shown))
     print(f"inerter: results: {folder}", file=sys.stderr)
     if not result.run.status.ok:
         print(f"inerter: {file.name}: {result.run.status}", file=sys.stderr, flush=True)
         return 1
     return 0
+
+
+def _shown(result: SimulationResult, wanted: Window | None) -> Window | None:
+    """What the figure shows; None for a motion that stopped at once."""
+    if result.run.time.size < 2:
+        return None
+    return wanted if wanted and wanted[0] < result.run.time[-2] else readable_window(result)
 
 
 def _window(text: str, request: SimulationRequest) -> Window:

@@ -18,6 +18,7 @@ from matplotlib.legend import Legend
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from inerter.figures.labels import typeset
+from inerter.writing import whole
 
 NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
@@ -174,5 +175,6 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: boo
         figure.draw_without_rendering()  # the layout is found once for all files
         figure.set_layout_engine(None)  # "none" would have each file drawn twice
         for file in files:
-            figure.savefig(file, dpi=_DPI, metadata=_UNDATED[file.suffix])
+            with whole(file) as draft:
+                figure.savefig(draft, dpi=_DPI, metadata=_UNDATED[file.suffix])
     return files

@@ -6,26 +6,31 @@ file, has changed. So each module's cache folder is named after a hash of its so
 
 from __future__ import annotations
 
+import errno
 import gc
 import hashlib
 import os
 import re
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
+from multiprocessing import parent_process
 from pathlib import Path
-from threading import RLock
+from threading import Event, RLock
 from types import SimpleNamespace
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import typeinfer
+from numba.core.caching import FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.registry import CPUDispatcher, cpu_target
 
 F = TypeVar("F", bound=Callable[..., Any])
 _ALONE = RLock()
+_TOLD = Event()
 _FUSED = {"contract"}
 
 _IMPORTED = re.compile(r"^from inerter\.kernels\.(\w+) import", re.MULTILINE)
@@ -46,26 +51,67 @@ def source_hash(module: Path) -> str:
 
 
 @cache
-def cache_folder(module: Path) -> Path:
-    """Where a module's compiled code is kept: the user's cache folder, or one for this process if none is writable."""
-    base = os.environ.get("XDG_CACHE_HOME") or (
-        os.environ.get("LOCALAPPDATA") if sys.platform == "win32" else str(Path.home() / ".cache")
-    )
-    if base:
+def cache_folder(module: Path) -> Path | None:
+    """Where a module's compiled code is kept, below the user's cache folder; None if it cannot be made."""
+    base = os.environ.get("XDG_CACHE_HOME") or (os.environ.get("LOCALAPPDATA") if sys.platform == "win32" else None)
+    try:
+        base = base or str(Path.home() / ".cache")
         folder = Path(base) / "inerter" / f"{module.stem}-{source_hash(module)}"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            pass
-        else:
-            if os.access(folder, os.W_OK):
-                return folder
-    return Path(tempfile.mkdtemp(prefix="inerter-"))  # never a shared one: what is in it will be run
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, RuntimeError) as error:  # the latter: nobody is at home
+        _tell_of_no_cache(base or "no home folder", error)
+        return None
+    return folder
 
 
 @cache
 def _tell() -> None:
     print("inerter: compiling the numerical kernels; this happens once.", file=sys.stderr, flush=True)
+
+
+def _tell_of_no_cache(folder: object, error: Exception) -> None:
+    """Say once, and in one of several processes, that the next run will have to compile again."""
+    if not _TOLD.is_set() and parent_process() is None:
+        why = error.strerror if isinstance(error, OSError) else error
+        what = f"the cache of compiled kernels cannot be written ({folder}: {why})"
+        print(f"inerter: {what}; every run compiles them anew.", file=sys.stderr, flush=True)
+    _TOLD.set()
+
+
+class _Cache(FunctionCache):
+    """The compiler's cache, which may fail: what cannot be read is compiled, and what cannot be kept is not."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+        except Exception:  # a file cut short may raise anything
+            self._forget()
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+        except OSError as error:
+            self._forget()
+            _tell_of_no_cache(Path(self.cache_path).parents[1], error)
+
+    def _forget(self) -> None:
+        with suppress(OSError):
+            self.flush()  # type: ignore[no-untyped-call]
+
+
+def _cache_in(folder: Path | None, function: Callable[..., Any]) -> _Cache | None:
+    """The cache of a function in a folder; None if nothing can be written there."""
+    if folder is None:
+        return None
+    try:
+        found: Any = _Cache(function)  # type: ignore[no-untyped-call]
+    except RuntimeError:  # no place at all can be written
+        found = None
+    if found is not None and Path(found.cache_path).is_relative_to(folder):
+        return cast("_Cache", found)
+    _tell_of_no_cache(folder.parent, OSError(errno.EACCES, os.strerror(errno.EACCES)))
+    return None
 
 
 def compiled(function: F, signature: Any = None, *, fused: bool = False, borrowing: bool = False) -> F:
@@ -79,23 +125,30 @@ def compiled(function: F, signature: Any = None, *, fused: bool = False, borrowi
 
 def _compiled(function: F, signature: Any, fused: bool, borrowing: bool) -> F:
     folder = cache_folder(Path(function.__code__.co_filename))
-    if not any(folder.iterdir()):
-        _tell()
     settings: Any = numba.config
     before = settings.CACHE_DIR, settings.SLP_VECTORIZE
     settings.CACHE_DIR = str(folder)
     try:
-        options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True}
+        empty = folder is not None and not any(folder.iterdir())
+        kept = _cache_in(folder, function)
+        if empty and kept:
+            _tell()
+        options: dict[str, Any] = {"error_model": "numpy", "nogil": True}
         if fused:  # a product and a sum in one instruction, with one rounding, and four of them side by side
             options["fastmath"] = _FUSED
             settings.SLP_VECTORIZE = 1
         if borrowing:  # no reference counts, which took half of the time
             options["_nrt"] = False
-        compiler: Any = numba.njit(signature, **options)
+        result: Any = numba.njit(**options)(function)
+        if kept:
+            result._cache = kept
         collecting = gc.isenabled()
         gc.disable()  # compiling makes millions of objects that stay: looking for garbage takes a sixth of the time
         try:
-            result: Any = compiler(function)
+            if signature is not None and not settings.DISABLE_JIT:
+                with typeinfer.register_dispatcher(result):
+                    result.compile(signature)
+                    result.disable_compile()
         finally:
             if collecting:
                 gc.enable()
@@ -217,7 +270,7 @@ def compiling_beside(module: str) -> Callable[[], None]:
     """
     path = Path(__file__).with_name(f"{module}.py")
     folder = cache_folder(path)
-    if any(folder.iterdir()) or folder.name.startswith("inerter-"):
+    if folder is None or any(folder.iterdir()):
         return lambda: None
     _tell()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, RecordError, Status
 from inerter.records.record import Record
+from inerter.writing import export
 
 if TYPE_CHECKING:
     import xarray
@@ -97,14 +98,11 @@ class Response:
         Raises `RecordError` if the file cannot be written.
         """
         columns = self.columns()
-        try:
-            with Path(path).open("w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file)
-                writer.writerow(["frequency [Hz]", *(f"{name} [{_COLUMNS[name][0]}]" for name in columns)])
-                rows = np.column_stack([self.frequency, *columns.values()]).tolist()
-                writer.writerows(map(repr, row) for row in rows)
-        except OSError as error:
-            raise RecordError(f"Cannot write {str(path)!r}: {error.strerror}.") from None
+        with export(path, RecordError) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["frequency [Hz]", *(f"{name} [{_COLUMNS[name][0]}]" for name in columns)])
+            rows = np.column_stack([self.frequency, *columns.values()]).tolist()
+            writer.writerows(map(repr, row) for row in rows)
 
 
 def respond(

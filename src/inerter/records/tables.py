@@ -22,6 +22,7 @@ from inerter.units import shown
 HEAD = 1 << 18  # bytes within which the numbers must begin
 BLOCK = 1 << 23  # bytes that are parsed at a time
 MISSING = frozenset({"", "nan", "-nan", "+nan", "na", "n/a", "null", "none", "inf", "-inf", "+inf", "-"})
+_LONGEST_NAME = 80
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
 _HEADING = re.compile(r"\s*(\S.*?)\s*[\[(]([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)[\])]\s*")
 _DELIMITERS = ("\t", ";", ",", None)  # None: any white space
@@ -99,7 +100,11 @@ def _cells(line: str, delimiter: str | None) -> list[str]:
         return []
     if delimiter is None:
         return line.split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
+    try:
+        cells = next(csv.reader([line], delimiter=delimiter))
+    except csv.Error:  # a cell beyond all length, a carriage return within the line: for those who look into cells
+        cells = line.split(delimiter)
+    return [cell.strip() for cell in cells]
 
 
 def _is_number(cell: str) -> bool:
@@ -164,10 +169,11 @@ def _spaced(text: str) -> list[str]:
 def _names(header: list[list[str]], columns: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if not header:
         return tuple(f"column {at}" for at in range(columns)), ("",) * columns
-    found = [_HEADING.fullmatch(cell) for cell in header[0]]
-    names = tuple(match[1] if match else cell for match, cell in zip(found, header[0], strict=True))
+    first, *second = [[cell[:_LONGEST_NAME] for cell in cells] for cells in header]  # a message may have to show it
+    found = [_HEADING.fullmatch(cell) for cell in first]
+    names = tuple(match[1] if match else cell for match, cell in zip(found, first, strict=True))
     beside = [match[2].strip() if match else "" for match in found]
-    below = [cell.strip("[]() -") for cell in header[1]] if len(header) == 2 else [""] * columns
+    below = [cell.strip("[]() -") for cell in second[0]] if second else [""] * columns
     return names, tuple(a or b for a, b in zip(beside, below, strict=True))
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from inerter.errors import RecordError
 from inerter.records.optional import library
 from inerter.records.record import CHANNELS, Record
+from inerter.writing import export
 
 _NOT_GIVEN = "nothing is known of where it came from"
 
@@ -21,7 +22,10 @@ def write_record(record: Record, path: str | os.PathLike[str]) -> None:
     `read_record` gives the same numbers back. The source and notes go along for people; the range of the load cell
     and the period are for the call that reads it.
 
-    Raises `RecordError` for another suffix, a folder that is not there, or a library that is not installed.
+    The file is there as a whole or, if that fails, as it was before.
+
+    Raises `RecordError` for another suffix, a folder that is not there, or a library that is not installed; `WorkError`
+    if the disk is full.
     """
     if not isinstance(record, Record):
         raise RecordError(f"write_record takes a Record, got {type(record).__name__}.")
@@ -29,10 +33,8 @@ def write_record(record: Record, path: str | os.PathLike[str]) -> None:
     suffix = Path(name).suffix.lower()
     if suffix not in WRITERS:
         raise RecordError(f"Records are written to {', '.join(WRITERS)}, got {name!r}. Name a file with such a suffix.")
-    try:
-        WRITERS[suffix](record, name)
-    except OSError as problem:
-        raise RecordError(f"{name!r} cannot be written: {problem.strerror or problem}.") from None
+    with export(name, RecordError) as draft:
+        WRITERS[suffix](record, str(draft))
 
 
 def _comma(record: Record, name: str) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inerter.figures.identification import draw
+from inerter.files.common.origin import versions
 from inerter.networks.parser import written
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
@@ -15,10 +16,11 @@ from inerter.report.identification_text import about, as_options, behind, done, 
 from inerter.report.identified_values import UNTOLD, elements_block, plain, scale_of, single, value_and_interval
 from inerter.report.page import PageFigure, environment, inline
 from inerter.study.identification_run import FIT, RESIDUALS, Identified, model_title, responses
-from inerter.study.run import FIGURES, REPORT, versions, write_text
+from inerter.study.run import FIGURES, REPORT
+from inerter.writing import write_text
 
 RESPONSE = "response.json"
-OWN = (FIT, RESIDUALS, RESPONSE, FIGURES, REPORT)
+OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
 _SEVERITIES = {"error": "Errors", "warning": "Warnings", "info": "Good to know"}
 _MOST_FIGURES = 5  # of one record, and two of all
 

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from inerter.files.common.origin import versions
 from inerter.identification.fit import Comparison
 from inerter.networks.parser import written
 from inerter.records.result import Response
 from inerter.report.identified_values import elements_block
 from inerter.study.identification_run import Identified, Reading, Responses
-from inerter.study.run import versions
+from inerter.writing import whole
 
 
 def identification_data(found: Identified) -> dict[str, Any]:
@@ -69,15 +70,13 @@ def response_data(found: Responses) -> dict[str, Any]:
 
 def write_residuals(found: Identified, path: Path) -> None:
     """A row for every sample of every record: what was measured, what the model answers, and what it was used for."""
-    temporary = path.with_name(f"{path.name}.part")
-    with temporary.open("w", encoding="utf-8", newline="\n") as file:
+    with whole(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
         file.write("record,time [s],displacement [m],force [N],model [N],residual [N],part\n")
         for number, c in enumerate(found.fit.comparisons):
             parts = np.where(c.fitted, "fit", np.where(c.checked, "check", "left out"))
             columns = (c.record.time, c.record.displacement, c.record.force, c.model, c.residual)
             for row, part in zip(np.column_stack(columns).tolist(), parts.tolist(), strict=True):
                 file.write(f"{number},{','.join(map(repr, row))},{part}\n")
-    temporary.replace(path)
 
 
 def _record(reading: Reading, comparison: Comparison) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from inerter.report.question import computation, element_rows, index_rows, layou
 from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
 from inerter.study.budgets import BudgetOutcome
 from inerter.study.values import Study, write_resolved
+from inerter.writing import write_text
 
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
@@ -38,7 +39,7 @@ def write_report(
     results: xr.Dataset, study: Study, figures: Path, path: Path, budgets: Sequence[BudgetOutcome] = ()
 ) -> Path:
     """Write the report of `study` to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
-    path.write_text(report(results, study, figures, budgets), encoding="utf-8", newline="\n")
+    write_text(path, report(results, study, figures, budgets))
     return path
 
 

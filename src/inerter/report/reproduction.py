@@ -27,8 +27,9 @@ from inerter.report.reproduction_tables import (
     simulated_table,
 )
 from inerter.report.reproduction_text import agreement_of
-from inerter.study.run import FIGURES, REPORT, write_text
+from inerter.study.run import FIGURES, REPORT
 from inerter.study.workers import Crew, crewed
+from inerter.writing import write_text
 
 Drawing = Callable[[], list[Path]]
 _NETWORKS = "networks"

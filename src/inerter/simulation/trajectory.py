@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from inerter.errors import SimulationError, Status
 from inerter.systems.outputs import Output, find
 from inerter.vehicle.mechanism import Mechanism
+from inerter.writing import export
 
 if TYPE_CHECKING:
     import xarray
@@ -158,14 +159,14 @@ class Trajectory:
         """Write the named outputs, or all, with a header `name [unit]`; numbers read back to the last bit."""
         chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
         columns = [self.time, *(self[name] for name in chosen)]
-        with _opened(path) as file:
+        with export(path, SimulationError) as draft, draft.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(["time [s]", *(f"{name} [{self.outputs[name].unit}]" for name in chosen)])
             writer.writerows(map(repr, row) for row in np.column_stack(columns).tolist())
 
     def events_to_csv(self, path: str | Path) -> None:
         """Write the table of events."""
-        with _opened(path) as file:
+        with export(path, SimulationError) as draft, draft.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(["time [s]", "element", "from", "to"])
             writer.writerows([repr(e.time), e.element, e.before, e.after] for e in self.events)
@@ -184,11 +185,5 @@ class Trajectory:
             "before": np.array([e.before for e in self.events], dtype=object),
             "after": np.array([e.after for e in self.events], dtype=object),
         }
-        savemat(path, data, oned_as="column", long_field_names=True)
-
-
-def _opened(path: str | Path) -> Any:
-    try:
-        return Path(path).open("w", newline="", encoding="utf-8")
-    except OSError as error:
-        raise SimulationError(f"Cannot write {str(path)!r}: {error.strerror}.") from None
+        with export(path, SimulationError) as draft:
+            savemat(draft, data, oned_as="column", long_field_names=True)

@@ -19,9 +19,10 @@ from inerter.study.entries import Amount
 from inerter.study.method_problems import method_problems
 from inerter.study.problems import at, explain, refusal
 from inerter.study.schema import Axles, Range, StudyFile, SweepRange
-from inerter.study.suggest import nearest
+from inerter.study.suggest import nearest, some
 from inerter.study.values import MOUNTS, StrutLayout, Study, Sweep, elements_used, write_resolved
 from inerter.units import shown
+from inerter.writing import characters
 
 __all__ = ["StrutLayout", "Study", "Sweep", "load_study", "write_resolved"]
 
@@ -103,7 +104,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
     if baseline is None and len(layouts) > 1:
         baseline = next(iter(layouts))
     return Study(
-        title=path.stem if shape.title is None else shape.title,
+        title=characters(path.stem) if shape.title is None else shape.title,
         path=path,
         model=model,
         vehicle=vehicle,
@@ -166,7 +167,7 @@ def network_problems(expression: str, elements: Mapping[str, Element]) -> Iterat
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:
-            defined = ", ".join(elements)
+            defined = some(elements)
             yield (
                 f"got {shown(expression)}: {shown(name)} is not in [elements], where there are {defined}"
                 f".{nearest(name, elements)}"
@@ -184,7 +185,7 @@ def _sweep_problems(study: Study) -> Iterator[str]:
     place, name = ("study", "sweep", sweep.element), sweep.element
     if name not in study.elements:
         hint = nearest(name, study.elements)
-        yield at(place, f"{shown(name)} is not in [elements], where there are {', '.join(study.elements)}.{hint}")
+        yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
         return
     element = study.elements[name]
     if isinstance(element.value, Free):
@@ -197,7 +198,7 @@ def _sweep_problems(study: Study) -> Iterator[str]:
 
 def _setting_problems(study: Study) -> Iterator[str]:
     if study.baseline is not None and study.baseline not in study.layouts:
-        known = ", ".join(study.layouts)
+        known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
         yield at(("study", "baseline"), f"got {shown(study.baseline)}; expected a layout, one of {known}.{hint}")
     if study.high_pass is not None and "J3" not in study.indices:
@@ -211,7 +212,7 @@ def _free_value_problems(study: Study) -> Iterator[str]:
     if used and study.optimise is None:
         yield at(
             ("study", "optimise"),
-            f'missing, but there are free values, {", ".join(used)}; expected optimise = "norm", or fixed values.',
+            f'missing, but there are free values, {some(used)}; expected optimise = "norm", or fixed values.',
         )
     if not used and study.optimise is not None:
         yield at(

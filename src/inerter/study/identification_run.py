@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError, RecordError, StudyError
+from inerter.errors import InerterError, RecordError
+from inerter.identification.choice import choose
 from inerter.identification.fit import Comparison, Fit
 from inerter.identification.identify import identify
 from inerter.identification.models import VISCOUS, mounted
@@ -31,7 +30,6 @@ from inerter.vehicle.cars import Rig
 
 Progress = Callable[[float], None]
 FIT, RESIDUALS = "fit.json", "residuals.csv"
-_CHOICE = "inerter.identification.choice"
 _LINEAR_POINTS = 300
 
 
@@ -128,7 +126,7 @@ def run_identification(
 ) -> Identified:
     """Fit the model, or choose one, to the records.
 
-    Raises what `identify` raises, and `StudyError` where a choice is not to be had.
+    Raises what `identify` raises.
     """
     records = [r.used for r in readings]
     settings = dict(request.settings)
@@ -148,10 +146,7 @@ def _chosen(
     settings: dict[str, Any],
     progress: Progress | None,
 ) -> Identified:
-    if find_spec(_CHOICE) is None:
-        raise StudyError("This version cannot choose between models. Name one with --model.")
     models = request.models()
-    choose = import_module(_CHOICE).choose
     given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
     choice = choose([r.used for r in readings], models=given, **settings, progress=progress)
     candidates = tuple(

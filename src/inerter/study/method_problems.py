@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from inerter.networks.elements import Friction, Gap
 from inerter.study.problems import at
 from inerter.study.schema import AVERAGING, FORCED
-from inerter.study.suggest import nearest
+from inerter.study.suggest import nearest, some
 from inerter.study.values import Study, elements_used
 from inerter.units import shown
 
@@ -49,7 +49,7 @@ def _force_problems(study: Study) -> Iterator[str]:
     if study.force is None and concerned and nonlinear:
         yield at(
             ("study", "force"),
-            f"missing, but {concerned[0]} takes J5 of {', '.join(nonlinear)}, where friction or gaps make it depend on "
+            f"missing, but {concerned[0]} takes J5 of {some(nonlinear)}, where friction or gaps make it depend on "
             f'the size of the force; expected its amplitude, such as force = "1 kN".',
         )
     if study.force is not None and not concerned:
@@ -66,7 +66,7 @@ def _gap_problems(study: Study) -> Iterator[str]:
     if _NO_GAPS in study.methods and gaps:
         yield at(
             ("study", key),
-            f"got {shown(_NO_GAPS)}, which has no answer for gaps, and {', '.join(gaps)} has one; expected another "
+            f"got {shown(_NO_GAPS)}, which has no answer for gaps, and {some(gaps)} has one; expected another "
             f"method, such as {shown(AVERAGING[0])}, or layouts without gaps.",
         )
 
@@ -82,7 +82,7 @@ def _budget_problems(study: Study) -> Iterator[str]:
     for name in study.budgets:
         if name not in study.elements:
             hint = nearest(name, study.elements)
-            yield at(place, f"{shown(name)} is not in [elements], where there are {', '.join(study.elements)}.{hint}")
+            yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
         elif not set(used.get(name, ())) - {study.baseline}:
             yield at(place, f"no layout but the baseline has {name}; expected an element of a layout that is compared.")
         elif isinstance(study.elements[name], Friction | Gap) and budget_method(study) == _BLIND:

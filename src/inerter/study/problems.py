@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 Shapes = Mapping[tuple[str, ...], type[Shape]]
 
+_MOST, _LONGEST = 20, 600  # problems, and characters of each
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _TELLING = {"vehicle": "model", "signal": "kind"}  # the key that decides which others a section has
 _OTHERS = {
@@ -32,8 +33,17 @@ _OTHERS = {
 
 
 def refusal(path: Path, problems: Iterable[str]) -> StudyError:
-    """The error that reports all `problems` of the file, one a line."""
-    return StudyError("\n".join(f"{path.name}: {problem}" for problem in problems))
+    """The error that reports the `problems` of the file, one a line: so many as a reader may want to see."""
+    every = list(problems)
+    lines = [f"{path.name}: {shortened(problem)}" for problem in every[:_MOST]]
+    if len(every) > _MOST:
+        lines.append(f"{path.name}: and {len(every) - _MOST} problems more.")
+    return StudyError("\n".join(lines))
+
+
+def shortened(line: str) -> str:
+    """A line without its middle if it is long, as names in it may be."""
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 205]} ... {line[-200:]}"
 
 
 def at(place: Iterable[str], sentence: str) -> str:

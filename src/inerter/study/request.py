@@ -35,6 +35,11 @@ class SignalRequest:
         """Of the values; empty for what has none."""
         return {name: key.of(self.unit).unit for name, key in KINDS[self.kind].keys.items()}
 
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it is read from."""
+        return (Path(self.values["file"]),) if "file" in self.values else ()
+
     def make(self, speed: float | None = None, roughness: float | None = None) -> Signal:
         """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
         kind = KINDS[self.kind]
@@ -74,6 +79,11 @@ class SimulationRequest:
     def length(self) -> float | None:
         """Time from the first to the last sample [s]; None for a period that the signal does not have."""
         return self.make_signal().period if self.duration is None else self.duration
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it is read from."""
+        return (self.path, *self.signal.inputs)
 
     def design(self) -> QuarterCar | HalfCar | Rig:
         """The vehicle, or rig, with the chosen layout."""

@@ -36,6 +36,7 @@ from inerter.study.values import StrutLayout
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
 from inerter.vehicle.cars import Rig
+from inerter.writing import characters
 
 _OWN = ("layout", "duration", "start")  # of [rig], and not of the rig itself
 
@@ -119,7 +120,7 @@ def load_rig(path: str | Path) -> RigRequest:
         raise refusal(path, problems)
     rig = _rig(path, shape.rig, next(iter(layouts[chosen].struts.values())), elements)
     return RigRequest(
-        path.stem if shape.title is None else shape.title, rig, signal, shape.rig.duration, shape.rig.start
+        characters(path.stem) if shape.title is None else shape.title, rig, signal, shape.rig.duration, shape.rig.start
     )
 
 

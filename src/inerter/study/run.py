@@ -3,37 +3,35 @@
 from __future__ import annotations
 
 import json
-import platform
-import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 
 import xarray as xr
-from filelock import FileLock, Timeout
 
-import inerter
-from inerter.errors import InerterError, StatusKind, StudyError
+from inerter.errors import InerterError, StatusKind
+from inerter.files.common.folder import Intent, Results, claimed
+from inerter.files.common.origin import versions
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.networks.parser import names
 from inerter.optimisation.optimise import check_variables
 from inerter.study import journal as journals
 from inerter.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
 from inerter.study.cases import Outcome, cases, design_notes
-from inerter.study.journal import Journal
+from inerter.study.problems import at, refusal
 from inerter.study.registry import INDEX, METHOD
 from inerter.study.results import dataset, summary_csv
+from inerter.study.suggest import some
 from inerter.study.values import Study, write_resolved
 from inerter.study.workers import Crew, crewed, run_all
 from inerter.vehicle.cars import Vehicle
+from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
 BUDGETS = "budgets.csv"
 FIGURES, REPORT = "figures", "report.html"
-OWN = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, VERSIONS, FIGURES, REPORT)
-_LOCK = ".lock"
+NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, VERSIONS, f"{FIGURES}/", REPORT)
 _ANSWERS = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)  # better at every value is an answer too
 Progress = Callable[[int, int, Outcome | BudgetOutcome | None], None]
 
@@ -75,10 +73,10 @@ def check_study(study: Study) -> None:
             try:
                 _check_design(study, study.design(layout, swept))
             except InerterError as error:
-                problems.append(f"{study.path}: layouts.{layout}: {error}")
+                problems.append(at(("layouts", layout), str(error)))
                 break
     if problems:
-        raise StudyError("\n".join(problems))
+        raise refusal(study.path, problems)
 
 
 def _check_design(study: Study, vehicle: Vehicle) -> None:
@@ -107,116 +105,82 @@ def study_notes(study: Study) -> list[str]:
             notes.setdefault(note, []).append(layout)
     used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
     unused = [name for name in study.elements if name not in used]
-    return [f"{', '.join(layouts)}: {note}" for note, layouts in notes.items()] + (
-        [f"no layout uses {', '.join(unused)}"] if unused else []
+    return [f"{some(layouts)}: {note}" for note, layouts in notes.items()] + (
+        [f"no layout uses {some(unused)}"] if unused else []
     )
 
 
 def run_study(
     study: Study,
-    folder: Path,
+    folder: Path | Results,
     *,
     jobs: int | Crew = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, outcome: None,
+    finish: Callable[[StudyResult, Path], object] = lambda result, folder: None,
 ) -> StudyResult:
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
 
-    `jobs` is a number of processes, or a crew, which goes on afterwards. With more than one process, a script that
-    calls this needs the line `if __name__ == "__main__":`, because processes are started afresh and import it.
+    `folder` may be a part of results that are being written. `jobs` is a number of processes, or a crew, which goes on
+    afterwards. With more than one process, a script that calls this needs the line `if __name__ == "__main__":`,
+    because processes are started afresh and import it. `finish` may add files to the results, in the folder that it is
+    given.
 
     Every finished case is in the journal at once. With `resume`, cases in the journal are not computed again, and the
-    results are the same, byte for byte, as those of an undisturbed run.
+    results are the same, byte for byte, as those of an undisturbed run. With `force`, the results that the folder holds
+    stay until these are whole.
 
-    Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, if it holds another
-    study's results, or if another run is writing to it; `WorkError` if a process is killed.
+    Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, if it holds what is not
+    from this study, or if another run is writing to it, and then nothing has been changed; `WorkError` if a process is
+    killed or the disk is full.
     """
     check_study(study)
-    with claimed(folder, own=OWN, resume=resume, force=force):
-        journal = Journal(folder / journals.NAME, study)
-        write_text(folder / RESOLVED, write_resolved(study))
-        write_text(folder / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
-        done, budgets = journal.read_all() if resume else ({}, {})
-        if not done:
-            journal.start()
-        everything, further = cases(study), budget_cases(study)
-        pending = [case for case in everything if case not in done]
-        total, computed = len(everything) + len(further), len(pending)
-        progress(len(done) + len(budgets), total, None)
-        with crewed(jobs) as crew, journal.appending() as writer:
-            for outcome in run_all(study, pending, crew):
-                writer.write(outcome)
-                done[outcome.case] = outcome
-                progress(len(done) + len(budgets), total, outcome)
-            for case in further:
-                if case not in budgets:
-                    budgets[case] = run_budget(study, case, done, crew.jobs)
-                    writer.write(budgets[case])
-                    progress(len(done) + len(budgets), total, budgets[case])
-        found = tuple(budgets[case] for case in further)
-        if found:
-            write_text(folder / BUDGETS, budgets_csv(found))
+    with _into(study, folder, resume, force) as results, crewed(jobs) as crew:
+        done, budgets, computed = _computed(study, results, crew, progress)
+        found = tuple(budgets[case] for case in budget_cases(study))
         data = dataset(study, done)
-        write_text(folder / SUMMARY, summary_csv(study, data))
-        temporary = folder / f"{DATASET}.part"
-        data.to_netcdf(temporary, engine="h5netcdf")
-        temporary.replace(folder / DATASET)
-    return StudyResult(folder, study, data, computed, found)
+        write_text(results.draft / RESOLVED, write_resolved(study))
+        write_text(results.draft / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
+        if found:
+            write_text(results.draft / BUDGETS, budgets_csv(found))
+        write_text(results.draft / SUMMARY, summary_csv(study, data))
+        write_netcdf(results.draft / DATASET, data)
+        results.publish()
+        result = StudyResult(results.folder, study, data, computed, found)
+        finish(result, results.draft)
+    return result
 
 
 @contextmanager
-def claimed(folder: Path, *, own: Sequence[str], resume: bool | None, force: bool) -> Iterator[None]:
-    """A folder for results that is ours alone while we write; its files named in `own` may be replaced by `force`.
-
-    `resume` is None for work that is done in one go: the old files stay until each is replaced.
-
-    Raises `StudyError` if it is not a folder, cannot be written, is in use, or holds something and neither `resume`
-    nor `force` is given.
-    """
-    if resume and force:
-        raise StudyError("--resume keeps what the folder holds and --force replaces it: give one of them.")
-    if folder.exists() and not folder.is_dir():
-        raise StudyError(f"{folder}: is a file; expected a folder for the results. Choose another with -o.")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        lock = FileLock(folder / _LOCK)
-        lock.acquire(timeout=0)
-    except Timeout:
-        raise StudyError(f"{folder}: another run is writing to it. Wait for it, or choose another folder.") from None
-    except OSError as error:
-        raise StudyError(f"{folder}: cannot be written ({error.strerror}). Choose another folder with -o.") from None
-    try:
-        if not resume and any(path.name != _LOCK for path in folder.iterdir()):
-            if not force:
-                ours = any((folder / name).exists() for name in own)
-                again = "Replace" if resume is None else "Continue with --resume, replace"
-                kept = f"{again} the results with --force" if ours else "Use --force to add to it"
-                raise StudyError(f"{folder}: is not empty. {kept}, or choose another folder with -o.")
-            for name in own if resume is not None else ():
-                _remove(folder / name)
-        yield
-    finally:
-        lock.release()
-        if not any(path.name != _LOCK for path in folder.iterdir()):
-            _remove(folder / _LOCK)
+def _into(study: Study, folder: Path | Results, resume: bool, force: bool) -> Iterator[Results]:
+    if isinstance(folder, Results):
+        yield folder
+        return
+    with claimed(Intent(folder, "run", NAMES, (study.path,), resume, force)) as results:
+        yield results
 
 
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
-
-
-def versions() -> dict[str, str]:
-    """The versions of this package, of Python and of the libraries on which numbers depend."""
-    libraries = {name: version(name) for name in ("numpy", "scipy", "numba", "xarray")}
-    return {"inerter": inerter.__version__, "python": platform.python_version(), **libraries}
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file that is there as a whole or not at all."""
-    temporary = path.with_name(f"{path.name}.part")
-    temporary.write_text(text, encoding="utf-8", newline="\n")
-    temporary.replace(path)
+def _computed(
+    study: Study, results: Results, crew: Crew, progress: Progress
+) -> tuple[journals.Done, journals.Budgets, int]:
+    """All cases and budgets, and how many cases were not in the journal."""
+    journal = journals.journal_of(study, results.place / journals.NAME)
+    before = journal.read() if results.resume else []
+    done, budgets = journals.finished(journal.path, before)
+    everything, further = cases(study), budget_cases(study)
+    pending = [case for case in everything if case not in done]
+    total, computed = len(everything) + len(further), len(pending)
+    progress(len(done) + len(budgets), total, None)
+    results.list_journal(journals.NAME)
+    with journal.appending(before) as append:
+        for outcome in run_all(study, pending, crew):
+            append(outcome.to_json())
+            done[outcome.case] = outcome
+            progress(len(done) + len(budgets), total, outcome)
+        for case in further:
+            if case not in budgets:
+                budgets[case] = run_budget(study, case, done, crew.jobs)
+                append(budgets[case].to_json())
+                progress(len(done) + len(budgets), total, budgets[case])
+    return done, budgets, computed

@@ -15,10 +15,11 @@ from inerter.study.problems import at, explain, refusal
 from inerter.study.request import SignalRequest, SimulationRequest
 from inerter.study.signal_kinds import FORCES, KINDS, MOVED
 from inerter.study.simulation_schema import SIMULATION_SHAPES, SimulationFile
-from inerter.study.suggest import nearest
+from inerter.study.suggest import nearest, some
 from inerter.study.values import StrutLayout
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
+from inerter.writing import characters
 
 
 def load_simulation(path: str | Path) -> SimulationRequest:
@@ -48,7 +49,7 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
     if chosen is None and len(layouts) == 1:
         chosen = next(iter(layouts))
     return SimulationRequest(
-        title=path.stem if shape.title is None else shape.title,
+        title=characters(path.stem) if shape.title is None else shape.title,
         path=path,
         model=model,
         vehicle=vehicle,
@@ -73,7 +74,7 @@ def signal_of(path: Path, model: str, entry: dict[str, Any]) -> SignalRequest:
 
 def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[str]:
     """What is wrong with the layout that a section chooses."""
-    layouts = ", ".join(known)
+    layouts = some(known)
     if not layout:
         yield at((section, "layout"), f"missing, but there are several layouts; expected one of {layouts}.")
     elif layout not in known:
@@ -87,7 +88,7 @@ def _names(request: SimulationRequest) -> Iterator[str]:
     moved, inputs = request.signal.input, (MOVED[request.model], *FORCES[request.model])
     if moved not in inputs:
         hint = nearest(moved, inputs)
-        yield at(("signal", "input"), f"got {shown(moved)}; expected one of {', '.join(inputs)}.{hint}")
+        yield at(("signal", "input"), f"got {shown(moved)}; expected one of {some(inputs)}.{hint}")
 
 
 def _needs(request: SimulationRequest) -> Iterator[str]:

@@ -10,16 +10,19 @@ from pathlib import Path
 import numpy as np
 
 from inerter.errors import InerterError, StudyError
+from inerter.files.common.folder import Intent, claimed
+from inerter.files.common.origin import versions
 from inerter.networks.elements import Friction, Gap, Inerter
 from inerter.simulation.trajectory import Trajectory
 from inerter.study.problems import at
 from inerter.study.request import SimulationRequest, write_simulation
-from inerter.study.run import FIGURES, claimed, versions, write_text
+from inerter.study.run import FIGURES
 from inerter.systems.graph import full_graph
 from inerter.vehicle.mechanism import Mechanism
+from inerter.writing import write_netcdf, write_text
 
 TRAJECTORY, DATASET, EVENTS, RESOLVED = "trajectory.csv", "trajectory.nc", "events.csv", "simulation.toml"
-OWN = (TRAJECTORY, DATASET, EVENTS, RESOLVED, FIGURES)
+NAMES = (TRAJECTORY, DATASET, EVENTS, RESOLVED, f"{FIGURES}/")
 STATES = {
     "friction": ("stick", "slip up", "slip down"),
     "gap": ("open", "upper contact", "lower contact"),
@@ -122,31 +125,29 @@ def run_simulation(
     *,
     force: bool = False,
     progress: Callable[[float], None] | None = None,
+    finish: Callable[[SimulationResult, Path], object] = lambda result, folder: None,
 ) -> SimulationResult:
     """Simulate `request` and write the trajectory, its events and the resolved request into `folder`.
 
-    With `force`, old results stay until the new motion is known. Numbers in files are in SI units.
+    With `force`, old results stay until the new ones are whole. Numbers in files are in SI units. `finish` may add
+    files to the results, in the folder that it is given.
 
     Raises `StudyError` as `claimed` does, and if the request cannot be simulated.
     """
-    with claimed(folder, own=OWN, resume=None, force=force):
+    with claimed(Intent(folder, "simulate", NAMES, request.inputs, force=force)) as results:
         try:
-            run = request.run(progress)
+            result = SimulationResult(request, request.run(progress))
         except InerterError as error:
             raise StudyError(f"{request.path.name}: {at(('simulation',), str(error))}") from None
-        _write(request, run, folder)
-    return SimulationResult(request, run)
+        _write(result, results.draft)
+        results.publish()
+        finish(result, results.draft)
+    return result
 
 
-def _write(request: SimulationRequest, run: Trajectory, folder: Path) -> None:
+def _write(result: SimulationResult, folder: Path) -> None:
     header = "".join(f"# {name} {version}\n" for name, version in versions().items())
-    write_text(folder / RESOLVED, f"{header}\n{write_simulation(request)}")
-    writers: dict[str, Callable[[Path], None]] = {
-        TRAJECTORY: run.to_csv,
-        EVENTS: run.events_to_csv,
-        DATASET: lambda path: run.to_xarray().to_netcdf(path, engine="h5netcdf"),
-    }
-    for name, write in writers.items():
-        temporary = folder / f"{name}.part"
-        write(temporary)
-        temporary.replace(folder / name)
+    write_text(folder / RESOLVED, f"{header}\n{write_simulation(result.request)}")
+    result.run.to_csv(folder / TRAJECTORY)
+    result.run.events_to_csv(folder / EVENTS)
+    write_netcdf(folder / DATASET, result.run.to_xarray())

@@ -1,4 +1,4 @@
-"""The nearest known word, for messages about an unknown one."""
+"""Known words for messages about an unknown one: the nearest, and some of them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from inerter.units import shown
+
+_MOST = 12  # names in a message
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
@@ -17,3 +19,14 @@ def nearest(word: object, known: Iterable[str]) -> str:
     candidates = {name.lower(): name for name in known}
     close = get_close_matches(word.lower(), candidates, n=1) if isinstance(word, str) else []
     return f" Did you mean {shown(candidates[close[0]])}?" if close else ""
+
+
+def some(names: Iterable[str]) -> str:
+    """Names in a row, so many as a reader may want to see.
+
+    >>> some(f"k{i}" for i in range(100))
+    'k0, k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11 and 88 more'
+    """
+    known = list(names)
+    more = f" and {len(known) - _MOST} more" if len(known) > _MOST else ""
+    return ", ".join(known[:_MOST]) + more

@@ -19,10 +19,12 @@ from typing import TypeVar
 from inerter.errors import WorkError
 from inerter.study.cases import Case, Outcome, run_case
 from inerter.study.values import Study
+from inerter.writing import undisturbed
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 _SHORT = 3.0  # seconds: to start processes takes about as long
+_PATIENCE = 0.4  # seconds that a process has to end
 
 
 def run_all(study: Study, pending: Sequence[Case], crew: Crew) -> Iterator[Outcome]:
@@ -50,10 +52,7 @@ class Crew:
             return
         self._pool.shutdown(wait=kind is None, cancel_futures=kind is not None)
         if kind is not None:  # Ctrl-C: what is under way is not waited for
-            for process in self._processes:
-                process.terminate()
-            for process in self._processes:
-                process.join()
+            _end(self._processes)
 
     def begin(self, work: Callable[[], object]) -> None:
         """Have one of the processes do this first, whatever comes of it."""
@@ -112,6 +111,16 @@ class Crew:
         return submitted
 
 
+def _end(processes: Iterable[BaseProcess]) -> None:
+    """End processes, those that do not heed it by force, and wait for none of them for long."""
+    for end in (BaseProcess.terminate, BaseProcess.kill):
+        for process in processes:
+            end(process)
+        deadline = time.monotonic() + _PATIENCE
+        for process in processes:
+            process.join(max(deadline - time.monotonic(), 0.0))
+
+
 @contextmanager
 def crewed(jobs: int | Crew) -> Iterator[Crew]:
     """The crew that is given, or one of so many processes that ends with this."""
@@ -124,15 +133,16 @@ def crewed(jobs: int | Crew) -> Iterator[Crew]:
 
 @contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """Processes started inside are born deaf to Ctrl-C, which is for the parent alone."""
-    if threading.current_thread() is not threading.main_thread():
+    """Processes started inside are born deaf to Ctrl-C, which is for the parent alone; there it waits for the end."""
+    if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    with undisturbed():
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin_worker() -> None:

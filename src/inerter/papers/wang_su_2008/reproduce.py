@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -12,8 +11,9 @@ from typing import Any
 
 import xarray as xr
 
-import inerter
 from inerter.errors import StudyError
+from inerter.files.common.folder import Intent, Results, claimed
+from inerter.files.common.journal import Journal
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
@@ -21,8 +21,8 @@ from inerter.papers.wang_su_2008.judging import Claim, Evidence
 from inerter.papers.wang_su_2008.linear import Linear
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
-from inerter.papers.wang_su_2008.source import study
-from inerter.study.run import FIGURES, REPORT, StudyResult, claimed, run_study, write_text
+from inerter.papers.wang_su_2008.source import KEY, study
+from inerter.study.run import FIGURES, NAMES, REPORT, StudyResult, run_study
 from inerter.study.workers import Crew, crewed
 
 JOURNAL = "tasks.jsonl"
@@ -44,7 +44,10 @@ TABLES = (
     *("rig", "figure8", "figure9", "figure10"),  # of the virtual rig
     *("linear-rows", "designs", "simulated-rows", "curves", "claims", "methods", "optima", "budgets", "origins"),
 )
-_OWN = (*linear.STUDIES, JOURNAL, FIGURES, REPORT, *(f"{name}.csv" for name in TABLES))
+_OWN = (
+    *(JOURNAL, f"{FIGURES}/", REPORT, *(f"{name}.csv" for name in TABLES)),
+    *(f"{folder}/{name}" for folder in linear.STUDIES for name in ("", *NAMES)),
+)
 Numbers = dict[str, Any]
 Progress = Callable[[str, int, int], None]
 
@@ -119,8 +122,12 @@ def reproduce(
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda what, done, total: None,
+    finish: Callable[[Reproduction, Path, Crew], object] = lambda found, folder, crew: None,
 ) -> Reproduction:
     """Recompute the paper, or some of its `PARTS`, into `folder`; what was finished before is kept with `resume`.
+
+    With `force`, the results that the folder holds stay until these are whole. `finish` may add files to the results,
+    in the folder that it is given.
 
     Raises `StudyError` if `folder` holds something and neither `resume` nor `force` is given, or for an unknown part.
     """
@@ -130,11 +137,12 @@ def reproduce(
     wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
-    with crewed(jobs) as crew, claimed(folder, own=_OWN, resume=resume, force=force):
+    intent = Intent(folder, "reproduce", _OWN, resume=resume, force=force)
+    with claimed(intent) as results, crewed(jobs) as crew:
         if needed and wanted > {"linear"} and not resume:
             crew.begin(_warm_up)
         studies = {
-            name: run_study(study(name), folder / name, jobs=crew, resume=resume, progress=_named(progress, name))
+            name: run_study(study(name), results.within(name), jobs=crew, progress=_named(progress, name))
             for name in needed
         }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
@@ -145,8 +153,11 @@ def reproduce(
         if figure11 is not None and "linear" in wanted:
             tasks += [Task("between", name) for name in between.names(figure11)]
         tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
-        found = _run(tasks, folder / JOURNAL, crew, resume, progress)
-    return _put_together(tuple(part for part in PARTS if part in wanted), studies, found)
+        found = _put_together(
+            tuple(part for part in PARTS if part in wanted), studies, _run(tasks, results, crew, progress)
+        )
+        finish(found, results.draft, crew)
+    return found
 
 
 def _warm_up() -> None:
@@ -211,44 +222,22 @@ def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
     return Task("curves", name, tuple((p, value) for p, value in values if value == value))
 
 
-def _run(
-    tasks: list[Task], journal: Path, crew: Crew, resume: bool, progress: Progress
-) -> dict[tuple[str, str], Numbers]:
+def _run(tasks: list[Task], results: Results, crew: Crew, progress: Progress) -> dict[tuple[str, str], Numbers]:
     """The numbers of all tasks; each is in the journal as soon as it is there."""
-    found = _read(journal) if resume else {}
+    journal = Journal(results.place / JOURNAL, {"paper": KEY})
+    before = journal.read() if results.resume else []
+    found = {(entry["part"], entry["name"]): entry["numbers"] for entry in before}
     pending = [task for task in tasks if task.key not in found]
     pending = pending[::2] + pending[1::2]  # neighbours are alike: two processes would compile the same
-    if not found:
-        write_text(journal, json.dumps({"inerter": inerter.__version__}) + "\n")
     if tasks:
         progress("simulations", len(tasks) - len(pending), len(tasks))
-    with journal.open("a", encoding="utf-8") as stream:
-        for i, (key, numbers) in enumerate(crew.spread(work, pending), 1):
-            found[key] = numbers
-            stream.write(json.dumps([*key, numbers]) + "\n")
-            stream.flush()
+    results.list_journal(JOURNAL)
+    with journal.appending(before) as append:
+        for i, ((part, name), numbers) in enumerate(crew.spread(work, pending), 1):
+            found[part, name] = numbers
+            append({"part": part, "name": name, "numbers": numbers})
             progress("simulations", len(tasks) - len(pending) + i, len(tasks))
     return {task.key: found[task.key] for task in sorted(tasks, key=lambda task: _ORDER.index(task.part))}
-
-
-def _read(journal: Path) -> dict[tuple[str, str], Numbers]:
-    """What was finished before by this version; a line that was cut short is left out."""
-    try:
-        header, *lines = journal.read_text(encoding="utf-8").splitlines()
-        if json.loads(header) != {"inerter": inerter.__version__}:
-            raise StudyError(f"{journal}: written by another version. Start anew with --force.")
-    except (OSError, ValueError) as error:
-        if isinstance(error, StudyError):
-            raise
-        return {}
-    found = {}
-    for line in lines:
-        try:
-            part, name, numbers = json.loads(line)
-        except ValueError:
-            break
-        found[part, name] = numbers
-    return found
 
 
 def _named(progress: Progress, name: str) -> Callable[[int, int, object], None]:

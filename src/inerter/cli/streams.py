@@ -1,0 +1,56 @@
+"""Standard output and error that take any text and never stop the work: not when closed, nor when nobody reads them."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+
+_raw: dict[str, _Enduring] = {}
+
+
+class _Enduring(io.FileIO):
+    """Takes whatever is written; what it could not pass on is remembered."""
+
+    problem: OSError | None = None
+
+    def write(self, data: ReadableBuffer, /) -> int:
+        try:
+            return super().write(data) or 0
+        except OSError as error:
+            self.problem = self.problem or error
+            return memoryview(data).nbytes
+
+
+def endure() -> None:
+    """Replace the standard streams of the process, once.
+
+    A closed one is opened to nowhere: a file that is opened later would otherwise get its number, and what is printed.
+    """
+    if _raw:
+        return
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        before = getattr(sys, name)
+        raw = _raw[name] = _Enduring(number, "wb", closefd=False)
+        stream = io.TextIOWrapper(
+            io.BufferedWriter(raw),
+            encoding=getattr(before, "encoding", "utf-8"),
+            errors="backslashreplace",
+            line_buffering=number == 2 or raw.isatty(),
+        )
+        setattr(sys, name, stream)
+
+
+def problem() -> OSError | None:
+    """Why standard output could not be written, if anybody wanted to read it."""
+    found = _raw["stdout"].problem if "stdout" in _raw else None
+    return None if isinstance(found, BrokenPipeError) else found

@@ -1,0 +1,1 @@
+"""What this package reads and writes as files, apart from what is in them."""

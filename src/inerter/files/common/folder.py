@@ -1,0 +1,379 @@
+"""Result folders: new results come together beside the old ones, and take their place when they are whole.
+
+Only files that this package wrote there, and that nobody has changed since, are ever replaced or removed.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from inerter.errors import StudyError, WorkError
+from inerter.files.common.listing import MARK, Entry, Listing, digest, is_linked, is_own, listing, names_below
+from inerter.writing import is_unforeseen, scratch, settle, undisturbed
+
+_LOCK, _NEW, _WHOLE = f"{MARK}/lock", f"{MARK}/new", f"{MARK}/whole"
+SINGLE = "rig"  # the command that writes single files, which make no folder of results
+_ELSEWHERE = "choose another folder with -o"
+_SHOWN = 3  # names in a message
+
+
+@dataclass(frozen=True)
+class Intent:
+    """What a command is going to do with a folder; `resume` is None for work that is done in one go.
+
+    `names` are what it will write there, folders with "/" at the end; `inputs` are the files that it reads.
+    """
+
+    folder: Path
+    by: str
+    names: tuple[str, ...]
+    inputs: tuple[Path, ...] = ()
+    resume: bool | None = None
+    force: bool = False
+
+
+@dataclass(frozen=True)
+class Results:
+    """A folder that is ours alone while we write.
+
+    What is written goes to `draft`, and with `publish` to its `place`: the `folder` itself or, as long as that holds
+    the results which these replace, one beside them.
+    """
+
+    folder: Path
+    place: Path
+    draft: Path
+    intent: Intent
+    top: Results | None = field(default=None, repr=False)
+
+    @property
+    def resume(self) -> bool:
+        """Whether what is there already is to be kept."""
+        return bool(self.intent.resume)
+
+    def within(self, name: str) -> Results:
+        """A folder of results in this one."""
+        parts = {part: getattr(self, part) / name for part in ("folder", "place", "draft")}
+        (self.draft / name).mkdir(exist_ok=True)
+        return replace(self, **parts, top=self.top or self)
+
+    def list_journal(self, name: str) -> None:
+        """Say that the file of that name, which grows in the `place`, is ours."""
+        top = self.top or self
+        own = (self.place / name).relative_to(top.place).as_posix()
+        self.place.mkdir(exist_ok=True)
+        (listing(top.place) or Listing()).with_files({own: Entry(self.intent.by, journal=True)}).write(top.place)
+
+    def publish(self) -> None:
+        """Move everything that was drafted to its place, or nothing where a file that is not ours is in the way."""
+        top = self.top or self
+        files = {name: Entry(self.intent.by, (digest(top.draft / name),)) for name in names_below(top.draft)}
+        _move(top.draft, top.place, files, top.intent.inputs)
+
+
+@contextmanager
+def claimed(intent: Intent) -> Iterator[Results]:
+    """The folder for the results of a command; what is in `Results.draft` when the block ends well is published.
+
+    With `force`, what the folder holds stays as it is until all of the new results are there.
+
+    Raises `StudyError` if the folder is not one for these results, or is in use, and then nothing has been changed;
+    `WorkError` if the disk is full, or a file of the user's has come in the way meanwhile.
+    """
+    _check(intent)
+    with _told(intent), _locked(intent.folder, wait=0.0):
+        _check(intent)
+        _clean(intent.folder)
+        with undisturbed():
+            _complete(intent.folder)
+        yield from _results(intent)
+
+
+def _results(intent: Intent) -> Iterator[Results]:
+    folder, new = intent.folder, intent.folder / _NEW
+    if intent.force:
+        shutil.rmtree(new, ignore_errors=True)
+    beside = new.is_dir() or (intent.force and bool((listing(folder) or Listing()).by(intent.by)))
+    place = new if beside else folder
+    try:
+        (place / MARK).mkdir(parents=True, exist_ok=True)
+        with scratch(folder / MARK) as draft:
+            results = Results(folder, place, draft, intent)
+            yield results
+            results.publish()
+        _seal(place)
+        if beside:
+            (new / _WHOLE).touch()
+            with undisturbed():
+                _complete(folder)
+    finally:
+        if intent.resume is None and not (new / _WHOLE).exists():
+            shutil.rmtree(new, ignore_errors=True)
+
+
+def _seal(folder: Path) -> None:
+    """The journals of a folder will not grow any more."""
+    known = listing(folder) or Listing()
+    grown = {name: entry for name, entry in known.files.items() if entry.journal and not entry.digests}
+    known.with_files({n: replace(e, digests=(digest(folder / n),)) for n, e in grown.items()}).write(folder)
+
+
+@contextmanager
+def single(path: Path, *, inputs: tuple[Path, ...], force: bool) -> Iterator[Path]:
+    """Where to write one file that is to be at `path`, in a folder that may hold anything else.
+
+    Raises as `check_single` does, and `WorkError` if the disk is full.
+    """
+    check_single(path, inputs=inputs, force=force)
+    folder = path.parent
+    with _told(None, path), _locked(folder, wait=10.0):
+        check_single(path, inputs=inputs, force=force)
+        with scratch(folder / MARK) as draft:
+            yield draft / path.name
+            _move(draft, folder, {path.name: Entry(SINGLE, (digest(draft / path.name),))}, inputs)
+
+
+def check_single(path: Path, *, inputs: tuple[Path, ...], force: bool) -> None:
+    """Raises `StudyError` unless there is no file at `path`, or one of our own that `force` may replace."""
+    if not _is_mark(path.parent):
+        raise StudyError(f"{path.parent / MARK}: is in the way. Move it away, or choose another folder with -o.")
+    if not os.path.lexists(path):
+        return
+    if not _may_replace(path.parent, path.name, listing(path.parent) or Listing(), SINGLE, inputs):
+        raise StudyError(
+            f"{path}: exists, and is not a file that this command wrote and nobody changed, so it stays. "
+            "Choose another name with -o."
+        )
+    if not force:
+        raise StudyError(f"{path}: exists. Replace it with --force, or choose another name with -o.")
+
+
+def _check(intent: Intent) -> None:
+    """Raises `StudyError` for an intent that cannot be met; reads only."""
+    folder = intent.folder
+    if intent.resume and intent.force:
+        raise StudyError("--resume keeps what the folder holds and --force replaces it: give one of them.")
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise StudyError(f"{folder}: is a file; expected a folder for the results. Choose another with -o.")
+    try:
+        if _is_empty(folder):
+            return
+        known = (listing(folder) if _is_mark(folder) else None) or Listing()
+        commands = {entry.by for entry in known.files.values()} - {SINGLE}
+        if intent.by not in commands:
+            raise StudyError(_not_ours(intent, commands))
+        if not intent.resume and not intent.force:
+            again = "Replace" if intent.resume is None else "Continue with --resume, replace"
+            raise StudyError(f"{folder}: is not empty. {again} the results with --force, or {_ELSEWHERE}.")
+        _check_files(intent, known)
+    except OSError as error:
+        raise StudyError(f"{folder}: cannot be read ({error.strerror}). Choose another folder with -o.") from None
+
+
+def _check_files(intent: Intent, known: Listing) -> None:
+    folder, own = intent.folder, known.by(intent.by)
+    there = [name for name in dict.fromkeys((*own, *intent.names)) if os.path.lexists(folder / name)]
+    if intent.resume:  # its lines are looked at one by one
+        there = [name for name in there if name not in own or not own[name].journal or is_linked(folder, name)]
+    strange = [name for name in there if not (_is_folder if name.endswith("/") else _is_ours)(folder, name, own)]
+    if strange:
+        raise StudyError(f"{folder}: {_told_apart(strange)} Move that away, or {_ELSEWHERE}.")
+    read = [name for name in there if intent.force and _is_input(folder / name, intent.inputs)]
+    if read:
+        raise StudyError(
+            f"{folder}: {_enumerated(read)} is what this command reads, and --force would replace it. "
+            f"Copy it to another place, or {_ELSEWHERE}."
+        )
+
+
+def _is_ours(folder: Path, name: str, own: Mapping[str, Entry]) -> bool:
+    return is_own(folder, name, Listing(own))
+
+
+def _is_folder(folder: Path, name: str, own: Mapping[str, Entry]) -> bool:
+    return (folder / name).is_dir() and not is_linked(folder, name)
+
+
+def _not_ours(intent: Intent, commands: Iterable[str]) -> str:
+    folder = intent.folder
+    if commands:
+        return f"{folder}: holds the results of inerter {_enumerated(sorted(commands))}. Choose another folder with -o."
+    unknown = f"it has no list ({MARK}/files.json) of what inerter wrote there"
+    if intent.resume:
+        return f"{folder}: holds nothing that --resume could continue: {unknown}. Choose another folder with -o."
+    if intent.force:
+        return (
+            f"{folder}: --force replaces results, and nothing here is known as one: {unknown}. "
+            "Choose another folder with -o, or move away what is there."
+        )
+    return f"{folder}: is not empty, and holds no results. Choose another folder with -o."
+
+
+def _told_apart(names: list[str]) -> str:
+    was, they, stay = ("was", "it is", "stays") if len(names) == 1 else ("were", "they are", "stay")
+    return (
+        f"{_enumerated(names)} {was} not written by inerter, or changed since, so {they} taken for your own and {stay}."
+    )
+
+
+def _enumerated(names: list[str]) -> str:
+    shown = ", ".join(name.rstrip("/") for name in names[:_SHOWN])
+    return shown if len(names) <= _SHOWN else f"{shown} and {len(names) - _SHOWN} more"
+
+
+def _is_empty(folder: Path) -> bool:
+    """Whether there is nothing in a folder, not even its beginnings, but what an earlier end has left of our own."""
+    if not folder.exists():
+        return True
+    return {entry.name for entry in os.scandir(folder)} <= {MARK} and _is_mark(folder) and not (folder / _NEW).exists()
+
+
+def _is_mark(folder: Path) -> bool:
+    """Whether our mark is there, or nothing of that name."""
+    mark = folder / MARK
+    if not os.path.lexists(mark):
+        return True
+    return _is_folder(folder, MARK, {}) and (listing(folder) is not None or not _strange(mark))
+
+
+def _strange(mark: Path) -> list[str]:
+    return [name for name in os.listdir(mark) if name != "lock" and not name.startswith(".inerter-")]
+
+
+def _complete(folder: Path) -> None:
+    """Put new results that are whole in the place of the old ones; if that was cut short before, the rest of them."""
+    new = folder / _NEW
+    found = listing(new)
+    if found is not None and (new / _WHOLE).exists():
+        files = found.files
+        commands = {entry.by for entry in files.values()}
+        before = (listing(folder) or Listing()).files
+        _move(new, folder, files, (), {name for name, entry in before.items() if entry.by in commands} - set(files))
+        shutil.rmtree(new)
+
+
+def _move(
+    source: Path, target: Path, files: Mapping[str, Entry], inputs: tuple[Path, ...], stale: Iterable[str] = ()
+) -> None:
+    """Move files from one folder to another, where they are listed, and remove the stale ones, or do nothing at all.
+
+    Until all are there, the list knows the files of both sides, so that a cut at any point leaves only what it knows.
+
+    Raises `WorkError` if a file that is not ours is in the way.
+    """
+    known = listing(target) or Listing()
+    moved = {
+        name: entry
+        for name, entry in files.items()
+        if (source / name).exists() and not _is_there(target, name, known, entry)
+    }
+    stale = [name for name in stale if os.path.lexists(target / name)]
+    strange = [name for name in moved if not _may_replace(target, name, known, moved[name].by, inputs)]
+    strange += [name for name in stale if not is_own(target, name, known)]
+    if strange:
+        raise WorkError(f"{target}: {_told_apart(strange)} Move that away, and repeat the command.")
+    for name in moved:
+        settle(source / name)
+    both = {
+        name: replace(entry, digests=(*entry.digests, *(known.files[name].digests if name in known.files else ())))
+        for name, entry in files.items()
+    }
+    known.with_files(both).write(target)
+    with undisturbed():
+        for name in moved:
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            (source / name).replace(target / name)
+        for name in stale:
+            (target / name).unlink()
+        _prune(target, stale)
+        for parent in {(target / name).parent for name in moved}:
+            settle(parent)
+    known.with_files(files, stale).write(target)
+
+
+def _is_there(folder: Path, name: str, known: Listing, entry: Entry) -> bool:
+    """Whether a file is there already, just as it is to be."""
+    return is_own(folder, name, known) and digest(folder / name) in entry.digests
+
+
+def _may_replace(folder: Path, name: str, known: Listing, by: str, inputs: tuple[Path, ...]) -> bool:
+    if not os.path.lexists(folder / name):
+        return not is_linked(folder, name)
+    return is_own(folder, name, Listing(known.by(by))) and not _is_input(folder / name, inputs)
+
+
+def _is_input(path: Path, inputs: tuple[Path, ...]) -> bool:
+    """Whether it is one of the inputs, by whatever name, link or spelling."""
+    return any(given.exists() and path.samefile(given) for given in inputs)
+
+
+def _prune(folder: Path, names: Iterable[str]) -> None:
+    """Remove the folders that files of these names were in, if they are empty now."""
+    places = {parent for name in names for parent in (folder / name).parents if folder in parent.parents}
+    for place in sorted(places, reverse=True):
+        if not any(place.iterdir()):
+            place.rmdir()
+
+
+@contextmanager
+def _locked(folder: Path, wait: float) -> Iterator[None]:
+    """Alone in a folder, which is made if there is none; what was made and not used is removed again."""
+    made = [path for path in (folder / MARK, folder, *folder.parents) if not path.exists()]
+    try:
+        (folder / MARK).mkdir(parents=True, exist_ok=True)
+        lock = FileLock(folder / _LOCK)
+        lock.acquire(timeout=wait)
+    except Timeout:
+        raise StudyError(f"{folder}: another run is writing to it. Wait for it, or {_ELSEWHERE}.") from None
+    except OSError as error:
+        _tidy(folder, made)
+        if is_unforeseen(error):
+            raise
+        raise StudyError(f"{folder}: cannot be written ({error.strerror}). Choose another folder with -o.") from None
+    try:
+        yield
+    finally:
+        lock.release()
+        _tidy(folder, made)
+
+
+def _tidy(folder: Path, made: list[Path]) -> None:
+    """Remove what was made and holds nothing: our mark, and folders."""
+    known = (listing(folder) or Listing()).files
+    if folder / MARK in made and not any(os.path.lexists(folder / name) for name in known):
+        shutil.rmtree(folder / MARK, ignore_errors=True)
+    for path in made:
+        if path.is_dir() and not any(path.iterdir()):
+            path.rmdir()
+
+
+def _clean(folder: Path) -> None:
+    """Remove what was under way when a process was killed."""
+    known = (listing(folder) or Listing()).files
+    for place in {folder, folder / MARK, *((folder / name).parent for name in known)}:
+        for path in place.glob(".inerter-????????"):
+            shutil.rmtree(path, ignore_errors=True)
+
+
+@contextmanager
+def _told(intent: Intent | None, path: Path | None = None) -> Iterator[None]:
+    """A full disk is told in a sentence, with what is kept."""
+    try:
+        yield
+    except (OSError, WorkError) as error:
+        cause = error.__cause__ if isinstance(error, WorkError) else error
+        if not isinstance(cause, OSError) or not is_unforeseen(cause):
+            raise
+        kept = ""
+        if intent and intent.force:
+            kept = " The earlier results are as they were."
+        if intent and intent.resume is not None:
+            kept += " What was computed is kept; continue with --resume."
+        raise WorkError(f"{intent.folder if intent else path}: {cause.strerror}.{kept}") from None

@@ -1,0 +1,101 @@
+"""What this package wrote in a folder: a list with the hash of every file, by which its own are told from a user's."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from inerter.files.common.journal import is_intact
+from inerter.writing import write_text
+
+MARK = ".inerter"  # the folder of the list, of the lock, and of what is under way
+_NAME = f"{MARK}/files.json"
+_ABOUT = (
+    "What inerter wrote in this folder, with the SHA-256 of each file. --force replaces these files and no others, and "
+    "of these only such as nobody has changed since. The lines of a journal that grows tell whether it was changed."
+)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A file that was written: by which command, and the hashes that it may have; none for a journal that grows."""
+
+    by: str
+    digests: tuple[str, ...] = ()
+    journal: bool = False
+
+
+@dataclass(frozen=True)
+class Listing:
+    """The files that were written in a folder, by their names below it."""
+
+    files: Mapping[str, Entry] = field(default_factory=dict)
+
+    def by(self, command: str) -> dict[str, Entry]:
+        """Those of one command."""
+        return {name: entry for name, entry in self.files.items() if entry.by == command}
+
+    def with_files(self, files: Mapping[str, Entry], without: Iterable[str] = ()) -> Listing:
+        """With these instead of those of the same name, and without others."""
+        gone = set(without)
+        return Listing({name: entry for name, entry in {**self.files, **files}.items() if name not in gone})
+
+    def write(self, folder: Path) -> None:
+        """Write the list into its folder."""
+        files: dict[str, dict[str, Any]] = {
+            name: {"by": entry.by, "sha256": entry.digests, **({"journal": True} if entry.journal else {})}
+            for name, entry in sorted(self.files.items())
+        }
+        write_text(folder / _NAME, json.dumps({"about": _ABOUT, "files": files}, indent=1) + "\n")
+
+
+def listing(folder: Path) -> Listing | None:
+    """The list of a folder; None if there is none that can be read."""
+    try:
+        files = json.loads((folder / _NAME).read_bytes())["files"]
+        found = {
+            name: Entry(str(entry["by"]), tuple(map(str, entry["sha256"])), bool(entry.get("journal")))
+            for name, entry in files.items()
+        }
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return None
+    return Listing(found) if all(map(_is_below, found)) else None
+
+
+def digest(path: Path) -> str:
+    """The SHA-256 of a file."""
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def is_own(folder: Path, name: str, known: Listing) -> bool:
+    """Whether the file is the one that the list names: in no linked folder, no link itself, and unchanged."""
+    path, entry = folder / name, known.files.get(name)
+    if entry is None or is_linked(folder, name) or not path.is_file():
+        return False
+    return digest(path) in entry.digests or (entry.journal and not entry.digests and is_intact(path))
+
+
+def is_linked(folder: Path, name: str) -> bool:
+    """Whether the file, or a folder that it is in, is a link; `folder` itself may be one."""
+    parts = PurePosixPath(name).parts
+    return any(folder.joinpath(*parts[: count + 1]).is_symlink() for count in range(len(parts)))
+
+
+def names_below(folder: Path) -> list[str]:
+    """All files of a folder and its folders, but those of our own mark."""
+    found = []
+    for place, folders, files in os.walk(folder):
+        folders[:] = sorted(name for name in folders if name != MARK)
+        found += [(Path(place) / name).relative_to(folder).as_posix() for name in sorted(files)]
+    return found
+
+
+def _is_below(name: str) -> bool:
+    path = PurePosixPath(name)
+    return bool(path.parts) and not path.is_absolute() and not {"..", MARK} & set(path.parts)

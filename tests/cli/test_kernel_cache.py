@@ -1,0 +1,111 @@
+"""The cache of compiled kernels: where it cannot be used, every command works without, and says so."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+KERNEL = """
+from inerter.kernels import typed
+
+
+@typed("float64(float64)")
+def doubled(x):
+    return 2.0 * x
+"""
+WORDS = "the cache of compiled kernels cannot be written"
+
+
+def compile_with(cache: Path | None, temporary: Path) -> tuple[str, str]:
+    """Compile a small kernel in a process with that cache; what it prints."""
+    (temporary.parent / "small.py").write_text(KERNEL, encoding="utf-8")
+    (temporary.parent / "__init__.py").touch()  # as in a package of kernels
+    environment = {**os.environ, "TMPDIR": str(temporary), "PYTHONPATH": str(temporary.parent)}
+    environment |= {"PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {name: value for name, value in environment.items() if name not in ("HOME", "XDG_CACHE_HOME")}
+    environment |= (
+        {"XDG_CACHE_HOME": str(cache)} if cache else {"HOME": str(temporary.parent / "small.py")}
+    )  # no folder
+    found = subprocess.run(
+        [sys.executable, "-c", "import small; print(small.doubled(21.0))"],
+        env=environment, capture_output=True, text=True, check=True, timeout=280,
+    )  # fmt: skip
+    return found.stdout, found.stderr
+
+
+@pytest.fixture
+def temporary(tmp_path: Path) -> Iterator[Path]:
+    """The folder for temporary files, in which nothing may be left."""
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    yield folder
+    assert os.listdir(folder) == []
+
+
+def no_folder(path: Path) -> None:
+    path.write_text("a file")
+
+
+def no_right(path: Path) -> None:
+    path.mkdir(mode=0o500)
+    if os.access(path, os.W_OK):
+        pytest.skip("the administrator may write everywhere")
+
+
+def full(path: Path) -> None:
+    path.mkdir()
+    mount(path, "size=8k")
+
+
+def read_only(path: Path) -> None:
+    path.mkdir()
+    mount(path, "ro")
+
+
+def mount(path: Path, options: str) -> None:
+    made = subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", path], capture_output=True, check=False)
+    if made.returncode != 0:
+        pytest.skip("only the administrator can mount a file system")
+
+
+@pytest.mark.parametrize("make", [no_folder, no_right, full, read_only])
+def test_a_cache_that_cannot_be_written_is_told_and_done_without(
+    make: Callable[[Path], None], tmp_path: Path, temporary: Path
+) -> None:
+    cache = tmp_path / "cache"
+    make(cache)
+    try:
+        out, err = compile_with(cache, temporary)
+    finally:
+        subprocess.run(["umount", "-l", cache], capture_output=True, check=False)
+    assert out == "42.0\n"
+    assert err.count(WORDS) == 1
+    assert str(cache) in err
+    assert "Traceback" not in err
+
+
+def test_nobody_at_home(temporary: Path) -> None:
+    out, err = compile_with(None, temporary)
+    assert out == "42.0\n"
+    assert err.count(WORDS) == 1
+
+
+def test_a_cache_that_can_be_written_is_used(tmp_path: Path, temporary: Path) -> None:
+    said = [compile_with(tmp_path / "cache", temporary)[1] for _ in range(2)]
+    assert said == ["inerter: compiling the numerical kernels; this happens once.\n", ""]
+
+
+def test_files_of_the_cache_that_were_cut_short_are_made_anew(tmp_path: Path, temporary: Path) -> None:
+    cache = tmp_path / "cache"
+    compile_with(cache, temporary)
+    for number, path in enumerate(sorted(cache.rglob("*.nb?"))):
+        path.write_bytes(path.read_bytes()[: (0, 10, path.stat().st_size // 2)[number % 3]])
+    for _ in range(2):
+        out, err = compile_with(cache, temporary)
+        assert (out, err) == ("42.0\n", "")
+    assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))

@@ -1,0 +1,126 @@
+"""Terminals and pipes of any kind: never a traceback, and the work is done all the same."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+COMMAND = f"{shlex.quote(sys.executable)} -c 'from inerter.cli.start import main; main()'"
+
+
+TITLE = 'title = "Größe ☃"\n'
+STUDY = f"""{TITLE}\
+[vehicle]
+model = "quarter-car"
+sprung_mass = "250 kg"
+unsprung_mass = "35 kg"
+tyre_stiffness = "150 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "20 kN/m"
+c = "1 kN s/m"
+[layouts]
+S1 = "k | c"
+[study]
+indices = ["J1"]
+"""
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Path:
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    (tmp_path / "rattle.toml").write_bytes((EXAMPLES / "backlash_rattle.toml").read_bytes())
+    return tmp_path
+
+
+def shell(line: str, home: Path, **environment: str) -> tuple[int, str, str]:
+    """Run a line of a shell, in which `inerter` stands for the command."""
+    found = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", line.replace("inerter", COMMAND)],
+        cwd=home, env={**os.environ, **environment}, capture_output=True, check=False, timeout=250,
+    )  # fmt: skip
+    return found.returncode, found.stdout.decode(errors="replace"), found.stderr.decode(errors="replace")
+
+
+ENDS = {
+    "a reader who has seen enough": "inerter {} | head -1",
+    "no reader at all": "inerter {} | true",
+    "a closed output": "inerter {} >&-",
+    "closed output and errors": "inerter {} >&- 2>&-",
+    "closed errors": "inerter {} 2>&-",
+    "nothing open": "inerter {} <&- >&- 2>&-",
+    "errors to a reader who has seen enough": "inerter {} 2>&1 | head -c 10",
+}
+
+
+RUN, SIMULATE = "run study.toml -j 1 -o out", "simulate rattle.toml -o out"
+
+
+SAMPLE = [(ENDS[name], RUN) for name in ("no reader at all", "nothing open")]
+REST = [(line, command) for line in ENDS.values() for command in (RUN, SIMULATE) if (line, command) not in SAMPLE]
+
+
+@pytest.mark.parametrize(
+    ("line", "arguments"), [*SAMPLE, *(pytest.param(*each, marks=pytest.mark.campaign) for each in REST)]
+)
+def test_results_are_whole_whoever_listens(line: str, arguments: str, home: Path) -> None:
+    code, out, err = shell(line.format(arguments), home)
+    assert code == 0
+    assert "Traceback" not in out + err
+    assert "Exception" not in out + err
+    assert (home / "out" / "figures").is_dir()
+    assert next((home / "out").glob("*.nc")).read_bytes()[:4] == b"\x89HDF"  # nothing was printed into a file
+
+
+POOR = {
+    "ascii": {"PYTHONIOENCODING": "ascii"},
+    "C": {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+}
+SAID = {  # the exit code, and what is in the text
+    "inerter run study.toml -j 1 -o out": (0, "Gr\\xf6\\xdfe"),
+    "inerter check 'ü.toml'": (2, "no such file"),
+    "inerter run --help": (0, "Usage"),
+}
+
+
+@pytest.mark.parametrize(
+    "line", [next(iter(SAID)), *(pytest.param(x, marks=pytest.mark.campaign) for x in [*SAID][1:])]
+)
+@pytest.mark.parametrize(
+    "environment", [POOR["C"], pytest.param(POOR["ascii"], marks=pytest.mark.campaign)], ids=["C", "ascii"]
+)
+def test_a_terminal_that_knows_few_characters(line: str, environment: dict[str, str], home: Path) -> None:
+    code, out, err = shell(line, home, **environment)
+    assert code == SAID[line][0]
+    assert "Traceback" not in out + err
+    assert SAID[line][1] in out + err
+    assert out.isascii()
+
+
+def test_a_disk_that_takes_no_more_output_is_told_and_loses_no_results(home: Path) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("this system has no device that is full")
+    code, _, err = shell("inerter run study.toml -j 1 -o out > /dev/full", home)
+    assert code == 1
+    assert "inerter: standard output: No space left on device" in err
+    assert "Traceback" not in err
+    assert (home / "out" / "report.html").exists()
+
+
+def test_a_name_that_is_no_text(home: Path) -> None:
+    name = os.fsencode(home) + b"/caf\xe9.toml"
+    os.rename(os.fsencode(home / "study.toml"), name)
+    text = Path(os.fsdecode(name)).read_text(encoding="utf-8")
+    Path(os.fsdecode(name)).write_text(text.replace(TITLE, ""), encoding="utf-8")  # so that its name is its title
+    code, out, err = shell("inerter run caf*.toml -j 1", home)
+    assert code == 0, err
+    assert "Traceback" not in out + err
+    assert "caf\\udce9" in out

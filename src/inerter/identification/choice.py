@@ -212,9 +212,7 @@ def _spread(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> float:
 
 def _whitenings(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> list[Whitening]:
     return [
-        whitening_of(c.residual, c.model, mask, c.experiment.noise / 3.0)
-        for c, mask in zip(fit.comparisons, masks, strict=True)
-        if mask.any()
+        whitening_of(c.residual, c.level, mask) for c, mask in zip(fit.comparisons, masks, strict=True) if mask.any()
     ]
 
 

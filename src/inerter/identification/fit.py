@@ -44,6 +44,39 @@ class Parameter:
     profile: tuple[tuple[float, float], ...] = ()  # (value, rise of the cost over its threshold)
 
 
+SOUND = 1.15  # r.m.s. misfit within which nothing is wrong
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """The r.m.s. of what a fit leaves, whitened, over that of what errors like those of the sensors leave."""
+
+    fitted: float
+    checked: float  # of the part that was not fitted; nan if there is none
+
+    @property
+    def worst(self) -> float:
+        """The larger one."""
+        return max(self.fitted, -np.inf if np.isnan(self.checked) else self.checked)
+
+    @property
+    def sound(self) -> bool:
+        """Whether the errors of the sensors may be all that is left."""
+        return self.worst <= SOUND
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A hypothesis about the device or its sensors, and what it explains of a misfit."""
+
+    name: str
+    sentence: str
+    explained: float  # part of the misfit, squared, beyond what the sensors leave; of the check part if it shows there
+    misfit: Misfit  # that it leaves
+    values: dict[str, float]  # of the unknowns of the hypothesis
+    estimates: dict[str, tuple[float, float]]  # of the device's under the hypothesis, and their standard errors
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """One record as used, what the model answers to it, and the tests of what is left."""
@@ -53,9 +86,11 @@ class Comparison:
     offset: float  # [N] of the load cell
     fitted: NDArray[np.bool_]  # samples that were fitted
     checked: NDArray[np.bool_]  # samples that were kept for the check
+    level: Matrix  # (samples,) [N] r.m.s. of what errors of the sensors leave of each
     whitened: Matrix  # residuals after weighting and whitening, of the fitted samples
     lead: float  # [s] at the start that were left out
-    whiteness: float  # p-value of Ljung and Box's test
+    whiteness: float  # p-value of residuals that hang together no more than errors of the sensors do
+    sound: tuple[float, float]  # [N] r.m.s. that errors of the sensors leave of the fitted and of the checked samples
     openings: Mapping[str, int]  # how often each gap opened in the model
 
     @property
@@ -95,6 +130,8 @@ class Fit:
     costs: tuple[float, ...]  # of the different fits to half of the records that the best starts came to, sorted
     simulations: int
     predicted: float  # part of the variance of the force that errors as small as those of the encoder leave as it is
+    misfit: Misfit
+    explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the likeliest first
     status: Status = OK
     notes: tuple[str, ...] = ()
     next_experiment: tuple[str, ...] = ()

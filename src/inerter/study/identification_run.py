@@ -13,10 +13,10 @@ import numpy as np
 
 from inerter.errors import InerterError, RecordError, StudyError
 from inerter.identification.fit import Comparison, Fit
+from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
 from inerter.identification.models import VISCOUS, mounted
 from inerter.identification.response import linear_response, model_response
-from inerter.identification.space import DELAY, GAIN
 from inerter.networks.elements import Free, Network
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding

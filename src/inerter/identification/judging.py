@@ -1,0 +1,101 @@
+"""What a fit leaves against what the errors of sound sensors would leave, on the fitted part and on the check part.
+
+The spectrum and the size by which residuals are whitened here are those of records drawn with errors like those of the
+sensors, not the residuals' own: a residual cannot excuse itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from inerter.identification.experiment import Experiment
+from inerter.identification.fit import Misfit
+from inerter.identification.intervals import ROBUST
+from inerter.identification.noise import Whitening, yardstick
+from inerter.identification.problem import Problem
+from inerter.identification.sensors import level_of, sound
+
+Matrix = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+_LAGS = 20
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """How the residuals of each record are judged: whitened by what sound sensors leave, over how much that is."""
+
+    fitted: Sequence[Whitening]
+    checked: Sequence[Whitening]
+    draws: Sequence[Matrix]  # (draws, samples) [N] that sound sensors leave of each record
+
+    def misfit(self, problem: Problem, point: Matrix) -> Misfit:
+        """Of the problem's device at a point; infinite where it cannot be simulated."""
+        centred = []
+        for e, force, w in zip(problem.experiments, problem.forces(point), self.fitted, strict=True):
+            if force is None:
+                return Misfit(np.inf, np.inf)
+            centred.append(_centred(e.record.force - force, w) if problem.offset else e.record.force - force)
+        return Misfit(*(self._over_sound(centred, whitenings) for whitenings in (self.fitted, self.checked)))
+
+    def _over_sound(self, residuals: Sequence[Matrix], whitenings: Sequence[Whitening]) -> float:
+        ours = np.concatenate([_compared(w, r) for w, r in zip(whitenings, residuals, strict=True)])
+        pairs = zip(whitenings, self.draws, strict=True)
+        theirs = np.concatenate([_compared(w, draw) for w, draws in pairs for draw in draws])
+        return float(np.sqrt(mean_square(ours) / mean_square(theirs))) if ours.size else np.nan
+
+    def pattern(self, number: int, residual: Matrix) -> float:
+        """The p-value of residuals of one record that hang together in time no more than those of sound sensors do."""
+        w = self.fitted[number]
+        usual = float(np.mean([portmanteau(_compared(w, draw)) for draw in self.draws[number]]))
+        return float(chi2.sf(portmanteau(_compared(w, _centred(residual, w))) * _LAGS / max(usual, _LAGS), _LAGS))
+
+
+def judge_of(problem: Problem, point: Matrix, checked: Sequence[Mask], seed: int) -> Judge | None:
+    """The judge of a device at a point, whose draws are of other errors than its whitening; None if it cannot move."""
+    known, draws = sound(problem, point, (seed, 5)), sound(problem, point, (seed, 6))
+    if known is None or draws is None:
+        return None
+    levels = [level_of(k, e.noise) for k, e in zip(known, problem.experiments, strict=True)]
+    rows = list(zip(known, levels, problem.experiments, checked, strict=True))
+    return Judge(
+        [yardstick(k, level, e.kept) for k, level, e, _ in rows],
+        [yardstick(k, level, mask) for k, level, _, mask in rows],
+        draws,
+    )
+
+
+def check_parts(fitted: Sequence[Experiment], whole: Sequence[Experiment], leads: Sequence[float]) -> Iterator[Mask]:
+    """The samples of each record that are kept to check the fit."""
+    for e, all_kept, lead in zip(fitted, whole, leads, strict=True):
+        checked = all_kept.kept & ~e.kept
+        checked[: round(lead / e.record.interval)] = False
+        checked[: int(np.flatnonzero(e.kept)[-1])] = False
+        yield checked
+
+
+def mean_square(white: Matrix) -> float:
+    """Of whitened residuals, those beyond 3 counting less than their square."""
+    return float(np.mean(2.0 * ROBUST**2 * (np.sqrt(1.0 + (white / ROBUST) ** 2) - 1.0)))
+
+
+def portmanteau(white: Matrix) -> float:
+    """Ljung and Box's statistic (1978) of the first 20 autocorrelations: of chi square with as many if independent."""
+    x, n = np.clip(white - np.median(white), -4.0, 4.0), white.size
+    square = max(float(x @ x), 1e-300)
+    rho = np.array([float(x[k:] @ x[:-k]) / square for k in range(1, _LAGS + 1)])
+    return n * (n + 2.0) * float(np.sum(rho**2 / (n - np.arange(1, _LAGS + 1))))
+
+
+def _compared(whitening: Whitening, residual: Matrix) -> Matrix:
+    return whitening(residual)[whitening.weight > 0.0]
+
+
+def _centred(residual: Matrix, whitening: Whitening) -> Matrix:
+    """Without the offset of the load cell that the fitted part asks for."""
+    column, white = whitening.of_offset(residual.size), whitening(residual)
+    return residual - float(column @ white / max(float(column @ column), 1e-300))

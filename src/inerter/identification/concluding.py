@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,13 +19,17 @@ from inerter.identification.problem import Problem
 from inerter.identification.solving import Solution
 from inerter.identification.space import Space
 from inerter.identification.telling import suggestions, told
-from inerter.networks.elements import Element, Free, Gap
+from inerter.networks.elements import Element, Free, Friction, Gap
 from inerter.networks.transform import with_values
+from inerter.units import format_quantity
 
 Matrix = NDArray[np.float64]
 ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
 _SATURATED = 0.2  # of the samples, from which on a record tells little
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
+_FAIRLY = 1.3  # misfit of a hypothesis that explains it
+_WIDER = "Its interval holds what the explanations make of it too."
+_NOTICED = 0.05  # of the friction: an offset that may be one of the friction
 _MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
 
 
@@ -35,23 +40,22 @@ def fit_of(solution: Solution, explain: bool = True) -> Fit:
     comparisons = _comparisons(solution)
     values = space.named(optimum.point)
     slopes = space.slopes(optimum.point)
-    likely: list[Explanation] = []
-    if explain and not solution.misfit.sound:
-        likely = explanations(problem, optimum, solution.judge, solution.misfit)
+    notes = (*solution.notes, *_of_offsets(problem, values, comparisons))
+    likely = explanations(problem, optimum, solution.judge, solution.misfit) if explain else []
     draft = Fit(
         parameters={}, identifiable={}, correlation=_correlation(optimum.covariance),
         covariance=optimum.covariance * np.outer(slopes, slopes),
         device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
         criterion=_criterion(problem, optimum), costs=solution.costs,
         simulations=sum(e.tally.total for e in problem.experiments), predicted=solution.predicted,
-        misfit=solution.misfit, explanations=tuple(likely), notes=solution.notes, settings={"seed": solution.seed},
+        misfit=solution.misfit, explanations=tuple(likely), notes=notes, settings={"seed": solution.seed},
     )  # fmt: skip
     status = status_of(draft)
     parameters, identifiable = {}, {}
     for i, name in enumerate(space.names):
         p = _parameter(space, i, optimum, found[i], values[name])
         said = told(space.kinds[i], p, found[i], space, i, comparisons, values)
-        p, said = _withheld(p, said, draft)
+        p, said = _restated(p, said, draft)
         parameters[name], identifiable[name] = (p if said else replace(p, value=float("nan"))), said
     return replace(
         draft,
@@ -65,47 +69,69 @@ def fit_of(solution: Solution, explain: bool = True) -> Fit:
 def status_of(fit: Fit) -> Status:
     """Whether the model explains the records, and what is the likeliest reason if it does not."""
     lost = sum(float(saturated(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
-    if fit.predicted < ENOUGH and fit.misfit.sound:
+    best = _likeliest(fit)
+    if fit.predicted < ENOUGH and best is None:
         changed = 100.0 * min(1.0 - fit.predicted, 1.0)
         return Status(
             StatusKind.INACCURATE,
             f"errors as small as those of the encoder change {changed:.1f} % of the force of this device, so none of "
             f"its parameters can be told; try a record in which it rattles less",
         )
+    if fit.misfit.sound and best is not None:
+        return Status(StatusKind.INACCURATE, best.sentence)
     if not fit.misfit.sound or fit.explained < ENOUGH:
-        return Status(StatusKind.INACCURATE, _misfit(fit))
+        return Status(StatusKind.INACCURATE, _misfit(fit, best))
     if lost > _SATURATED:
         return Status(StatusKind.INACCURATE, f"the load cell was saturated in {100.0 * lost:.0f} % of the samples")
     return OK
 
 
-def _misfit(fit: Fit) -> str:
-    """A wrong model or sensor, in a sentence."""
-    times = f"{fit.misfit.worst:.2g} times what the errors of the sensors leave"
-    share = (
-        f", and explains {100.0 * max(fit.explained, 0.0):.1f} % of the force only" if fit.explained < ENOUGH else ""
-    )
+def _likeliest(fit: Fit) -> Explanation | None:
+    """The best explanation, if it explains most."""
     best = fit.explanations[0] if fit.explanations else None
-    if best is None or best.explained < _MOST:
-        return f"the model leaves {times}{share}; nothing that was tried explains it"
-    return f"the model leaves {times}{share}; likeliest: {best.sentence}"
+    return best if best is not None and best.explained >= _MOST else None
 
 
-def _withheld(p: Parameter, said: Told, fit: Fit) -> tuple[Parameter, Told]:
-    """An interval is one of a right model: else it is widened to what the likely ones say, or withheld."""
-    if fit.predicted < ENOUGH and fit.misfit.sound:
-        return p, Told(False, f"{p.name}: cannot be told: nobody can predict the force of this device.")
-    if fit.misfit.sound:
+def _misfit(fit: Fit, best: Explanation | None) -> str:
+    """A wrong model or sensor, in a sentence."""
+    times = f"the model leaves {fit.misfit.worst:.2g} times what the errors of the sensors leave"
+    explained = 100.0 * max(fit.explained, 0.0)
+    share = f", and explains {explained:.1f} % of the force only" if fit.explained < ENOUGH else ""
+    reason = "nothing that was tried explains it" if best is None else f"likeliest: {best.sentence}"
+    return f"{times}{share}; {reason}"
+
+
+def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[Comparison]) -> Iterator[str]:
+    """What an offset of the load cell may be instead."""
+    kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
+    friction = sum(value for name, value in values.items() if kinds[name] is Friction)
+    for c in comparisons:
+        if abs(c.offset) > _NOTICED * friction > 0.0:
+            size = format_quantity(c.offset, "N", 3)
+            yield (
+                f"{c.record.source}: the offset of {size} may be one of the load cell or asymmetric friction, larger "
+                f"in one direction, of which the friction told is the mean."
+            )
+
+
+def _restated(p: Parameter, said: Told, fit: Fit) -> tuple[Parameter, Told]:
+    """An interval is one of a right model: else it is widened to what the likely explanations say, or withheld."""
+    if fit.predicted < ENOUGH:
+        return _withheld(p, "cannot be told: nobody can predict the force of this device")
+    if not fit.explanations and fit.misfit.sound:
         return p, said
-    right = [e for e in fit.explanations if e.misfit.sound]
-    if not right or fit.explained < ENOUGH or any(p.name not in e.estimates for e in right):
-        return p, Told(False, f"{p.name}: withheld, for the model leaves more than the errors of the sensors.")
+    right = [e for e in fit.explanations if e.misfit.worst <= _FAIRLY]
+    if not right or any(p.name not in e.estimates for e in right):
+        return _withheld(p, "withheld, for the model leaves more than the errors of the sensors")
     ends = [end for e in right for end in _ends(*e.estimates[p.name])]
-    low, high = min(p.interval[0], *ends), max(p.interval[1], *ends)
-    names = " and ".join(f"{e.name!r}" for e in right[:3])
-    return replace(p, interval=(low, high)), Told(
-        bool(said), f"{said.sentence} Its interval holds what {names} would make of it."
+    interval = min(p.interval[0], *ends), max(p.interval[1], *ends)
+    return replace(p, interval=interval), Told(
+        bool(said), f"{said.sentence} The interval holds what the explanations say."
     )
+
+
+def _withheld(p: Parameter, why: str) -> tuple[Parameter, Told]:
+    return replace(p, interval=(math.nan, math.nan)), Told(False, f"{p.name}: {why}.")
 
 
 def _ends(value: float, error: float) -> tuple[float, float]:
@@ -133,7 +159,7 @@ def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
     problem, optimum = solution.problem, solution.optimum
     result, first = [], 0
     residuals, offsets = problem.residual(optimum.point), problem.offsets(optimum.point)
-    for n, (e, checked, level) in enumerate(zip(problem.experiments, solution.checked, solution.levels, strict=True)):
+    for n, (e, checked) in enumerate(zip(problem.experiments, solution.checked, strict=True)):
         answer = problem.answer(e, optimum.point)
         assert answer is not None
         force, run = answer
@@ -141,7 +167,6 @@ def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
         first += e.size
         gaps = {_name_of(b) for b in problem.rig.device.elements() if isinstance(b, Gap)}
         openings = {g: sum(event.element == g and event.after == "open" for event in run.events) for g in gaps}
-        draws = solution.judge.draws[n]
         result.append(
             Comparison(
                 experiment=e,
@@ -149,8 +174,7 @@ def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
                 offset=offsets[n],
                 fitted=e.kept,
                 checked=checked,
-                level=level,
-                sound=(_rms(draws[:, e.kept]), _rms(draws[:, checked])),
+                draws=solution.judge.draws[n],
                 whitened=white,
                 lead=solution.leads[n],
                 whiteness=solution.judge.pattern(n, e.record.force - force),
@@ -158,10 +182,6 @@ def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
             )
         )
     return tuple(result)
-
-
-def _rms(values: Matrix) -> float:
-    return float(np.sqrt(np.mean(values**2))) if values.size else math.nan
 
 
 def _name_of(element: Element) -> str:

@@ -26,7 +26,9 @@ from inerter.records.lost import losses, restored
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
-_EVALUATIONS, _ACCURACY = 25, 1e-3
+_EVALUATIONS, _ACCURACY = 25, 1e-5
+_FILL = "read the file with gaps='fill', which puts them in"
+_BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
 _LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
 _STEP = 0.02  # of what a hypothesis would be seen at, for differences
 
@@ -43,9 +45,11 @@ class Trial:
 
 
 def explanations(problem: Problem, optimum: Optimum, by: Judge, before: Misfit) -> list[Explanation]:
-    """Every hypothesis with what it explains of a misfit, the likeliest first."""
+    """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway."""
     found: dict[str, Explanation] = {}
-    for hypothesis in hypotheses(problem):
+    lost = lost_samples(problem.experiments)
+    known = [] if lost is None else [lost]
+    for hypothesis in known if before.sound else [*known, *hypotheses(problem)]:
         e = _explanation(_tried(problem, optimum, hypothesis, by), by, before)
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
@@ -59,8 +63,6 @@ def hypotheses(problem: Problem) -> list[Hypothesis]:
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     found = sensors(problem.offset)
     found += [] if chain is None else laws(chain, fastest, stroke)
-    lost = lost_samples(problem.experiments)
-    found += [] if lost is None else [lost]
     taken = {h.name for h in problem.assumed}
     return [h for h in found if h.name not in taken]
 
@@ -83,11 +85,14 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
         return whole[id(e.record)][0] if id(e.record) in whole else e
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        measured = next((m for other, m in whole.values() if other.record is e.record), None)
-        return force if measured is None else force[measured]
+        for other, measured in whole.values():
+            if other.record is e.record:
+                doubtful = np.convolve(~measured, np.ones(2 * _BESIDE + 1), "same") > 0.0
+                return np.where(doubtful, other.record.force, force)[measured]
+        return force
 
     sentence = f"samples are lost while the clock goes on ({'; '.join(said)})"
-    return Hypothesis("lost samples", moved=moved, read=read, said=lambda values: sentence)
+    return Hypothesis("lost samples", moved=moved, read=read, said=lambda values: sentence, remedy=_FILL)
 
 
 def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge) -> Trial:
@@ -117,21 +122,24 @@ def _step(space: Space, i: int, size: float) -> float:
 
 def _explanation(trial: Trial, by: Judge, before: Misfit) -> Explanation:
     space, hypothesis = trial.problem.space, trial.hypothesis
-    after = by.misfit(trial.problem, trial.point)
+    after = by.misfit(trial.problem, trial.point, hypothesis.slow)
     values = space.named(trial.point)
     J = trial.jacobian
     covariance = np.linalg.pinv(J.T @ J, rcond=1e-14, hermitian=True) * max(after.fitted, 1.0) ** 2
     errors = np.sqrt(np.maximum(np.diag(covariance), 0.0)) * space.slopes(trial.point)
     own = {u.name for u in hypothesis.unknowns}
+    parts = ((after.fitted, before.fitted), (after.checked, before.checked))
     return Explanation(
         name=hypothesis.name,
         sentence=hypothesis.said(values),
-        explained=min(
-            1.0 - max(now**2 - 1.0, 0.0) / (then**2 - 1.0)
-            for now, then in ((after.fitted, before.fitted), (after.checked, before.checked))
-            if then > SOUND
-        ),
+        remedy=hypothesis.remedy,
+        explained=min((_explained(now, then) for now, then in parts if then > SOUND), default=1.0),
         misfit=after,
         values={name: values[name] for name in own},
         estimates={n: (values[n], float(e)) for n, e in zip(space.names, errors, strict=True) if n not in own},
     )
+
+
+def _explained(now: float, then: float) -> float:
+    """Part of a misfit that is gone."""
+    return 1.0 - max(now**2 - 1.0, 0.0) / (then**2 - 1.0)

@@ -75,6 +75,7 @@ class Explanation:
     misfit: Misfit  # that it leaves
     values: dict[str, float]  # of the unknowns of the hypothesis
     estimates: dict[str, tuple[float, float]]  # of the device's under the hypothesis, and their standard errors
+    remedy: str = ""  # what would put it right
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,11 +87,10 @@ class Comparison:
     offset: float  # [N] of the load cell
     fitted: NDArray[np.bool_]  # samples that were fitted
     checked: NDArray[np.bool_]  # samples that were kept for the check
-    level: Matrix  # (samples,) [N] r.m.s. of what errors of the sensors leave of each
+    draws: Matrix  # (draws, samples) [N] residuals such as errors of the sensors alone would leave
     whitened: Matrix  # residuals after weighting and whitening, of the fitted samples
     lead: float  # [s] at the start that were left out
     whiteness: float  # p-value of residuals that hang together no more than errors of the sensors do
-    sound: tuple[float, float]  # [N] r.m.s. that errors of the sensors leave of the fitted and of the checked samples
     openings: Mapping[str, int]  # how often each gap opened in the model
 
     @property
@@ -106,6 +106,11 @@ class Comparison:
         """R.m.s. of the residual over the fitted, or the checked, samples [N]; nan if there are none."""
         mask = self.checked if check else self.fitted
         return float(np.sqrt(np.mean(self.residual[mask] ** 2))) if mask.any() else float("nan")
+
+    def sound(self, check: bool = False) -> float:
+        """R.m.s. of what errors of the sensors alone would leave of them [N]."""
+        mask = self.checked if check else self.fitted
+        return float(np.sqrt(np.mean(self.draws[:, mask] ** 2))) if mask.any() else float("nan")
 
     def explained(self, check: bool = False) -> float:
         """Part of the variance of the force that the model explains."""

@@ -61,6 +61,8 @@ class Hypothesis:
     moved: Callable[[Experiment, Values], Experiment] = _as_it_was
     read: Callable[[Matrix, Experiment, Values], Matrix] = _as_read  # of the first samples
     said: Callable[[Values], str] = _unsaid
+    remedy: str = ""
+    slow: int | None = None  # degree over time of what it leaves open in each part of a record
     starts: tuple[Values, ...] = ({},)  # where to begin, unless it is at the sizes, or at zero if it may be negative
 
 
@@ -73,7 +75,13 @@ def gain() -> Hypothesis:
 def delay(longest: float) -> Hypothesis:
     """A force that is late against the displacement, or early where the displacement is late."""
     unknown = Unknown(DELAY, "s", -longest, longest, 0.1 * longest)
-    return Hypothesis("delay", (unknown,), moved=lambda e, values: e.late(values[DELAY]), said=_of_delay)
+    return Hypothesis(
+        "delay",
+        (unknown,),
+        moved=lambda e, values: e.late(values[DELAY]),
+        said=_of_delay,
+        remedy="fit the delay too, with delay=True",
+    )
 
 
 def _of_delay(values: Values) -> str:
@@ -97,7 +105,8 @@ def filtered_displacement(order: int) -> Hypothesis:
     def said(values: Values) -> str:
         return f"the displacement went through a low pass of {_corner(values[name])}"
 
-    return Hypothesis("filtered displacement", (unknown,), moved=moved, said=said)
+    remedy = "take the displacement before the filter, or make the filter of the force the same"
+    return Hypothesis("filtered displacement", (unknown,), moved=moved, said=said, remedy=remedy)
 
 
 def filtered_force() -> Hypothesis:
@@ -111,24 +120,26 @@ def filtered_force() -> Hypothesis:
     def said(values: Values) -> str:
         return f"the force went through a low pass of {_corner(values[name])}"
 
-    return Hypothesis("filtered force", (unknown,), read=read, said=said)
+    remedy = "give the bandwidth of the load cell and its amplifier, force_bandwidth="
+    return Hypothesis("filtered force", (unknown,), read=read, said=said, remedy=remedy)
 
 
 def drift() -> Hypothesis:
-    """A load cell whose zero moves slowly: a parabola over the record."""
-    names = ("drift", "bend of the drift")
-    unknowns = tuple(Unknown(name, "N", -1e3, 1e3, 1.0) for name in names)
+    """A load cell whose zero moves slowly: a polynomial over the record, which nobody can continue for long."""
+    unknowns = tuple(Unknown(f"drift, degree {degree}", "N", -1e3, 1e3, 1.0) for degree in range(1, 5))
+
+    def path(values: Values, size: int) -> Matrix:
+        coefficients = [0.0, *(values[u.name] for u in unknowns)]
+        return np.asarray(np.polynomial.legendre.legval(np.linspace(-1.0, 1.0, size), coefficients))
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        s = np.linspace(0.0, 1.0, e.size)[: force.size]
-        return np.asarray(force + values[names[0]] * (s - 0.5) + values[names[1]] * 4.0 * s * (1.0 - s))
+        return np.asarray(force + path(values, e.size)[: force.size])
 
     def said(values: Values) -> str:
-        s = np.linspace(0.0, 1.0, 101)
-        path = values[names[0]] * s + values[names[1]] * 4.0 * s * (1.0 - s)
-        return f"the zero of the load cell drifts by {format_quantity(float(np.ptp(path)), 'N')}"
+        return f"the zero of the load cell drifts, by {format_quantity(float(np.ptp(path(values, 101)[:81])), 'N', 2)}"
 
-    return Hypothesis("drift", unknowns, read=read, said=said)
+    remedy = "warm the load cell up, or take the drift away, detrend(record)"
+    return Hypothesis("drift", unknowns, read=read, said=said, slow=2, remedy=remedy)
 
 
 def fixture() -> Hypothesis:
@@ -143,7 +154,8 @@ def fixture() -> Hypothesis:
     def said(values: Values) -> str:
         return f"{format_quantity(values[name], 'kg')} move with the table between load cell and device"
 
-    return Hypothesis("fixture mass", (unknown,), read=read, said=said)
+    remedy = "weigh what moves with the table between load cell and device, and give it, fixture_mass="
+    return Hypothesis("fixture mass", (unknown,), read=read, said=said, remedy=remedy)
 
 
 def sensors(offset: bool) -> list[Hypothesis]:
@@ -168,7 +180,11 @@ def _offset() -> Hypothesis:
         return f"the load cell has an offset of {size}, or friction is larger in one direction by as much"
 
     return Hypothesis(
-        "offset or asymmetric friction", (unknown,), read=lambda force, e, values: force + values[name], said=said
+        "offset or asymmetric friction",
+        (unknown,),
+        read=lambda force, e, values: force + values[name],
+        said=said,
+        remedy="fit the offset too, with offset=True",
     )
 
 

@@ -18,7 +18,7 @@ from inerter.identification.fit import Misfit
 from inerter.identification.intervals import ROBUST
 from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.problem import Problem
-from inerter.identification.sensors import level_of, sound
+from inerter.identification.sensors import sound
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -33,17 +33,23 @@ class Judge:
     checked: Sequence[Whitening]
     draws: Sequence[Matrix]  # (draws, samples) [N] that sound sensors leave of each record
 
-    def misfit(self, problem: Problem, point: Matrix) -> Misfit:
-        """Of the problem's device at a point; infinite where it cannot be simulated."""
+    def misfit(self, problem: Problem, point: Matrix, slow: int | None = None) -> Misfit:
+        """Of the problem's device at a point, but for a polynomial of degree `slow` over time in each part.
+
+        Infinite where it cannot be simulated.
+        """
         centred = []
         for e, force, w in zip(problem.experiments, problem.forces(point), self.fitted, strict=True):
             if force is None:
                 return Misfit(np.inf, np.inf)
             centred.append(_centred(e.record.force - force, w) if problem.offset else e.record.force - force)
-        return Misfit(*(self._over_sound(centred, whitenings) for whitenings in (self.fitted, self.checked)))
+        return Misfit(*(self._over_sound(centred, whitenings, slow) for whitenings in (self.fitted, self.checked)))
 
-    def _over_sound(self, residuals: Sequence[Matrix], whitenings: Sequence[Whitening]) -> float:
-        ours = np.concatenate([_compared(w, r) for w, r in zip(whitenings, residuals, strict=True)])
+    def _over_sound(self, residuals: Sequence[Matrix], whitenings: Sequence[Whitening], slow: int | None) -> float:
+        parts = [_compared(w, r) for w, r in zip(whitenings, residuals, strict=True)]
+        if slow is not None:
+            parts = [_without_slow(part, w, slow) for part, w in zip(parts, whitenings, strict=True)]
+        ours = np.concatenate(parts)
         pairs = zip(whitenings, self.draws, strict=True)
         theirs = np.concatenate([_compared(w, draw) for w, draws in pairs for draw in draws])
         return float(np.sqrt(mean_square(ours) / mean_square(theirs))) if ours.size else np.nan
@@ -60,12 +66,9 @@ def judge_of(problem: Problem, point: Matrix, checked: Sequence[Mask], seed: int
     known, draws = sound(problem, point, (seed, 5)), sound(problem, point, (seed, 6))
     if known is None or draws is None:
         return None
-    levels = [level_of(k, e.noise) for k, e in zip(known, problem.experiments, strict=True)]
-    rows = list(zip(known, levels, problem.experiments, checked, strict=True))
+    rows = list(zip(known, problem.experiments, checked, strict=True))
     return Judge(
-        [yardstick(k, level, e.kept) for k, level, e, _ in rows],
-        [yardstick(k, level, mask) for k, level, _, mask in rows],
-        draws,
+        [yardstick(k, e.noise, e.kept) for k, e, _ in rows], [yardstick(k, e.noise, mask) for k, e, mask in rows], draws
     )
 
 
@@ -93,6 +96,15 @@ def portmanteau(white: Matrix) -> float:
 
 def _compared(whitening: Whitening, residual: Matrix) -> Matrix:
     return whitening(residual)[whitening.weight > 0.0]
+
+
+def _without_slow(white: Matrix, whitening: Whitening, degree: int) -> Matrix:
+    """Without what a polynomial over time makes of whitened residuals."""
+    if not white.size:
+        return white
+    time = np.linspace(-1.0, 1.0, whitening.weight.size)
+    columns = whitening(np.asarray(np.polynomial.legendre.legvander(time, degree)))[whitening.weight > 0.0]
+    return np.asarray(white - columns @ np.linalg.lstsq(columns, white)[0])
 
 
 def _centred(residual: Matrix, whitening: Whitening) -> Matrix:

@@ -19,9 +19,11 @@ from inerter.identification.experiment import Experiment
 from inerter.identification.guess import Chain
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, free
+from inerter.networks.parser import written
 from inerter.units import format_quantity
 
 Matrix = NDArray[np.float64]
+_LAW = "models have no such friction; the values under this hypothesis stand above"
 _STEPS = 30.0  # in a period of the shaft's resonance, at least
 _MOST_PARTS = 64  # of a sampling interval
 _FINEST = 1.25e-4  # [s] of a step, at most
@@ -46,33 +48,44 @@ class Chained:
 
 def laws(chain: Chain, fastest: float, stroke: float) -> Iterator[Hypothesis]:
     """What a chain may do beyond its model, in motions of this largest speed [m/s] and stroke [m]."""
-    if chain.friction is None:
-        more = Friction(free(0.0, 500.0, name="dry_friction"))
-        yield _other(
-            "dry friction", replace(chain, friction=more), "the device has dry friction", {"dry_friction": 1.0}
-        )
-    else:
+    yield from _parts(chain)
+    if chain.friction is not None:
         yield _stribeck(chain, fastest)
         yield _place(chain, stroke)
         yield _direction(chain)
-    if chain.drag is None:
-        more_drag = Damper(free(1e-3, 1e5, name="viscous"))
-        yield _other("viscous friction", replace(chain, drag=more_drag), "friction grows with speed", {"viscous": 10.0})
-    if chain.spring is None:
-        shaft = replace(
-            chain, spring=Spring(free(1e4, 1e9, name="shaft")), damper=Damper(free(1.0, 1e6, name="shaft_damping"))
+
+
+def _parts(chain: Chain) -> Iterator[Hypothesis]:
+    """The chain with a part more or less."""
+    if chain.friction is None:
+        friction = Friction(free(0.0, 500.0, name="dry_friction"))
+        said = "the device has dry friction"
+        yield _other(
+            "dry friction", replace(chain, friction=friction), said, "one with friction", {"dry_friction": 1.0}
         )
+    if chain.drag is None:
+        drag = Damper(free(1e-3, 1e5, name="viscous"))
+        said = "friction grows with speed"
+        yield _other("viscous friction", replace(chain, drag=drag), said, "one with a damper", {"viscous": 10.0})
+    if chain.spring is None:
+        spring, damper = Spring(free(1e4, 1e9, name="shaft")), Damper(free(1.0, 1e6, name="shaft_damping"))
         starts = ({"shaft": k, "shaft_damping": 3e-3 * k} for k in (2e5, 1e6, 5e6))
-        yield _other("elastic device", shaft, "the device gives way", *starts)
+        elastic = replace(chain, spring=spring, damper=damper)
+        yield _other("elastic device", elastic, "the device gives way", "elastic or elastic-friction", *starts)
         return
-    yield _other("rigid device", replace(chain, spring=None, damper=None, gap=None), "nothing in the device gives way")
+    rigid = replace(chain, spring=None, damper=None, gap=None)
+    yield _other("rigid device", rigid, "nothing in the device gives way", "ideal or friction")
     if chain.gap is None:
-        more_play = replace(chain, gap=Gap(free(0.0, 2e-3, name="play")))
-        yield _other("backlash", more_play, "the device has backlash", {"play": 1e-5}, {"play": 1e-4})
+        play = replace(chain, gap=Gap(free(0.0, 2e-3, name="play")))
+        said = "the device has backlash"
+        yield _other("backlash", play, said, "backlash or ball-screw", {"play": 1e-5}, {"play": 1e-4})
 
 
-def _other(name: str, chain: Chain, sentence: str, *starts: Values) -> Hypothesis:
-    return Hypothesis(name, device=chain.network(), starts=starts or ({},), said=lambda values: sentence)
+def _other(name: str, chain: Chain, sentence: str, kind: str, *starts: Values) -> Hypothesis:
+    device = chain.network()
+    layout = written(device, [e.label for e in device.elements()])
+    remedy = f"take a model such as {layout} ({kind})"
+    return Hypothesis(name, device=device, starts=starts or ({},), said=lambda values: sentence, remedy=remedy)
 
 
 def _stribeck(chain: Chain, fastest: float) -> Hypothesis:
@@ -127,7 +140,7 @@ def _changed(
         other = replace(plain, **{what: values[unknown.name] for what, unknown in unknowns.items()})
         return np.asarray(force + through_cell(stepped(other, e, force.size) - stepped(plain, e, force.size), e))
 
-    return Hypothesis(name, tuple(unknowns.values()), read=read, said=said, starts=starts)
+    return Hypothesis(name, tuple(unknowns.values()), read=read, said=said, starts=starts, remedy=_LAW)
 
 
 def _numbers(chain: Chain, values: Values) -> Chained:

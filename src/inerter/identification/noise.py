@@ -12,6 +12,7 @@ Matrix = NDArray[np.float64]
 _MAD = 1.4826  # standard deviations in a median absolute deviation
 _LEAST = 1.0 / 3.0  # of the level, what errors are at least
 _BANDS, _LINES = 6, 20  # of the spectrum of residuals: in an octave, and the fewest lines in each
+_NEAR = 2  # samples before and after, whose errors count as alike
 OPTIMISM = (1.0 + 1.0 / _LINES) ** 2  # by which weights from the residuals themselves make variances too small
 
 
@@ -61,9 +62,15 @@ def whitening_of(residual: Matrix, by: Whitening) -> Whitening:
     return replace(by, weight=by.weight / max(size, _LEAST), offsets={})
 
 
-def yardstick(draws: Matrix, level: Matrix, compared: NDArray[np.bool_]) -> Whitening:
-    """The whitening of residuals (draws, samples) that sound sensors leave, on the samples that are compared."""
-    weight = np.where(compared, 1.0 / level, 0.0)
+def yardstick(draws: Matrix, noise: float, compared: NDArray[np.bool_]) -> Whitening:
+    """The whitening of residuals (draws, samples) [N] that sound sensors leave, on the samples that are compared.
+
+    `noise` [N] is the load cell's own; what else there is comes from the encoder, at some instants more than at others.
+    """
+    of_encoder = np.maximum(np.mean(draws**2, axis=0) - noise**2, 0.0)
+    window = np.ones(2 * _NEAR + 1)
+    near = np.convolve(of_encoder, window, "same") / np.convolve(np.ones(of_encoder.size), window, "same")
+    weight = np.where(compared, 1.0 / np.sqrt(noise**2 + near), 0.0)
     return Whitening(weight, *_spectrum(np.clip(weight * draws, -5.0, 5.0), float(np.mean(compared))))
 
 

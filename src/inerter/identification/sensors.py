@@ -21,7 +21,7 @@ from inerter.records.smoothing import resolution
 
 Matrix = NDArray[np.float64]
 _DRAWS = 12
-_NEAR = 2  # samples before and after, whose errors count as alike
+_BLOCKS = 40
 _HARMONICS = 60  # of a motion that repeats, at most
 _ALIKE = 5.0  # r.m.s. errors of the smoothed displacement within which a motion repeats
 
@@ -58,16 +58,8 @@ def sound(problem: Problem, point: Matrix, seed: Sequence[int], draws: int = _DR
     for _ in range(draws):
         drawn = source.drawn(random)
         for residuals, e, force in zip(found, drawn, replace(problem, experiments=drawn).forces(point), strict=True):
-            residuals.append(np.full(e.size, np.nan) if force is None else e.record.force - force)
+            residuals.append(np.zeros(e.size) if force is None else e.record.force - force)
     return [np.array(residuals) for residuals in found]
-
-
-def level_of(draws: Matrix, noise: float) -> Matrix:
-    """The r.m.s. error of each sample [N] that draws show; `noise` [N] is the load cell's own."""
-    of_encoder = np.maximum(np.nanmean(draws**2, axis=0) - noise**2, 0.0)
-    window = np.ones(2 * _NEAR + 1)
-    near = np.convolve(of_encoder, window, "same") / np.convolve(np.ones(of_encoder.size), window, "same")
-    return np.asarray(np.sqrt(noise**2 + near))
 
 
 def unavoidable(problem: Problem, point: Matrix, seed: int) -> float:
@@ -90,12 +82,17 @@ def _errors(experiment: Experiment, moved: Matrix, random: np.random.Generator) 
     """Errors of the encoder [m] like those of the record: noise, then rounding to a step."""
     motion, record = experiment.motion, experiment.record
     step = resolution(record.displacement)
-    taken = float(np.std((record.displacement - motion.displacement)[experiment.kept]))
+    taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept])
     inferred = taken / math.sqrt(1.0 - min(2.0 * motion.bandwidth * record.interval, 0.8))
     noise = inferred if record.displacement_noise is None else record.displacement_noise
     read = moved + math.sqrt(max(noise**2 - step**2 / 12.0, 0.0)) * random.standard_normal(moved.size)
     rounded = step * np.rint(read / step) if step > 0.0 else read
     return np.asarray(rounded - moved)
+
+
+def _usual_rms(values: Matrix) -> float:
+    """The r.m.s. of most blocks of time: what a few sudden ones do is no noise."""
+    return float(np.sqrt(np.median([np.var(block) for block in np.array_split(values, _BLOCKS)])))
 
 
 def repeated(experiment: Experiment) -> Matrix:

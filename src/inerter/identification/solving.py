@@ -20,7 +20,7 @@ from inerter.identification.noise import plain, whitening_of, yardstick
 from inerter.identification.problem import Problem
 from inerter.identification.redrawing import redrawn
 from inerter.identification.search import QUICK, THOROUGH, search, soft, wander
-from inerter.identification.sensors import level_of, sound, unavoidable
+from inerter.identification.sensors import sound, unavoidable
 from inerter.identification.space import space_of
 from inerter.records.record import Record
 from inerter.vehicle.cars import Rig
@@ -56,7 +56,6 @@ class Solution:
     optimum: Optimum
     profiles: tuple[Profile, ...]
     checked: tuple[NDArray[np.bool_], ...]  # samples of each record that were kept for the check
-    levels: tuple[Matrix, ...]  # [N] r.m.s. of what the sensors leave of each sample
     leads: tuple[float, ...]
     costs: tuple[float, ...]
     notes: tuple[str, ...]
@@ -86,8 +85,7 @@ def solve(
     guess = {} if chain is None else guess_of(chain, list(problem.experiments))
     point, costs = _searched(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
     problem.experiments, leads = _leads(problem, point, asked.lead)
-    refined, levels = _refined(problem, point, asked.seed)
-    anew = redrawn(problem, refined, asked.seed)
+    anew = redrawn(problem, _refined(problem, point, asked.seed), asked.seed)
     if progress is not None:
         progress(0.7)
     optimum, found = _profiled(problem, anew.optimum)
@@ -97,7 +95,7 @@ def solve(
     if judge is None:
         raise _lost(problem)
     return Solution(
-        problem, optimum, tuple(found), checked, tuple(levels), tuple(leads), tuple(costs), tuple(notes),
+        problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(notes),
         anew.predicted, judge, judge.misfit(problem, optimum.point), asked.seed,
     )  # fmt: skip
 
@@ -161,24 +159,22 @@ def _leads(problem: Problem, point: Matrix, lead: float | None) -> tuple[list[Ex
     return result, leads
 
 
-def _refined(problem: Problem, start: Matrix, seed: int) -> tuple[Optimum, list[Matrix]]:
-    """The best fit with the weights and steps that it asks for itself, and what the sensors leave of each sample."""
-    point, steps, optimum, levels = start, None, None, []
+def _refined(problem: Problem, start: Matrix, seed: int) -> Optimum:
+    """The best fit with the weights that the errors of the sensors ask for, and the steps that it asks for itself."""
+    point, steps, optimum = start, None, None
     for _ in range(_ROUNDS):
         forces, left = problem.forces(point), sound(problem, point, (seed, 1))
         if left is None or any(force is None for force in forces):
             raise _lost(problem)
-        levels = [level_of(draws, e.noise) for draws, e in zip(left, problem.experiments, strict=True)]
-        rows = zip(problem.experiments, forces, left, levels, strict=True)
         problem.whitenings = [
-            whitening_of(e.record.force - force, yardstick(draws, level, e.kept))
-            for e, force, draws, level in rows
+            whitening_of(e.record.force - force, yardstick(draws, e.noise, e.kept))
+            for e, force, draws in zip(problem.experiments, forces, left, strict=True)
             if force is not None
         ]
         optimum = optimum_of(problem, point, steps)
         point, steps = optimum.point, steps_of(optimum)
     assert optimum is not None
-    return optimum, levels
+    return optimum
 
 
 def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile]]:

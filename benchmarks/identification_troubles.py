@@ -12,21 +12,20 @@ how many miss the truth, how many of the troubles are among the first two explan
 from __future__ import annotations
 
 import json
-import math
 import os
 import sys
 import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-import inerter as it
 from troubled_records import Case, clean, fits_fault, model_of, record_of, troubled
+
+import inerter as it
 
 
 def case_of(kind: str, number: int) -> Case:

@@ -9,8 +9,7 @@ direction and place. Filters of sensors run on the fine steps; then the samples 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
 
 import numba
 import numpy as np

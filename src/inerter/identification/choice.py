@@ -24,7 +24,7 @@ from inerter.records.record import Record
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
-LEAST, MOST = 0.01, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
+LEAST, MOST = 0.02, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
 _ROBUST = 3.0  # whitened residuals beyond this count less than their square
 _BLOCKS = 20
 _RANGE = 4.0  # about known values, in which a fit is tried anew
@@ -89,7 +89,7 @@ def choose(
     was fitted to, whitened by what the errors of the sensors leave there of the candidate that leaves the least.
     Its loss is the mean square of the whitened residuals (those beyond 3 count less), so about 1 for a right model.
     A candidate is as good as the best if its loss is larger by no more than the standard error of the difference,
-    from 20 blocks of time; that counts as 1 % of the best loss at least, for what changes less is not worth an
+    from 20 blocks of time; that counts as 2 % of the best loss at least, for what changes less is not worth an
     element, and as 10 % at most, for an element may show in few blocks only (the rule of one standard error,
     Breiman et al. 1984). Of those as good, the one with the fewest unknowns is chosen.
 

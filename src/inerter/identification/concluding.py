@@ -27,7 +27,7 @@ Matrix = NDArray[np.float64]
 ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
 _SATURATED = 0.2  # of the samples, from which on a record tells little
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
-_FAIRLY = 1.3  # misfit of a hypothesis that explains it
+_FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
 _WIDER = "Its interval holds what the explanations make of it too."
 _NOTICED = 0.05  # of the friction: an offset that may be one of the friction
 _MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
@@ -120,7 +120,7 @@ def _restated(p: Parameter, said: Told, fit: Fit) -> tuple[Parameter, Told]:
         return _withheld(p, "cannot be told: nobody can predict the force of this device")
     if not fit.explanations and fit.misfit.sound:
         return p, said
-    right = [e for e in fit.explanations if e.misfit.worst <= _FAIRLY]
+    right = [e for e in fit.explanations if e.misfit.excess <= _FAIRLY]
     if not right or any(p.name not in e.estimates for e in right):
         return _withheld(p, "withheld, for the model leaves more than the errors of the sensors")
     ends = [end for e in right for end in _ends(*e.estimates[p.name])]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, experiment_of
-from inerter.identification.fit import SOUND, Explanation, Misfit
+from inerter.identification.fit import Explanation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
 from inerter.identification.intervals import ROBUST, Optimum, steps_of
@@ -128,12 +128,12 @@ def _explanation(trial: Trial, by: Judge, before: Misfit) -> Explanation:
     covariance = np.linalg.pinv(J.T @ J, rcond=1e-14, hermitian=True) * max(after.fitted, 1.0) ** 2
     errors = np.sqrt(np.maximum(np.diag(covariance), 0.0)) * space.slopes(trial.point)
     own = {u.name for u in hypothesis.unknowns}
-    parts = ((after.fitted, before.fitted), (after.checked, before.checked))
+    parts = zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True)
     return Explanation(
         name=hypothesis.name,
         sentence=hypothesis.said(values),
         remedy=hypothesis.remedy,
-        explained=min((_explained(now, then) for now, then in parts if then > SOUND), default=1.0),
+        explained=min((_explained(now, then) for now, then, limit in parts if then > limit), default=1.0),
         misfit=after,
         values={name: values[name] for name in own},
         estimates={n: (values[n], float(e)) for n, e in zip(space.names, errors, strict=True) if n not in own},

@@ -44,25 +44,28 @@ class Parameter:
     profile: tuple[tuple[float, float], ...] = ()  # (value, rise of the cost over its threshold)
 
 
-SOUND = 1.15  # r.m.s. misfit within which nothing is wrong
-
-
 @dataclass(frozen=True)
 class Misfit:
     """The r.m.s. of what a fit leaves, whitened, over that of what errors like those of the sensors leave."""
 
     fitted: float
     checked: float  # of the part that was not fitted; nan if there is none
+    limits: tuple[float, float]  # what both may be where nothing is wrong
 
     @property
     def worst(self) -> float:
         """The larger one."""
-        return max(self.fitted, -np.inf if np.isnan(self.checked) else self.checked)
+        return float(np.nanmax([self.fitted, self.checked]))
+
+    @property
+    def excess(self) -> float:
+        """The larger one over what it may be."""
+        return float(np.nanmax([self.fitted / self.limits[0], self.checked / self.limits[1]]))
 
     @property
     def sound(self) -> bool:
         """Whether the errors of the sensors may be all that is left."""
-        return self.worst <= SOUND
+        return self.excess <= 1.0
 
 
 @dataclass(frozen=True)

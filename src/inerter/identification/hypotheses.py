@@ -87,7 +87,7 @@ def delay(longest: float) -> Hypothesis:
 def _of_delay(values: Values) -> str:
     late = values[DELAY]
     what = "force" if late > 0.0 else "displacement"
-    return f"the {what} is late by {format_quantity(abs(late), 's')}"
+    return f"the {what} is late by {1e3 * abs(late):.3g} ms"
 
 
 def filtered_displacement(order: int) -> Hypothesis:

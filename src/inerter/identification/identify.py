@@ -12,11 +12,13 @@ from inerter.identification.concluding import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.models import mounted
 from inerter.identification.search import POINTS
-from inerter.identification.solving import Request, Solution, solve
+from inerter.identification.solving import Request, Solution, part, solve
 from inerter.networks.elements import Gap, Network
 from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
 from inerter.vehicle.cars import Rig
+
+_SOLVED = 0.8  # of the work, before explanations are looked for
 
 
 def identify(
@@ -52,7 +54,10 @@ def identify(
     records that cannot be used.
     """
     asked = Request(offset, gain, delay, check, bandwidth, lead, starts, seed)
-    return fit_of(solution_of(records, model, asked, progress))
+    fit = fit_of(solution_of(records, model, asked, part(progress, 0.0, _SOLVED)))
+    if progress is not None:
+        progress(1.0)
+    return fit
 
 
 def solution_of(

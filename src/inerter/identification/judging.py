@@ -6,6 +6,7 @@ sensors, not the residuals' own: a residual cannot excuse itself.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -23,6 +24,7 @@ from inerter.identification.sensors import sound
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 _LAGS = 20
+_SOUND, _CHANCE = 1.1, 3.0  # what a misfit may be, and standard deviations of that of sound sensors
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,21 +40,38 @@ class Judge:
 
         Infinite where it cannot be simulated.
         """
+        limits = self._limit(self.fitted), self._limit(self.checked)
         centred = []
         for e, force, w in zip(problem.experiments, problem.forces(point), self.fitted, strict=True):
             if force is None:
-                return Misfit(np.inf, np.inf)
+                return Misfit(np.inf, np.inf, limits)
             centred.append(_centred(e.record.force - force, w) if problem.offset else e.record.force - force)
-        return Misfit(*(self._over_sound(centred, whitenings, slow) for whitenings in (self.fitted, self.checked)))
+        fitted, checked = (self._over_sound(centred, whitenings, slow) for whitenings in (self.fitted, self.checked))
+        return Misfit(fitted, checked, limits)
 
     def _over_sound(self, residuals: Sequence[Matrix], whitenings: Sequence[Whitening], slow: int | None) -> float:
         parts = [_compared(w, r) for w, r in zip(whitenings, residuals, strict=True)]
         if slow is not None:
             parts = [_without_slow(part, w, slow) for part, w in zip(parts, whitenings, strict=True)]
         ours = np.concatenate(parts)
-        pairs = zip(whitenings, self.draws, strict=True)
-        theirs = np.concatenate([_compared(w, draw) for w, draws in pairs for draw in draws])
-        return float(np.sqrt(mean_square(ours) / mean_square(theirs))) if ours.size else np.nan
+        return math.sqrt(mean_square(ours) / float(np.mean(self._sound(whitenings)))) if ours.size else math.nan
+
+    def _sound(self, whitenings: Sequence[Whitening]) -> Matrix:
+        """The mean squares that each draw leaves."""
+        each = zip(*self.draws, strict=True)
+        return np.array(
+            [
+                mean_square(np.concatenate([_compared(w, draw) for w, draw in zip(whitenings, draws, strict=True)]))
+                for draws in each
+            ]
+        )
+
+    def _limit(self, whitenings: Sequence[Whitening]) -> float:
+        """What a misfit may be by chance, and because no record of the sensors is quite like another."""
+        if not any(np.any(w.weight > 0.0) for w in whitenings):
+            return math.nan
+        sizes = np.sqrt(self._sound(whitenings))
+        return _SOUND + _CHANCE * float(np.std(sizes, ddof=1) / np.mean(sizes))
 
     def pattern(self, number: int, residual: Matrix) -> float:
         """The p-value of residuals of one record that hang together in time no more than those of sound sensors do."""

@@ -94,6 +94,8 @@ def solve(
     judge = judge_of(problem, optimum.point, checked, asked.seed)
     if judge is None:
         raise _lost(problem)
+    if progress is not None:
+        progress(1.0)
     return Solution(
         problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(notes),
         anew.predicted, judge, judge.misfit(problem, optimum.point), asked.seed,

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.records.gaps import fill
+from inerter.errors import RecordError
+from inerter.records.gaps import LONGEST, fill
 from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
@@ -78,6 +80,29 @@ def _counted(z: Vector, loss: Loss) -> Loss:
 
     near = range(max(loss.count - 3, 1), loss.count + 4)
     return Loss(loss.after, min(near, key=apart))
+
+
+def mended(record: Record, gaps: str | float) -> Record:
+    """The record as `read_record(..., gaps=gaps)` gives it: as it is, with lost samples put in, or its longest part.
+
+    Raises `RecordError` where more samples are lost at one place than `gaps` allows to put in.
+    """
+    lost = losses(record) if gaps != "refuse" else []
+    if not lost:
+        return record
+    if gaps == "longest":
+        cuts = [0, *(loss.after + 1 for loss in lost), record.time.size]
+        start, stop = max(pairwise(cuts), key=lambda part: part[1] - part[0])
+        said = f"Samples {start} to {stop - 1} were kept: the longest stretch in which none is lost."
+        return record.samples(slice(start, stop), said)
+    most = max(lost, key=lambda loss: loss.count)
+    limit = LONGEST if isinstance(gaps, str) else math.floor(gaps / record.interval * (1.0 + 1e-6))
+    if most.count > limit:
+        raise RecordError(
+            f"{record.source}: {most.count} samples are lost at {record.time[most.after]:g} s while the clock goes on, "
+            f"too many to put in ({limit} at most). Use gaps='longest', or a number of s if you trust an interpolation."
+        )
+    return restored(record, lost)[0]
 
 
 def restored(record: Record, lost: list[Loss]) -> tuple[Record, NDArray[np.bool_]]:

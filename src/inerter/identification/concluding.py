@@ -19,7 +19,7 @@ from inerter.identification.problem import Problem
 from inerter.identification.solving import Solution
 from inerter.identification.space import Space
 from inerter.identification.telling import suggestions, told
-from inerter.networks.elements import Element, Free, Friction, Gap
+from inerter.networks.elements import Element, Free, Friction, Gap, Inerter
 from inerter.networks.transform import with_values
 from inerter.units import format_quantity
 
@@ -28,7 +28,7 @@ ENOUGH = 0.985  # of the variance of the force: a model that explains less is no
 _SATURATED = 0.2  # of the samples, from which on a record tells little
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
 _FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
-_WIDER = "Its interval holds what the explanations make of it too."
+_WIDER = "holds what the explanations make of it too."
 _NOTICED = 0.05  # of the friction: an offset that may be one of the friction
 _MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
 
@@ -40,8 +40,8 @@ def fit_of(solution: Solution, explain: bool = True) -> Fit:
     comparisons = _comparisons(solution)
     values = space.named(optimum.point)
     slopes = space.slopes(optimum.point)
-    notes = (*solution.notes, *_of_offsets(problem, values, comparisons))
     likely = explanations(problem, optimum, solution.judge, solution.misfit) if explain else []
+    notes = (*solution.notes, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
     draft = Fit(
         parameters={}, identifiable={}, correlation=_correlation(optimum.covariance),
         covariance=optimum.covariance * np.outer(slopes, slopes),
@@ -97,8 +97,11 @@ def _misfit(fit: Fit, best: Explanation | None) -> str:
     times = f"the model leaves {fit.misfit.worst:.2g} times what the errors of the sensors leave"
     explained = 100.0 * max(fit.explained, 0.0)
     share = f", and explains {explained:.1f} % of the force only" if fit.explained < ENOUGH else ""
-    reason = "nothing that was tried explains it" if best is None else f"likeliest: {best.sentence}"
-    return f"{times}{share}; {reason}"
+    if best is None:
+        return f"{times}{share}; nothing that was tried explains it"
+    second = next((e for e in fit.explanations[1:2] if e.misfit.sound), None)
+    other = "" if second is None else f", or {second.sentence}, which explains it too"
+    return f"{times}{share}; likeliest: {best.sentence}{other}"
 
 
 def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[Comparison]) -> Iterator[str]:
@@ -114,6 +117,17 @@ def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequ
             )
 
 
+def _of_masses(problem: Problem) -> Iterator[str]:
+    """What an inertance may be besides."""
+    names = zip(problem.space.names, problem.space.kinds, strict=True)
+    free = [name for name, kind in names if kind is Inerter]
+    if free and any(e.record.fixture_mass is None for e in problem.experiments):
+        yield (
+            f"{', '.join(free)}: holds what moves with the table between load cell and device, which the records do "
+            f"not tell from an inertance; weigh it, and give it, fixture_mass=."
+        )
+
+
 def _restated(p: Parameter, said: Told, fit: Fit) -> tuple[Parameter, Told]:
     """An interval is one of a right model: else it is widened to what the likely explanations say, or withheld."""
     if fit.predicted < ENOUGH:
@@ -125,9 +139,7 @@ def _restated(p: Parameter, said: Told, fit: Fit) -> tuple[Parameter, Told]:
         return _withheld(p, "withheld, for the model leaves more than the errors of the sensors")
     ends = [end for e in right for end in _ends(*e.estimates[p.name])]
     interval = min(p.interval[0], *ends), max(p.interval[1], *ends)
-    return replace(p, interval=interval), Told(
-        bool(said), f"{said.sentence} The interval holds what the explanations say."
-    )
+    return replace(p, interval=interval), Told(bool(said), f"{said.sentence} Its interval {_WIDER}")
 
 
 def _withheld(p: Parameter, why: str) -> tuple[Parameter, Told]:

@@ -42,13 +42,18 @@ def identify(
     `offset` of their own in each record, and one `gain` and one `delay` (up to a number of seconds) of the force in
     all; by default a delay is sought where the bandwidth of a load cell is not known, because that is what its filter
     does to slow forces. The last part `check` of each record is not fitted but kept to check the fit on; `lead` [s]
-    at the start, or as much as the start of the device matters, are not compared either. A device in which nothing
-    gives way is fitted on a very stiff mount.
+    at the start, or as much as the start of the device matters, are not compared either.
 
     `starts` points from a Sobol sequence with `seed`, and a first guess without simulation for devices that are a
-    chain, are improved by least squares; errors are weighted and whitened as the residuals ask; intervals are from
-    profile likelihoods at 95 %, at least as wide as fits to records drawn anew scatter. A parameter that the records
-    cannot tell has the value nan, with a sentence in `fit.identifiable`. See docs/identification.md.
+    chain, are improved by least squares; errors are weighted and whitened by what errors like those of the sensors
+    would leave; intervals are from profile likelihoods at 95 %, at least as wide as fits to records drawn anew
+    scatter. A parameter that the records cannot tell has the value nan, with a sentence in `fit.identifiable`.
+
+    Where more is left than the errors of the sensors (`fit.misfit`; those of the record where they are known, such as
+    `Record.force_noise`), on the fitted part or on the check part, the status is not ok, `fit.explanations` names what
+    may be wrong with the model or the sensors, and intervals are withheld, or hold what the explanations say. A mass
+    between load cell and device, `Record.fixture_mass`, has to be known: it cannot be told from an inertance.
+    See docs/identification.md.
 
     Raises `IdentificationError` for a model without free values or a request that cannot be, and `RecordError` for
     records that cannot be used.

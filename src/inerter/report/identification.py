@@ -19,6 +19,7 @@ from inerter.report.identification_text import (
     explained,
     misfit,
     plainly,
+    remarks,
     share,
     whiteness,
 )
@@ -108,7 +109,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             goodness=list(_goodness(found)),
             whiteness=[(c.record.source, whiteness(c)) for c in fit.comparisons],
             misfit=misfit(found),
-            remarks=[as_options(note) for note in fit.notes],
+            remarks=list(remarks(found)),
             explanations=list(explained(found)),
             candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), c.status) for c in found.candidates],
             choice=found.choice,

@@ -166,8 +166,15 @@ def _estimates(found: Identified) -> Iterator[str]:
     for c in found.fit.comparisons:
         of = f" of {c.record.source}" if len(found.fit.comparisons) > 1 else ""
         yield from wrap(f"  Offset of the load cell{of}: {single(c.offset, 'N')}", WIDTH, subsequent_indent="    ")
-    for note in found.fit.notes:
-        yield from wrap(as_options(note), WIDTH, initial_indent="  ", subsequent_indent="    ")
+    for remark in remarks(found):
+        yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ")
+
+
+def remarks(found: Identified) -> Iterator[str]:
+    """What has to be known about the estimates."""
+    if found.fit.explanations and any(map(plainly, found.fit.identifiable.values())):
+        yield "Intervals hold what the explanations make of the values too."
+    yield from map(as_options, found.fit.notes)
 
 
 def _untold(found: Identified) -> Iterator[str]:
@@ -180,7 +187,7 @@ def _untold(found: Identified) -> Iterator[str]:
 
 def plainly(told: Told) -> bool:
     """Whether a parameter is told, and nothing needs saying about it."""
-    return bool(told) and told.sentence.endswith(": told.")
+    return bool(told) and ": told." in told.sentence
 
 
 def _goodness(found: Identified) -> Iterator[str]:

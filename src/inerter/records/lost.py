@@ -23,6 +23,7 @@ _POINTS = 8  # samples on either side through which a parabola is laid
 _SURE = 8.0  # standard deviations of what the two parabolas are apart where nothing is lost
 _MOST = 200  # samples that may be lost at one place
 _AROUND, _DEGREE = 12, 5  # samples on either side of a loss, and of the polynomial through all of them
+_STEP = 4.0  # ratio of what a loss and a step leave, from which on one of them is clearly right
 _WHOLE, _SAME = 0.25, 0.25  # how far from a whole number of samples, and from one velocity, a loss may look
 _MAD = 1.4826
 
@@ -51,7 +52,7 @@ def losses(record: Record) -> list[Loss]:
     rates = before @ design[1], -(after @ design[1])  # of one interval ...
     bends = 2.0 * (before @ design[2]), 2.0 * (after @ design[2])  # ... and how they change in one
     noise = max(_MAD * float(np.median(np.abs(leap - np.median(leap)))), _least(record, design))
-    found: list[Loss] = []
+    found: list[Loss | None] = []
     for i in np.flatnonzero(np.abs(leap) > _SURE * noise):
         near = slice(max(i - points, 0), i + points + 1)
         if abs(leap[i]) < np.abs(leap[near]).max():
@@ -63,23 +64,31 @@ def losses(record: Record) -> list[Loss]:
         turned = 1.5 * (count + 1) * max(abs(float(bends[0][i])), abs(float(bends[1][i])))
         smooth = apart < _SAME * abs(rate) + turned + 4.0 * noise
         if 1 <= count <= _MOST and abs(leap[i] - count * rate) < slack and smooth:
-            found.append(_counted(z, Loss(int(i) + points - 1, count)))
-    return found
+            found.append(_counted(z, Loss(int(i) + points - 1, count), noise))
+    return [loss for loss in found if loss is not None]
 
 
-def _counted(z: Vector, loss: Loss) -> Loss:
-    """The same loss with the count that lets one polynomial through both sides leave the least."""
+def _counted(z: Vector, loss: Loss, noise: float) -> Loss | None:
+    """The same loss with the count that lets one polynomial through both sides leave the least.
+
+    None if that is more than this noise (r.m.s.), as at a kink, or if the polynomial of an uninterrupted motion with a
+    step fits as well; but a short loss is likelier than a step.
+    """
     first, last = max(loss.after + 1 - _AROUND, 0), loss.after + 1 + _AROUND
     values = z[first:last]
     at = np.arange(first, first + values.size) - loss.after - 0.5
+    later = np.where(at > 0.0, 1.0, 0.0)
 
-    def apart(count: int) -> float:
-        times = at + np.where(at > 0.0, 0.5 * count, -0.5 * count)
-        polynomial = np.polynomial.Polynomial.fit(times, values, _DEGREE)
-        return float(np.sum((values - polynomial(times)) ** 2))
+    def left(count: int, step: bool = False) -> float:
+        times = at + count * (later - 0.5)
+        columns = np.polynomial.legendre.legvander(times / np.abs(times).max(), _DEGREE)
+        columns = np.column_stack([columns, later]) if step else columns
+        return float(np.sum((values - columns @ np.linalg.lstsq(columns, values)[0]) ** 2))
 
-    near = range(max(loss.count - 3, 1), loss.count + 4)
-    return Loss(loss.after, min(near, key=apart))
+    count = min(range(max(loss.count - 3, 1), loss.count + 4), key=left)
+    lost, stepped = left(count), left(0, step=True)
+    likely = lost < _STEP * stepped if count <= LONGEST else _STEP * lost < stepped
+    return Loss(loss.after, count) if likely and lost < values.size * noise**2 else None
 
 
 def mended(record: Record, gaps: str | float) -> Record:

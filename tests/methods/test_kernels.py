@@ -1,6 +1,7 @@
 """Compiled code against the exact norms, its gradients against differences, and its cache."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -184,9 +185,17 @@ def test_a_value_without_effect_does_not_disturb_the_others():
     np.testing.assert_array_equal(evaluate_many(car, INDICES, {"f": [1.0, 2.0], "c": [2e3, 3e3]}, Norm()), plain)
 
 
-def test_designs_that_compiled_code_does_not_serve_are_infinite_too():
+def test_what_has_no_finite_value_is_nan_and_does_not_hide_what_has():
+    """The status of an infinite value is not ok, and so there is no number for it among many."""
     undamped = paper_quarter_car(Spring(free(1e4, 1e5, "k")))
-    assert np.all(np.isinf(evaluate_many(undamped, INDICES[::2], {"k": [2e4, 5e4]}, Norm())))
+    assert np.all(np.isnan(evaluate_many(undamped, INDICES[::2], {"k": [2e4, 5e4]}, Norm())))
+    plain = paper_quarter_car(k | c).mechanism()
+    (tyre,) = plain.tyres
+    damped = replace(plain, tyres=(replace(tyre, network=tyre.network | Damper(50.0)),))  # white noise passes to J3
+    comfort, load = evaluate_many(damped, INDICES[:2], {"c": [2e3, 5e3]}, Norm()).T
+    assert np.all(np.isnan(load))
+    alone = [evaluate(damped.with_values({"c": value}), INDICES[0], Norm()).value for value in (2e3, 5e3)]
+    np.testing.assert_allclose(comfort, alone, rtol=1e-12)
 
 
 def test_the_cache_folder_changes_with_every_source_that_a_module_rests_on(tmp_path):

@@ -15,6 +15,7 @@ import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, TyreLoad
 from inerter import StatisticalLinearisation as Linearisation
 from inerter.errors import DesignError, IndicatorError
+from inerter.methods.equivalent import POORLY
 from inerter.networks.transform import map_elements
 from inerter.norms.h2 import h2
 
@@ -25,9 +26,14 @@ screw = Spring(1e6) | Damper(3200.0)
 METHOD = Linearisation()
 
 
+def is_solved(estimate):
+    """Whether the equations of the closure are solved, be they right for this design or not."""
+    return estimate.status.ok or POORLY in estimate.status.message
+
+
 def value(car, index, method=METHOD):
     estimate = it.evaluate(car, index, method)
-    assert estimate.status.ok, estimate
+    assert is_solved(estimate), estimate
     return estimate.value
 
 
@@ -209,7 +215,7 @@ def test_peaks_of_random_networks_by_bisection_between_nodes(inner, other, force
     rubbing = inner - (other | Friction(force)) if series else inner | Friction(force)
     car = paper_quarter_car(Spring(3e4) | Damper(500.0) | rubbing)
     estimate = it.evaluate(car, J5, METHOD)
-    assert estimate.status.ok
+    assert is_solved(estimate)
     for peak in estimate.peaks:
         omega = peak.omega or 1e-4
         assert peak.gain == pytest.approx(by_hand(car, omega, force, 1000.0), rel=1e-3 if peak.omega == 0.0 else 1e-6)
@@ -239,7 +245,7 @@ def test_random_networks_meet_their_own_equation(inner, other, force, second, se
     car = paper_quarter_car(strut)
     for index in (J1, J3):
         estimate = it.evaluate(car, index, METHOD)
-        if not estimate.status.ok:  # too stiff for double precision, and said so
+        if not is_solved(estimate):  # too stiff for double precision, and said so
             assert estimate.status.message
             continue
         found = {note.split("'")[1]: note for note in estimate.notes}
@@ -270,11 +276,18 @@ def test_values_gradients_and_optima():
             ends = objective.values(np.vstack([point + steps, point - steps]))
             assert gradient == pytest.approx((ends[:3] - ends[3:]) / (2e-5 * point), rel=1e-3, abs=1e-6 * found)
         best = it.optimise(car, index, METHOD)
-        assert best.status.ok
+        assert is_solved(best.estimate)
         assert best.value <= objective.values(points).min()
         assert best.agreed > 1
     columns = dict(zip(car.free_values(), points.T, strict=True))
-    assert it.evaluate_many(car, [J1, J5], columns, METHOD)[:, 1] == pytest.approx(objective.values(points), rel=1e-12)
+    many, trusted = it.evaluate_many(car, [J1, J5], columns, METHOD), set()
+    for index, found in zip((J1, J5), many.T, strict=True):
+        designs = [car.with_values(dict(zip(columns, point, strict=True))) for point in points]
+        each = [it.evaluate(design, index, METHOD) for design in designs]
+        trusted |= {e.status.ok for e in each}
+        expected = [e.value if e.status.ok else math.nan for e in each]
+        assert found == pytest.approx(expected, rel=1e-12, nan_ok=True)
+    assert trusted == {True, False}
 
 
 def test_the_filter_of_the_index_leaves_the_velocity_alone():

@@ -168,3 +168,19 @@ def test_the_best_layout_has_the_least_finite_value():
     results = designs()
     assert best_layout(results, "J1") == results["layout"][results["value"].sel(index="J1").argmin("layout")]
     assert best_layout(with_value(results, math.nan, layout="S3", index="J1"), "J1") == "S2"
+
+
+@settings(max_examples=40)
+@given(st.permutations([2, 3, 3, 9]), st.floats(-1e-15, 1e-15), st.sampled_from([1e-9, 8.333e-6, 1e5]))
+def test_of_equally_good_layouts_the_simplest_is_named_and_the_others_are_told(counts, rounding, value):
+    """Whatever rounding makes of equal values: the fewest elements first, then as in the file."""
+    names = ["A", "B", "C", "D"]
+    results = designs(names, baseline="D").assign_coords(elements=("layout", list(counts)))
+    for i, name in enumerate(names):
+        results = with_value(results, value * (1.0 + i * rounding), layout=name, index="J5")
+    order = sorted(names, key=lambda name: counts[names.index(name)])
+    assert best_layout(results, "J5") == order[0]
+    sentence = next(line for line in headlines(results) if "load carrying" in line)
+    assert f": {order[0]} (equally good: {order[1]}, {order[2]} and {order[3]})" in sentence
+    worse = with_value(results, value * (1.0 + 1e-8), layout=order[0], index="J5")
+    assert best_layout(worse, "J5") == order[1]

@@ -169,7 +169,9 @@ def test_mean_squares_of_a_period_are_those_of_its_samples(half):
     roads = 1 + half
     table = tabulate([road] * roads + [None] * roads, [0.0, 0.08][:roads] + [0.0] * roads, 1.0, 0.01)
     system = piecewise(car)
-    found, integration = mean_squares(system, table, outputs, initial_state(system, table.value[0], "rest"), 300, 1e-11)
+    found, integration, _ = mean_squares(
+        system, table, outputs, initial_state(system, table.value[0], "rest"), 300, 1e-11
+    )
     assert integration.status.ok
     assert integration.warning.ok
     run = it.simulate(car, road=road, initial="periodic", step=0.01, speed=2.04 / 0.08 if half else None)
@@ -181,7 +183,9 @@ def test_too_few_periods_are_owned_up_to():
     road = it.multisine(ROAD, seed=1, lowest=1.0, highest=50.0)
     system = piecewise(car)
     table = tabulate([road, None], [0.0, 0.0], 1.0, 2e-3)
-    _, integration = mean_squares(system, table, ["tyre_load"], initial_state(system, table.value[0], "rest"), 3, 1e-9)
+    _, integration, _ = mean_squares(
+        system, table, ["tyre_load"], initial_state(system, table.value[0], "rest"), 3, 1e-9
+    )
     assert integration.status.ok
     assert integration.warning.kind == "inaccurate"
     assert "after 3 periods" in integration.warning.message

@@ -14,11 +14,16 @@ from inerter import (
     Gap,
     Inerter,
     Mechanism,
+    Norm,
+    QuarterCar,
+    RideComfort,
+    Road,
     RoadInput,
     Spring,
     Strut,
     Tyre,
     assemble,
+    evaluate,
     frequency_response,
     hinf_norm,
 )
@@ -318,7 +323,17 @@ def test_a_second_system_of_units_changes_no_response():
 
 
 def test_unknown_inputs_and_outputs_are_refused_with_the_known_ones():
-    with pytest.raises(LinearSystemError, match=r"no output named 'nose_load' .*tyre_front_load"):
+    with pytest.raises(LinearSystemError, match=r"no output named 'nose_load'.*tyre_front_load"):
         assemble(paper_half_car(k | c, k | c), outputs=["nose_load"])
     with pytest.raises(LinearSystemError, match=r"no input named 'wind' .*road_rear"):
         assemble(paper_half_car(k | c, k | c), inputs=["wind"])
+
+
+def test_matrices_without_a_certain_digit_are_refused_and_the_indices_are_there_all_the_same():
+    strut = Spring(1e5) | Damper(1e3) - Inerter(1e300)
+    car = QuarterCar(181.75, 25.0, 120e3, strut)
+    with pytest.raises(LinearSystemError, match="no digit of its matrices is certain"):
+        assemble(car)
+    rigid = QuarterCar(181.75, 25.0, 120e3, Spring(1e5) | Damper(1e3))  # so heavy an inerter is a fixed end
+    comfort = RideComfort(Road(roughness=5e-7, speed=25.0))
+    assert evaluate(car, comfort, Norm()).value == pytest.approx(evaluate(rigid, comfort, Norm()).value, rel=1e-9)

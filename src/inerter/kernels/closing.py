@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels import part
-from inerter.kernels.linalg import copy, factor, solve, solve_transposed
+from inerter.kernels.linalg import copy, factor, solve, solve_rows, solve_transposed
+from inerter.kernels.twofold import add_multiple
 
 Array = Any
 
 
-@part()
+@part(borrowing=True)
 def contract(p: Array, stack: Array, out: Array) -> None:
     """Sum up a stack: out = stack[0] + sum p[i] stack[1 + i]."""
     for i in range(out.shape[0]):
@@ -26,7 +27,7 @@ def contract(p: Array, stack: Array, out: Array) -> None:
             out[i, j] = total
 
 
-@part()
+@part(borrowing=True)
 def even_out(S: Array, T: Array, size: Array) -> None:
     """Divide each equation by its largest coefficient: inertia, damping and stiffness differ by their units."""
     for i in range(S.shape[0]):
@@ -52,6 +53,95 @@ def closing_space(descriptor: Array) -> Any:
 
 
 @part()
+def split_up(values: Array, e: int, n: int, m: int, o: int) -> Any:
+    """S, [R F], Y_eta and [Y_x Y_u], which stand in a row, as matrices."""
+    first, second = e * e, e * e + e * (n + m)
+    third = second + o * e
+    return (
+        values[:first].reshape((e, e)),
+        values[first:second].reshape((e, n + m)),
+        values[second:third].reshape((o, e)),
+        values[third : third + o * (n + m)].reshape((o, n + m)),
+    )
+
+
+@part()
+def twofold_space(descriptor: Array) -> Any:
+    """Room for `close_twofold`: that of `close_in`, what rounding takes from A, B, C, D, and sums in two numbers."""
+    S, R, F, _, _, _, _, Y_x, _ = descriptor
+    e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
+    count = e * e + e * (n + m) + o * e + o * (n + m)
+    high, low = np.empty(count), np.empty(count)
+    lost = np.empty((n, n)), np.empty((n, m)), np.empty((o, n)), np.empty((o, m))
+    both = split_up(high, e, n, m, o), split_up(low, e, n, m, o)
+    return closing_space(descriptor), lost, high, low, both, np.empty((2, n + m))
+
+
+@part(borrowing=True)
+def close_twofold(room: Array, p: Array, descriptor: Array, twofold: Array) -> bool:
+    """As `close_in`, and what rounding has taken from A, B, C and D.
+
+    `twofold` holds S, [R F], Y_eta and [Y_x Y_u] in a row, as a stack (1 + values, entries), and what rounding has
+    taken from that: an array without entries where it is nothing.
+    """
+    space, (lost_A, lost_B, lost_C, lost_D), high, low, (whole, rest), (sum_high, sum_low) = room
+    _, _, _, X_eta, X_x, X_u, _, _, _ = descriptor
+    A, B, C, D, T, (LU, pivots, size), _, _ = space
+    (S, right, Y, over), (S_low, right_low, Y_low, over_low) = whole, rest
+    stack, fine = twofold
+    e, n, m, o = S.shape[0], A.shape[0], B.shape[1], C.shape[0]
+    for q in range(high.size):
+        high[q], low[q] = stack[0, q], 0.0
+    for k in range(p.size):
+        add_multiple(high, low, p[k], stack[k + 1], high.size)
+    if fine.shape[0] > 0:
+        for q in range(high.size):
+            low[q] += fine[0, q]
+            for k in range(p.size):
+                low[q] += p[k] * fine[k + 1, q]
+    copy(S, LU)
+    copy(right, T)
+    even_out(LU, T, size)
+    if not factor(LU, pivots):
+        return False
+    solve_rows(LU, pivots, T)
+    for i in range(e):  # what T leaves of its equation takes the place of its right-hand side, then what T lacks
+        for k in range(e):
+            if S[i, k] != 0.0:
+                add_multiple(right[i], right_low[i], -S[i, k], T[k], n + m)
+                for j in range(n + m):
+                    right_low[i, j] -= S_low[i, k] * T[k, j]
+        for j in range(n + m):
+            right[i, j] = (right[i, j] + right_low[i, j]) / size[i]
+    solve_rows(LU, pivots, right)
+    for i in range(n):
+        for j in range(n):
+            sum_high[j], sum_low[j] = X_x[i, j], 0.0
+        for j in range(m):
+            sum_high[n + j], sum_low[n + j] = X_u[i, j], 0.0
+        for k in range(e):
+            if X_eta[i, k] != 0.0:
+                add_multiple(sum_high, sum_low, X_eta[i, k], T[k], n + m)
+                for j in range(n + m):
+                    sum_low[j] += X_eta[i, k] * right[k, j]
+        for j in range(n):
+            A[i, j], lost_A[i, j] = sum_high[j], sum_low[j]
+        for j in range(m):
+            B[i, j], lost_B[i, j] = sum_high[n + j], sum_low[n + j]
+    for i in range(o):
+        for k in range(e):
+            if Y[i, k] != 0.0:
+                add_multiple(over[i], over_low[i], Y[i, k], T[k], n + m)
+                for j in range(n + m):
+                    over_low[i, j] += Y_low[i, k] * T[k, j] + Y[i, k] * right[k, j]
+        for j in range(n):
+            C[i, j], lost_C[i, j] = over[i, j], over_low[i, j]
+        for j in range(m):
+            D[i, j], lost_D[i, j] = over[i, n + j], over_low[i, n + j]
+    return True
+
+
+@part()
 def close(p: Array, descriptor: Array) -> Any:
     """A, B, C, D, the solution T = S^-1 [R F], the factors of S, and whether all went well."""
     space = closing_space(descriptor)
@@ -60,7 +150,7 @@ def close(p: Array, descriptor: Array) -> Any:
     return A, B, C, D, T, factors, good
 
 
-@part()
+@part(borrowing=True)
 def close_in(space: Array, p: Array, descriptor: Array) -> bool:
     """Fill `space` with what `close` returns; False if S is singular."""
     S, R, F, X_eta, X_x, X_u, Y_eta, Y_x, Y_u = descriptor

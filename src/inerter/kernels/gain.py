@@ -7,12 +7,17 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels import compiled, part
-from inerter.kernels.closing import close, pull_back
+from inerter.kernels.closing import close, close_twofold, pull_back, twofold_space
 from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, merge, solve, solve_transposed, sort
+from inerter.kernels.linalg import factor, merge, solve, solve_rows, solve_transposed, sort
+from inerter.kernels.twofold import add_product
 
 Array = Any
 _GOLDEN = 0.6180339887498949
+_ACCURATE = 1e-9  # relative error of a gain up to which it is believed
+_SMALL = 1e-7  # relative size of the terms of a correction at first order up to which the rest is far below that
+_KNOWN = 1e-5  # error of a pole over its distance from the axis up to which a peak is known to the square of that
+_EPS = 2.2e-16
 
 
 @part()
@@ -27,19 +32,42 @@ def resolve(A: Array, scale: Array, omega: float, M: Array, pivots: Array) -> bo
 
 
 @part()
-def gain_at(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float) -> Any:
-    """|G(j omega)|, infinite at a pole."""
+def gain_at(system: Array, lost: Array, scale: Array, omega: float) -> float:
+    """|G(j omega)|, infinite at a pole, and nan where it may be off by more than `_ACCURATE`.
+
+    What the state leaves of its equation, with A and B as they were before rounding, corrects it at first order; that
+    is believed while it is small.
+    """
+    A, B, C, D = system
+    lost_A, lost_B, lost_C, lost_D = lost
     n = A.shape[0]
-    M, pivots, r = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
+    M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
+    r, left = np.empty(n, np.complex128), np.empty(n, np.complex128)
     for i in range(n):
-        r[i] = B[i, 0] / scale[i]
+        r[i], left[i] = B[i, 0] / scale[i], C[0, i] * scale[i]
     if not resolve(A, scale, omega, M, pivots):
         return np.inf
     solve(M, pivots, r)
-    G = D[0, 0] + 0j
+    solve_transposed(M, pivots, left)
     for i in range(n):
-        G += C[0, i] * scale[i] * r[i]
-    return abs(G)
+        r[i] *= scale[i]
+        left[i] /= scale[i]
+    G, size, unsure = D[0, 0] + lost_D[0, 0] + 0j, 0.0, 0.0
+    for i in range(n):
+        real, fine = add_product(B[i, 0], lost_B[i, 0], omega, r[i].imag)
+        imag, fine_imag = add_product(0.0, 0.0, -omega, r[i].real)
+        for j in range(n):
+            if A[i, j] != 0.0:
+                real, fine = add_product(real, fine, A[i, j], r[j].real)
+                imag, fine_imag = add_product(imag, fine_imag, A[i, j], r[j].imag)
+            fine += lost_A[i, j] * r[j].real
+            fine_imag += lost_A[i, j] * r[j].imag
+        change = left[i] * ((real + fine) + 1j * (imag + fine_imag)) + lost_C[0, i] * r[i]
+        G += C[0, i] * r[i] + change
+        size += abs(change)
+        unsure += n * _EPS * abs(C[0, i] * r[i])
+    gain = abs(G)
+    return gain if size <= _SMALL * gain and unsure <= _ACCURATE * gain else np.nan
 
 
 @compiled
@@ -81,25 +109,38 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
 
 
 @part()
-def partial_fractions(A: Array, B: Array, C: Array, scale: Array) -> Any:
-    """Poles and residues of C (s - A)^-1 B, and whether A has a full set of eigenvectors."""
+def partial_fractions(system: Array, lost_A: Array, scale: Array) -> Any:
+    """Poles and residues of C (s - A)^-1 B, and whether all poles are known beyond their distance from the axis."""
+    A, B, C, _ = system
     n = A.shape[0]
-    scaled = np.empty((n, n), np.complex128)
+    scaled, largest = np.empty((n, n), np.complex128), 0.0
     for i in range(n):
         for j in range(n):
             scaled[i, j] = A[i, j] * scale[j] / scale[i]
+            largest += abs(scaled[i, j])
+    if not largest < np.inf:
+        return np.zeros(0, np.complex128), np.zeros(0, np.complex128), False
     poles, vectors = np.linalg.eig(scaled)
-    LU, pivots, weights = vectors.copy(), np.empty(n, np.int64), np.empty(n, np.complex128)
-    for i in range(n):
-        weights[i] = B[i, 0] / scale[i]
+    LU, pivots, inverse = vectors.copy(), np.empty(n, np.int64), np.empty((n, n), np.complex128)
     residues = np.zeros(n, np.complex128)
     if not factor(LU, pivots):
         return poles, residues, False
-    solve(LU, pivots, weights)
+    for i in range(n):
+        for j in range(n):
+            inverse[i, j] = 1.0 if i == j else 0.0
+    solve_rows(LU, pivots, inverse)
     for k in range(n):
+        seen, excited, error = 0j, 0j, 0.0
         for i in range(n):
-            residues[k] += C[0, i] * scale[i] * vectors[i, k]
-        residues[k] *= weights[k]
+            seen += C[0, i] * scale[i] * vectors[i, k]
+            excited += inverse[k, i] * (B[i, 0] / scale[i])
+            rest = -poles[k] * vectors[i, k]
+            for j in range(n):
+                rest += (scaled[i, j] + lost_A[i, j] * scale[j] / scale[i]) * vectors[j, k]
+            error += abs(inverse[k, i] * rest)
+        residues[k] = seen * excited
+        if not error < _KNOWN * abs(poles[k].real):
+            return poles, residues, False
     return poles, residues, True
 
 
@@ -172,15 +213,16 @@ def top(poles: Array, residues: Array, direct: float, low: float, high: float) -
 
 
 @part()
-def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
+def peaks(system: Array, lost: Array) -> Any:
     """Frequencies and values of the local maxima of the gain, found in partial fractions, valued by a direct solve.
 
     Partial fractions cost little at each frequency; where they lose digits (nearly equal poles) only the place of a
-    peak suffers, because the value at it is computed anew. The value is nan where the two differ, because a resonance
-    is narrower than the error of its pole; no peak is found where A has no full set of eigenvectors.
+    peak suffers, because the value at it is computed anew. The value is nan where that is not accurate or the two
+    differ; no peak is found where a resonance is narrower than the error of its pole.
     """
+    A, _, _, D = system
     scale, direct = units(A), D[0, 0]
-    poles, residues, good = partial_fractions(A, B, C, scale)
+    poles, residues, good = partial_fractions(system, lost[0], scale)
     if not good or not farthest(poles) < np.inf:
         return np.zeros(0), np.zeros(0)
     grid = frequencies(poles)
@@ -198,7 +240,7 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
         above_next = count == 1 or values[k] > values[k + 1]
         if above_last and above_next:
             omegas[number] = 0.0 if k == 0 else top(poles, residues, direct, grid[k - 1], grid[k + 1])
-            found[number] = gain_at(A, B, C, D, scale, omegas[number])
+            found[number] = gain_at(system, lost, scale, omegas[number])
             if not abs(found[number] - modal_gain(poles, residues, direct, omegas[number])) <= 1e-6 * found[number]:
                 found[number] = np.nan
             number += 1
@@ -206,7 +248,7 @@ def peaks(A: Array, B: Array, C: Array, D: Array) -> Any:
 
 
 @compiled
-def peaks_of(points: Array, descriptor: Array) -> Any:
+def peaks_of(points: Array, descriptor: Array, twofold: Array) -> Any:
     """`peaks` at each row of `points`: frequencies and values (designs, order + 2), those of each design in a row.
 
     The last place is that of an infinite frequency; places without a peak have the frequency nan and the value 0.
@@ -214,11 +256,12 @@ def peaks_of(points: Array, descriptor: Array) -> Any:
     """
     places = descriptor[1].shape[2] + 2
     omegas, values = np.full((points.shape[0], places), np.nan), np.full((points.shape[0], places), np.nan)
+    room = twofold_space(descriptor)
+    A, B, C, D, _, _, _, _ = room[0]
     for i in range(points.shape[0]):
-        A, B, C, D, _, _, good = close(points[i], descriptor)
-        if not good:
+        if not close_twofold(room, points[i], descriptor, twofold):
             continue
-        where, found = peaks(A, B, C, D)
+        where, found = peaks((A, B, C, D), room[1])
         if found.size == 0 or found.size >= places:  # there are never more than order + 1
             continue
         for k in range(places):

@@ -12,35 +12,42 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels import compiled, part
-from inerter.kernels.closing import close_in, closing_space, pull_back
+from inerter.kernels.closing import close_twofold, pull_back, twofold_space
 from inerter.kernels.linalg import copy, exponential, factor, matmul, solve, solve_transposed
+from inerter.kernels.twofold import add_multiple
 
 Array = Any
-_LARGEST_ERROR = 1e-9  # relative change of a squared norm by one step of refinement, which tells its rounding error
+_ACCURATE = 1e-9  # relative error of a squared norm up to which it is believed
+_SMALL = 1e-7  # relative size of the terms of a correction at first order up to which the rest is far below that
+_DAMPED = 1e-6  # relative correction of a variance from which on its motion may be damped by rounding
+_SOLVED = 1e-3  # share of the noise that enters a state that the solution may leave over
+_EPS = 2.2e-16
 
 
 @part()
 def units(A: Array) -> Array:
     """Units of the states that even out rows and columns of A: a few sweeps of balancing."""
     scale = np.empty(A.shape[0])
-    balance(A, scale)
+    balance(A, scale, np.empty(A.shape[0]))
     return scale
 
 
-@part()
-def balance(A: Array, scale: Array) -> None:
+@part(borrowing=True)
+def balance(A: Array, scale: Array, inverse: Array) -> None:
     """Fill `scale` with `units`. They depend on A alone, so that a result does not depend on what came before it."""
     n = A.shape[0]
-    scale[:] = 1.0
+    for i in range(n):
+        scale[i], inverse[i] = 1.0, 1.0
     for _ in range(3):
         for i in range(n):
             row, column = 0.0, 0.0
             for j in range(n):
                 if j != i:
                     row += abs(A[i, j]) * scale[j]
-                    column += abs(A[j, i]) / scale[j]
+                    column += abs(A[j, i]) * inverse[j]
             if row > 0.0 and column > 0.0:
                 scale[i] = np.sqrt(row / column)
+                inverse[i] = 1.0 / scale[i]
 
 
 @part()
@@ -60,18 +67,18 @@ def places(n: int) -> Array:
 def lyapunov_space(n: int) -> Any:
     """Room for the Lyapunov equations of order n: factors, pivots, places, units, a right-hand side, A in its units."""
     N = n * (n + 1) // 2
-    return np.zeros((N, N)), np.empty(N, np.int64), places(n), np.ones(n), np.empty(N), np.empty((n, n))
+    return np.zeros((N, N)), np.empty(N, np.int64), places(n), (np.ones(n), np.ones(n)), np.empty(N), np.empty((n, n))
 
 
-@part()
+@part(borrowing=True)
 def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
     """Factors of P -> A P + P A' over symmetric P, in balanced units; False if singular."""
-    K, pivots, place, scale, _, scaled = lyapunov
+    K, pivots, place, (scale, inverse), _, scaled = lyapunov
     n = A.shape[0]
-    balance(A, scale)
+    balance(A, scale, inverse)
     for i in range(n):
         for j in range(n):
-            scaled[i, j] = A[i, j] * scale[j] / scale[i]
+            scaled[i, j] = A[i, j] * scale[j] * inverse[i]
     K[:, :] = 0.0
     for i in range(n):
         for j in range(i, n):
@@ -83,29 +90,69 @@ def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
 
 
 @part()
-def propagated(A: Array, time: float, u: Array, poles: Array, residues: Array, direct: float, out: Array) -> None:
-    """Fill `out` with exp(A time) u, or its Pade approximant where poles are given."""
+def propagated(
+    A: Array, E_A: Array, time: float, u: Array, unsure: Array, pade: Array, out: Array, error: Array
+) -> None:
+    """Fill `out` with exp(A time) u, or its Pade approximant where `pade` has poles, and `error` with a bound of its
+    error, from those of A, which is balanced, and of u.
+
+    A change dA changes exp(A time) by the integral of exp(A (time - t)) dA exp(A t), taken at five places; the
+    squarings of the exponential add n roundings each, of which the first ones are many.
+    """
+    poles, residues, direct = pade
     n = A.shape[0]
     if poles.size == 0:
-        E, _ = exponential(A * time, A, False)
+        quarter, _, squarings = exponential(A * (0.25 * time), A, False)
+        powers = np.empty((5, n, n))
         for i in range(n):
-            out[i] = 0.0
             for j in range(n):
-                out[i] += E[i, j] * u[j]
+                powers[4, i, j] = 1.0 if i == j else 0.0
+        for k in range(3, -1, -1):
+            matmul(quarter, powers[k + 1], powers[k])
+        rounding, change = _EPS * (n * 2.0 ** (squarings + 2) + 15.0), np.empty(n)
+        for i in range(n):
+            error[i] = 0.0
+            for j in range(n):
+                error[i] += abs(powers[0, i, j]) * unsure[j]
+        for step in range(5):
+            for i in range(n):
+                out[i] = 0.0
+                for j in range(n):
+                    out[i] += powers[4 - step, i, j] * u[j]
+            for i in range(n):
+                change[i] = rounding * abs(out[i])
+                for j in range(n):
+                    change[i] += time * E_A[i, j] * abs(out[j])
+            for i in range(n):
+                for j in range(n):
+                    error[i] += 0.5 * abs(powers[step, i, j]) * change[j]
         return
     for i in range(n):
-        out[i] = direct * u[i]
+        out[i], error[i] = direct * u[i], abs(direct) * unsure[i]
     M, pivots, z = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
+    size, change = np.empty((n, n)), np.empty(n)
     for k in range(poles.size):
         for i in range(n):
             for j in range(n):
                 M[i, j] = A[i, j] * time
             M[i, i] += poles[k]
+            for j in range(n):
+                size[i, j] = time * E_A[i, j] + 4.0 * n * _EPS * abs(M[i, j])
             z[i] = u[i]
         factor(M, pivots)
         solve(M, pivots, z)
         for i in range(n):
             out[i] -= (residues[k] * z[i]).real
+            change[i] = unsure[i]
+            for j in range(n):
+                change[i] += size[i, j] * abs(z[j])
+        for j in range(n):
+            for i in range(n):
+                z[i] = 0.0
+            z[j] = 1.0
+            solve(M, pivots, z)
+            for i in range(n):
+                error[i] += abs(residues[k]) * abs(z[i]) * change[j]
 
 
 @part()
@@ -119,7 +166,7 @@ def propagated_adjoint(
         for i in range(n):
             for j in range(n):
                 N[i, j] = time * bar[i] * u[j]
-        E, L = exponential(A.T.copy() * time, N, True)
+        E, L, _ = exponential(A.T.copy() * time, N, True)
         for i in range(n):
             for j in range(n):
                 G_A[i, j] += L[i, j]
@@ -164,16 +211,16 @@ def high_passed(A: Array, B: Array, C: Array, D: Array, corner: float) -> Any:
     return A2, B2, C2
 
 
-@part()
+@part(borrowing=True)
 def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
     """P of A P + P A' + W = 0, or of A' P + P A + W = 0, from the factors of the former."""
-    K, pivots, place, scale, b, _ = lyapunov
+    K, pivots, place, (scale, inverse), b, _ = lyapunov
     n = W.shape[0]
+    into, out = (scale, inverse) if adjoint else (inverse, scale)
     for i in range(n):
         for j in range(i, n):
             weight = 2.0 if adjoint and i != j else 1.0
-            unit = scale[i] * scale[j] if adjoint else 1.0 / (scale[i] * scale[j])
-            b[place[i, j]] = -W[i, j] * weight * unit
+            b[place[i, j]] = -W[i, j] * weight * (into[i] * into[j])
     if adjoint:
         solve_transposed(K, pivots, b)
     else:
@@ -181,8 +228,7 @@ def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
     for i in range(n):
         for j in range(i, n):
             weight = 0.5 if adjoint and i != j else 1.0
-            unit = 1.0 / (scale[i] * scale[j]) if adjoint else scale[i] * scale[j]
-            P[i, j] = b[place[i, j]] * weight * unit
+            P[i, j] = b[place[i, j]] * weight * (out[i] * out[j])
             P[j, i] = P[i, j]
 
 
@@ -192,62 +238,145 @@ def norms_space(descriptor: Array, corner: float) -> Any:
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
     order = n + o if corner > 0.0 else n
     return (
-        closing_space(descriptor),
+        twofold_space(descriptor),
         lyapunov_space(order),
-        np.zeros((m, order)),
-        np.empty((order, order)),
-        np.empty((order, order)),
-        np.empty((order, order)),
+        np.zeros((2, m, order)),
+        np.empty((5, order, order)),
         np.empty((o, order)),
     )
 
 
 @part()
-def norms_in(space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, result: Array) -> bool:
-    """Fill `result` with the norm of each output; False if that did not go well. See `norms` for the arguments."""
-    closing, lyapunov, met, W, P, correction, CP = space
+def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arrivals: Array) -> None:
+    """Fill `met` with what each arrival meets of those before it, and with bounds of its error."""
     gaps, poles, residues, direct = arrivals
-    if not close_in(closing, p, descriptor):
+    _, _, _, (scale, _), _, scaled = lyapunov
+    n, m = B.shape
+    E_scaled, u, unsure = np.empty((n, n)), np.empty(n), np.empty(n)
+    for i in range(n):
+        for j in range(n):
+            E_scaled[i, j] = abs(E_A[i, j]) * scale[j] / scale[i]
+    for c in range(1, m):
+        for i in range(n):
+            u[i] = (met[0, c - 1, i] + B[i, c - 1]) / scale[i]
+            unsure[i] = (met[1, c - 1, i] + abs(E_B[i, c - 1])) / scale[i] + _EPS * abs(u[i])
+        propagated(scaled, E_scaled, gaps[c - 1], u, unsure, (poles, residues, direct), met[0, c], met[1, c])
+        for i in range(n):
+            met[0, c, i] *= scale[i]
+            met[1, c, i] *= scale[i]
+
+
+@part(borrowing=True)
+def leave(lost: Array, A: Array, B: Array, met: Array, W: Array, P: Array, rest: Array) -> bool:
+    """Fill `rest` with what P leaves of A P + P A' + W = 0, A and B as they were before rounding; W is lost.
+
+    False if that is much of the noise that enters a state.
+    """
+    lost_A, lost_B = lost
+    n, m = B.shape
+    for i in range(n):
+        noise = W[i, i]
+        high, low = rest[i], W[i]
+        for j in range(n):
+            high[j], low[j] = 0.0, 0.0
+        for k in range(n):
+            if A[i, k] != 0.0:
+                add_multiple(high, low, A[i, k], P[k], n)
+            if lost_A[i, k] != 0.0:
+                for j in range(n):
+                    low[j] += lost_A[i, k] * P[k, j]
+        for c in range(m):  # half of the noise: the other half comes with the transpose
+            add_multiple(high, low, 0.5 * B[i, c], B[:, c], n)
+            if c > 0:
+                add_multiple(high, low, met[0, c, i], B[:, c], n)
+            for j in range(n):
+                low[j] += lost_B[i, c] * (B[j, c] + met[0, c, j])
+        for j in range(n):
+            high[j] += low[j]
+        low[i] = noise
+    for i in range(n):
+        for j in range(i, n):
+            rest[i, j] += rest[j, i]
+            rest[j, i] = rest[i, j]
+        if W[i, i] > 0.0 and not abs(rest[i, i]) <= _SOLVED * W[i, i]:
+            return False
+    return True
+
+
+@part()
+def norms_in(
+    space: Array, p: Array, descriptor: Array, twofold: Array, arrivals: Array, corner: float, result: Array
+) -> bool:
+    """Fill `result` with the norm of each output; False where it may be off by more than `_ACCURATE`.
+
+    What P leaves of A P + P A' + W = 0, A and B as they were before rounding, corrects all rounding at first order.
+    With the solution Q of A' Q + Q A + C' C = 0 for one output it changes the square by tr(Q rest), whose terms are
+    small where that can be believed.
+    """
+    closing, lyapunov, met, (W, P, Q, rest, lacks), CP = space
+    if not close_twofold(closing, p, descriptor, twofold):
         return False
-    A, B, C = closing[0], closing[1], closing[2]
+    A, B, C = closing[0][0], closing[0][1], closing[0][2]
+    lost_A, lost_B, lost_C, lost_D = closing[1]
     if corner > 0.0:
-        A, B, C = high_passed(A, B, C, closing[3], corner)
-    n, m, o = A.shape[0], B.shape[1], C.shape[0]
+        A, B, C = high_passed(A, B, C, closing[0][3], corner)
+        lost_A, lost_B, lost_C = high_passed(lost_A, lost_B, lost_C, lost_D, 0.0)
     if not lyapunov_factors(A, lyapunov):
         return False
-    for c in range(1, m):
-        u = np.empty(n)
-        for i in range(n):
-            u[i] = met[c - 1, i] + B[i, c - 1]
-        propagated(A, gaps[c - 1], u, poles, residues, direct, met[c])
+    if B.shape[1] > 1:
+        excite(lost_A, B, lost_B, lyapunov, met, arrivals)
+    return judge((A, B, C), (lost_A, lost_B, lost_C), lyapunov, met, (W, P, Q, rest, lacks, CP), result)
+
+
+@part(borrowing=True)
+def judge(matrices: Array, lost: Array, lyapunov: Array, met: Array, room: Array, result: Array) -> bool:
+    """Fill `result` once A, B and C, the factors and `met` are there. See `norms_in`."""
+    A, B, C = matrices
+    lost_A, lost_B, lost_C = lost
+    W, P, Q, rest, lacks, CP = room
+    n, m, o = A.shape[0], B.shape[1], C.shape[0]
     for i in range(n):
         for j in range(n):
             W[i, j] = 0.0
             for c in range(m):
-                W[i, j] += B[i, c] * B[j, c] + met[c, i] * B[j, c] + B[i, c] * met[c, j]
+                W[i, j] += B[i, c] * B[j, c] + met[0, c, i] * B[j, c] + B[i, c] * met[0, c, j]
     solve_symmetric(lyapunov, W, False, P)
-    for i in range(n):  # the equation's residual, in the place of W
-        for j in range(i, n):
-            total = W[i, j]
-            for k in range(n):
-                total += A[i, k] * P[k, j] + P[i, k] * A[j, k]
-            W[i, j] = total
-            W[j, i] = total
-    solve_symmetric(lyapunov, W, False, correction)
+    if not leave((lost_A, lost_B), A, B, met, W, P, rest):
+        return False
+    solve_symmetric(lyapunov, rest, False, lacks)  # what P lacks
+    for i in range(n):
+        if not abs(lacks[i, i]) <= _DAMPED * P[i, i]:
+            return False
+        for j in range(n):
+            Q[i, j] = 0.0
+    terms, unsure = 0.0, 0.0
     for k in range(o):
-        total, error = 0.0, 0.0
+        total, change, size, rounding = 0.0, 0.0, 0.0, 0.0
         for i in range(n):
-            CP[k, i] = 0.0
-            row = 0.0
+            CP[k, i], row, more = 0.0, 0.0, 0.0
             for j in range(n):
                 CP[k, i] += P[i, j] * C[k, j]
-                row += correction[i, j] * C[k, j]
+                more += lacks[i, j] * C[k, j]
+                row += abs(P[i, j] * C[k, j])
             total += CP[k, i] * C[k, i]
-            error += row * C[k, i]
-        if not abs(error) <= _LARGEST_ERROR * total:
+            change += more * C[k, i] + 2.0 * CP[k, i] * lost_C[k, i]
+            size += 2.0 * abs(CP[k, i] * lost_C[k, i])
+            rounding += n * _EPS * row * abs(C[k, i])
+        if not total > 0.0:
             return False
-        result[k] = np.sqrt(total + error)
-    return True
+        result[k] = np.sqrt(total + change)
+        terms += size / total
+        unsure += rounding / total
+        for i in range(n):
+            for j in range(n):
+                Q[i, j] += C[k, i] * C[k, j] / total
+    solve_symmetric(lyapunov, Q, True, Q)
+    for i in range(n):
+        for j in range(n):
+            terms += abs(Q[i, j] * rest[i, j])
+            for c in range(1, m):
+                unsure += 2.0 * abs(Q[i, j]) * (met[1, c, i] * abs(B[j, c]))
+    return terms <= _SMALL and unsure <= _ACCURATE
 
 
 @part()
@@ -255,7 +384,7 @@ def gradient_in(
     space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array, result: Array
 ) -> Array:
     """Gradient over p of the weighted sum of the norms that `norms_in` has filled `result` with."""
-    closing, lyapunov, met, CC, P, Q, CP = space
+    (closing, _, _, _, _, _), lyapunov, met, (CC, P, Q, _, _), CP = space
     A0, B0, C0, D0, T, factors, _, _ = closing
     gaps, poles, residues, direct = arrivals
     o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
@@ -284,12 +413,12 @@ def gradient_in(
             here, before = 0.0, 0.0
             for j in range(n):
                 here += Q[i, j] * B[j, c]
-                before += Q[i, j] * met[c, j]
+                before += Q[i, j] * met[0, c, j]
             G_B[i, c] += 2.0 * (here + before) + carry[i]
             bar[i] = 2.0 * here + carry[i]
         if c > 0:
             for i in range(n):
-                u[i] = met[c - 1, i] + B[i, c - 1]
+                u[i] = met[0, c - 1, i] + B[i, c - 1]
             propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A, carry)
     if corner > 0.0:  # the filter's states repeat C and D in its A and B
         for i in range(o):
@@ -301,19 +430,19 @@ def gradient_in(
 
 
 @compiled
-def norms(points: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array) -> Any:
-    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each went well.
+def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, corner: float, weights: Array) -> Any:
+    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each is right.
 
-    The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights.
-    `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the next, and the Pade
-    approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
+    The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. `twofold` as
+    in `close_twofold`. `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the
+    next, and the Pade approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
     """
     space = norms_space(descriptor, corner)
     count = points.shape[0]
     result, good = np.full((count, descriptor[7].shape[1]), np.nan), np.empty(count, np.bool_)
     gradients = np.full((count if weights.size > 0 else 0, points.shape[1]), np.nan)
     for i in range(count):
-        good[i] = norms_in(space, points[i], descriptor, arrivals, corner, result[i])
+        good[i] = norms_in(space, points[i], descriptor, twofold, arrivals, corner, result[i])
         if good[i] and weights.size > 0:
             gradient = gradient_in(space, points[i], descriptor, arrivals, corner, weights, result[i])
             for j in range(gradient.size):

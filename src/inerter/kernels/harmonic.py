@@ -22,6 +22,10 @@ _SWEEPS = 100
 _REFLECTIONS = 2000
 _SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pushes included
 _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
+_STICKS = 4.0 / np.pi  # first harmonic of friction over the force through it if held, from which on it sticks
+_WEAK = 0.6  # the same up to which its velocity may be near a sine ...
+_SMALL = 0.01  # ... if what its third harmonic does to the response is no larger part of it
+_LOCK = 1e9  # a damper that holds, over that of reference
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
 
@@ -89,14 +93,18 @@ def reflect(Z: Array, velocity: Array, damper: Array, limit: Array, extra: Array
 
 
 @part()
-def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
+def balance(work: Array, limit: Array, amplitude: float, reference: float) -> Any:
     """Gain of the first output with every friction slipping or sticking as it must, and whether that settled.
+
+    `work` is the frequency response and room for the velocity across each friction and for its force over that which
+    would hold it, which are filled.
 
     One friction is one closed form. Several are solved one after the other until none changes. Each sees the others
     as a damper and a force: waves, which a passive mechanism does not amplify, and which are small if the damper is
     near what its friction amounts to. Where that does not settle, as at a resonance of two frictions that nothing else
     damps, averaged reflections of those waves do.
     """
+    G, slipping, hold = work
     count = limit.size
     Z, velocity, damper = np.empty((count, count), np.complex128), np.empty(count, np.complex128), np.empty(count)
     for j in range(count):
@@ -146,20 +154,70 @@ def balance(G: Array, limit: Array, amplitude: float, reference: float) -> Any:
         settled = reflect(Z, velocity, damper, limit, extra)
     response = G[0, 0] * amplitude
     for j in range(count):
-        v = velocity[j]
+        push = velocity[j]
         for k in range(count):
-            v -= Z[j, k] * extra[k]
-        response += G[0, 1 + j] * (extra[j] + (damper[j] - reference) * v)
+            if k != j:
+                push -= Z[j, k] * extra[k]
+        slipping[j] = push - Z[j, j] * extra[j]
+        response += G[0, 1 + j] * (extra[j] + (damper[j] - reference) * slipping[j])
+        hold[j] = limit[j] * abs(Z[j, j]) / abs(push) if abs(push) > 0.0 else np.inf
     return abs(response) / amplitude, settled
 
 
 @part()
-def gain_at(system: Array, omega: float, limit: Array, amplitude: float, reference: float, G: Array) -> Any:
-    """Gain at one frequency, infinite at a pole."""
+def distortion(work: Array, third: Array, limit: Array, reference: float, response: float) -> float:
+    """The part of the response that is unsure because the force of a friction is no sine.
+
+    The third harmonic of all frictions moves each of them, by `third`, the frequency response at three times the
+    frequency; relative to its own velocity that is the angle by which its force may be turned. Infinite where one is
+    neither weak nor held.
+    """
+    G, slipping, hold = work
+    count = limit.size
+    damper, moved = np.empty(count), np.zeros(count)
+    for j in range(count):
+        if hold[j] >= _STICKS:
+            damper[j] = _LOCK * reference
+        elif hold[j] <= _WEAK:
+            damper[j] = limit[j] / abs(slipping[j]) - reference
+        else:
+            return np.inf
+    M, column = np.empty((count, count), np.complex128), np.empty(count, np.complex128)
+    pivots, influence = np.empty(count, np.int64), np.zeros(count)
+    for harmonic in (1, 3):
+        response_of = G if harmonic == 1 else third
+        for j in range(count):
+            for k in range(count):
+                M[j, k] = -response_of[1 + j, 1 + k] * damper[k]
+            M[j, j] += 1.0
+        if not factor(M, pivots):
+            return np.inf
+        for j in range(count):
+            if hold[j] >= _STICKS:
+                continue
+            for k in range(count):
+                column[k] = response_of[1 + k, 1 + j]
+            solve(M, pivots, column)
+            total = response_of[0, 1 + j]
+            for k in range(count):
+                total += response_of[0, 1 + k] * damper[k] * column[k]
+                moved[k] += abs(column[k]) * limit[j] / 3.0 if harmonic == 3 else 0.0
+            if harmonic == 1:
+                influence[j] = abs(total) * limit[j] / response
+    unsure = 0.0
+    for j in range(count):
+        if hold[j] < _STICKS:
+            unsure += influence[j] * min(moved[j] / abs(slipping[j]), 1.0)
+    return unsure
+
+
+@part()
+def gain_at(system: Array, omega: float, limit: Array, amplitude: float, reference: float, work: Array) -> Any:
+    """Gain at one frequency, infinite at a pole, and whether it settled."""
     A, B, C, D, scale = system
-    if not transfer(A, B, C, D, scale, omega, G):
+    if not transfer(A, B, C, D, scale, omega, work[0]):
         return np.inf, True
-    return balance(G, limit, amplitude, reference)
+    return balance(work, limit, amplitude, reference)
 
 
 @part()
@@ -229,23 +287,23 @@ def merged(grid: Array, values: Array, points: Array, new: Array) -> Any:
 
 
 @part()
-def top(system: Array, low: float, high: float, limit: Array, amplitude: float, reference: float, G: Array) -> float:
+def top(system: Array, low: float, high: float, limit: Array, amplitude: float, reference: float, work: Array) -> float:
     """Where the gain is largest between `low` and `high`, by golden section."""
     width = 1e-10 * high
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     ga, gb = (
-        gain_at(system, a, limit, amplitude, reference, G)[0],
-        gain_at(system, b, limit, amplitude, reference, G)[0],
+        gain_at(system, a, limit, amplitude, reference, work)[0],
+        gain_at(system, b, limit, amplitude, reference, work)[0],
     )
     while high - low > width and not (high - low < 1e6 * width and abs(ga - gb) < 1e-13 * ga):
         if ga > gb:
             high, b, gb = b, a, ga
             a = high - _GOLDEN * (high - low)
-            ga = gain_at(system, a, limit, amplitude, reference, G)[0]
+            ga = gain_at(system, a, limit, amplitude, reference, work)[0]
         else:
             low, a, ga = a, b, gb
             b = low + _GOLDEN * (high - low)
-            gb = gain_at(system, b, limit, amplitude, reference, G)[0]
+            gb = gain_at(system, b, limit, amplitude, reference, work)[0]
     return 0.5 * (low + high)
 
 
@@ -275,7 +333,7 @@ def peaks(
     descriptor: Array,
     amplitude: float,
     reference: float,
-    G: Array,
+    work: Array,
 ) -> Any:
     """Frequencies and values of the local maxima of the gain, 0 standing for the limit of low frequencies; all well.
 
@@ -290,7 +348,7 @@ def peaks(
     for _ in range(6):
         new = np.empty(points.size)
         for k in range(points.size):
-            new[k], settled = gain_at(system, points[k], limit, amplitude, reference, G)
+            new[k], settled = gain_at(system, points[k], limit, amplitude, reference, work)
             fine = fine and settled
         grid, values = merged(grid, values, points, new)
         points = finer(grid, values)
@@ -303,16 +361,16 @@ def peaks(
             continue
         if k == 0:
             lower = 1e-5 * grid[0]
-            omegas[0], found[0] = 0.0, gain_at(system, lower, limit, amplitude, reference, G)[0]
+            omegas[0], found[0] = 0.0, gain_at(system, lower, limit, amplitude, reference, work)[0]
             if found[0] > 2.0 * values[0]:
                 found[0] = np.inf
         else:
             high = grid[k + 1] if k < grid.size - 1 else grid[k]
-            omegas[number] = top(system, grid[k - 1], high, limit, amplitude, reference, G)
-            found[number] = gain_at(system, omegas[number], limit, amplitude, reference, G)[0]
+            omegas[number] = top(system, grid[k - 1], high, limit, amplitude, reference, work)
+            found[number] = gain_at(system, omegas[number], limit, amplitude, reference, work)[0]
             if values[k] > found[number]:
                 omegas[number], found[number] = grid[k], values[k]
-            beside = gain_at(system, omegas[number] * (1.0 + _WIDTH), limit, amplitude, reference, G)[0]
+            beside = gain_at(system, omegas[number] * (1.0 + _WIDTH), limit, amplitude, reference, work)[0]
             if found[number] > 100.0 * beside:  # a resonance that friction cannot hold
                 found[number] = np.inf
         number += 1
@@ -329,19 +387,24 @@ def gains(
     reference: float,
     omegas: Array,
 ) -> Any:
-    """Frequencies, the gain at each, and whether all went well: at `omegas`, or at the `peaks` where none is given.
+    """Frequencies, the gain at each, whether all went well, and whether one harmonic tells what friction does there.
 
-    There are none where the system cannot be closed.
+    At `omegas`, or at the `peaks` where none is given, which are not judged. There are none where the system cannot be
+    closed.
     """
     A, B, C, D, _, _, good = close(row, descriptor)
     if not good:
-        return np.zeros(0), np.zeros(0), False
+        return np.zeros(0), np.zeros(0), False, False
     system = (A, B, C, D, units(A))
-    G = np.empty((C.shape[0], B.shape[1]), np.complex128)
+    G, third = np.empty((C.shape[0], B.shape[1]), np.complex128), np.empty((C.shape[0], B.shape[1]), np.complex128)
+    work = (G, np.empty(limit.size, np.complex128), np.empty(limit.size))
     if omegas.size == 0:
-        return peaks(system, row, limit, dampers, descriptor, amplitude, reference, G)
-    values, fine = np.empty(omegas.size), True
+        found, heights, fine = peaks(system, row, limit, dampers, descriptor, amplitude, reference, work)
+        return found, heights, fine, True
+    values, fine, sure = np.empty(omegas.size), True, True
     for k in range(omegas.size):
-        values[k], settled = gain_at(system, omegas[k], limit, amplitude, reference, G)
+        values[k], settled = gain_at(system, omegas[k], limit, amplitude, reference, work)
         fine = fine and settled
-    return omegas, values, fine
+        sure = sure and transfer(*system, 3.0 * omegas[k], third)
+        sure = sure and distortion(work, third, limit, reference, values[k] * amplitude) <= _SMALL
+    return omegas, values, fine, sure

@@ -11,9 +11,12 @@ from inerter.kernels import part
 Array = Any  # compiled code is typed when it is compiled
 
 
-@part()
+@part(borrowing=True)
 def factor(A: Array, pivots: Array) -> bool:
-    """LU factors of A in its place, with partial pivoting; False if A is singular. Rows should be of like size."""
+    """LU factors of A in its place, with partial pivoting; False if A is singular. Rows should be of like size.
+
+    The inverse of each pivot stands in its place: a product costs a tenth of a quotient.
+    """
     n = A.shape[0]
     for k in range(n):
         best, row = abs(A[k, k]), k
@@ -28,6 +31,7 @@ def factor(A: Array, pivots: Array) -> bool:
             for j in range(n):
                 A[k, j], A[row, j] = A[row, j], A[k, j]
         inverse = 1.0 / A[k, k]
+        A[k, k] = inverse
         for i in range(k + 1, n):
             if A[i, k] != 0.0:
                 ratio = A[i, k] * inverse
@@ -37,7 +41,7 @@ def factor(A: Array, pivots: Array) -> bool:
     return True
 
 
-@part()
+@part(borrowing=True)
 def solve(LU: Array, pivots: Array, b: Array) -> None:
     """Solve A x = b; b becomes x."""
     n = LU.shape[0]
@@ -54,15 +58,38 @@ def solve(LU: Array, pivots: Array, b: Array) -> None:
         total = b[i]
         for j in range(i + 1, n):
             total -= LU[i, j] * b[j]
-        b[i] = total / LU[i, i]
+        b[i] = total * LU[i, i]
 
 
-@part()
+@part(borrowing=True)
+def solve_rows(LU: Array, pivots: Array, X: Array) -> None:
+    """Solve A Y = X for all columns at once; X becomes Y."""
+    n, m = X.shape
+    for k in range(n):
+        row = pivots[k]
+        if row != k:
+            for j in range(m):
+                X[k, j], X[row, j] = X[row, j], X[k, j]
+    for i in range(n):
+        for k in range(i):
+            if LU[i, k] != 0.0:
+                for j in range(m):
+                    X[i, j] -= LU[i, k] * X[k, j]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            if LU[i, k] != 0.0:
+                for j in range(m):
+                    X[i, j] -= LU[i, k] * X[k, j]
+        for j in range(m):
+            X[i, j] *= LU[i, i]
+
+
+@part(borrowing=True)
 def solve_transposed(LU: Array, pivots: Array, b: Array) -> None:
     """Solve A^T x = b (no conjugation); b becomes x."""
     n = LU.shape[0]
     for i in range(n):
-        total = b[i] / LU[i, i]
+        total = b[i] * LU[i, i]
         b[i] = total
         for j in range(i + 1, n):
             b[j] -= LU[i, j] * total
@@ -76,7 +103,7 @@ def solve_transposed(LU: Array, pivots: Array, b: Array) -> None:
             b[k], b[row] = b[row], b[k]
 
 
-@part()
+@part(borrowing=True)
 def matmul(A: Array, B: Array, out: Array) -> None:
     """Multiply: out = A B."""
     for i in range(A.shape[0]):
@@ -89,7 +116,7 @@ def matmul(A: Array, B: Array, out: Array) -> None:
                     out[i, j] += a * B[k, j]
 
 
-@part()
+@part(borrowing=True)
 def copy(source: Array, target: Array) -> None:
     """Copy a matrix: an assignment to a slice would compile for a second, for the sake of its error message."""
     for i in range(source.shape[0]):
@@ -123,7 +150,7 @@ def merge(first: Array, second: Array) -> Array:
 
 @part()
 def exponential(X: Array, N: Array, with_derivative: bool) -> Any:
-    """exp(X), and its derivative in the direction N, by a Taylor series of a scaled X and repeated squaring."""
+    """exp(X) by a Taylor series of a scaled X and repeated squaring, its derivative in the direction N, how often."""
     n = X.shape[0]
     norm = 0.0
     for i in range(n):
@@ -162,4 +189,4 @@ def exponential(X: Array, N: Array, with_derivative: bool) -> Any:
                     L[i, j] = work[i, j] + dwork[i, j]
         matmul(E, E, work)
         copy(work, E)
-    return E, L
+    return E, L, squarings

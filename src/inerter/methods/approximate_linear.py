@@ -14,16 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, IndicatorError, MechanismError, Status, StatusKind
+from inerter.errors import OK, IndicatorError, Status, StatusKind
 from inerter.indices.index import Combination, Index, Question
 from inerter.methods.averages import interval_of
+from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
 from inerter.methods.excitation import Drive, Excitation, MultisineExcitation, NoiseExcitation
-from inerter.methods.gains import LinearModel, Runs, largest_gain
-from inerter.methods.linear import CONVENTIONS, LinearProblem, arrivals, check_conventions, corner_of, linear_problem
+from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
+from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, corner_of, linear_problem
 from inerter.methods.method import Estimate, Objective
+from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.networks.elements import Friction, Gap
-from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak
 from inerter.systems.descriptor import close
 from inerter.systems.graph import full_graph
@@ -34,7 +35,9 @@ from inerter.vehicle.mechanism import Mechanism
 Array = NDArray[np.float64]
 _ROAD_RMS = math.sqrt(1e-8 / 1e-3)  # [m] noise of 1e-8 m^2/Hz, held for 1 ms
 _FORCE_RMS = math.sqrt(200.0 / 1e-3) / 181.75  # [N/kg] 200 N^2/Hz on the quarter car, twice the size on the half car
-_DECAYED = math.log(100.0)  # what a period must take off the linear model's motions for its harmonics to resolve them
+_LOST = 1e-2  # of a mean square that may hide between the harmonics, beyond which nothing is known
+_UNLIKE = "no linear design resembles the motion: gains stand alone, up to the highest frequency excited"
+_HELD = "noise is held: gains at the instants of its samples stand alone"
 _MOST = 1000  # realisations
 
 
@@ -47,11 +50,11 @@ class ApproximateLinear:
     the body that the force acts on, from 0.1 to 500 Hz.
 
     With the conventions "exact", squared gains are mean |Y|^2 over mean |U|^2 over `realisations`. Of those of the
-    linear model of the same design (no friction, gaps closed), which are known, only the difference is estimated: an
-    r.m.s. value is the root of norm^2 + sum of (gain^2 - linear gain^2), and for a peak gain the difference alone is
-    smoothed over neighbouring frequencies, by a Hann window that reaches `smoothing` [Hz] to both sides. Where there
-    is no linear model, or its motions outlast the period, gains stand alone, and a note says so. A linear design gets
-    its norm.
+    linear design that moves alike (frictions as dampers of the r.m.s. velocities found, gaps closed), which are known,
+    only the difference is estimated: an r.m.s. value is the root of norm^2 + sum of (gain^2 - linear gain^2), and for a
+    peak gain the difference alone is smoothed over neighbouring frequencies, by a Hann window that reaches `smoothing`
+    [Hz] to both sides. Where play moves as no linear design does, gains stand alone, and a note says so; where the
+    period is too short for the slowest motion, there is no value. A linear design gets its norm.
 
     With "paper2008" the input is the paper's noise, held for 1 ms and repeated after 100 s, and gains are the raw
     ratios |Y/U| at the instants of the samples, without the linear model; J3 of a half car is divided by s + 2 pi
@@ -59,9 +62,10 @@ class ApproximateLinear:
     friction adds what is not of the input: |U| may come close to zero. Peak gains are smoothed here too, as mean |Y|^2
     over mean |U|^2: the largest of 50 000 raw ratios says nothing of the design.
 
-    `seed` decides the realisations, which are the same for every design. The standard error is that of the mean (or
-    median) over realisations, the interval Student's. `relative_error` asks for realisations until the standard error
-    is below that part of the value.
+    `seed` decides the realisations, which are the same for every design. The standard error is that of the mean over
+    realisations, the interval Student's; that of a median is from the scatter of logarithms, which has an expectation
+    where that of raw ratios has none. `relative_error` asks for realisations until the standard error is below that
+    part of the value.
 
     Raises `IndicatorError` for settings that cannot be.
 
@@ -110,13 +114,13 @@ class ApproximateLinear:
         questions = [index.question(mechanism) for index in indices]
         if not always and not _is_nonlinear(mechanism):
             return [self._known(mechanism, question) for question in questions]
-        linears = [_linear_model(mechanism, question, self.conventions) for question in questions]
+        linears = [self._counterpart(mechanism, question) for question in questions]
         drives = [self._drive(mechanism, question) for question in questions]
-        system, runs = piecewise(vehicle), dict[Drive, Runs]()
+        (system, frictions), runs = with_velocities(piecewise(vehicle)), dict[Drive, Runs]()
         for question, drive in zip(questions, drives, strict=True):
             names = runs[drive].outputs if drive in runs else ()
             names = tuple(dict.fromkeys((*names, *(output.output for output in question.outputs))))
-            runs[drive] = Runs(system, drive, names, int(self.seed))
+            runs[drive] = Runs(system, drive, names, frictions, int(self.seed))
         return [
             self._answer(question, linear, runs[drive])
             for question, linear, drive in zip(questions, linears, drives, strict=True)
@@ -135,6 +139,10 @@ class ApproximateLinear:
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:
         """The index as a function of the free values: one estimate a point, on the same realisations everywhere."""
         return SampledObjective(self.estimate, vehicle, index)
+
+    def fixed(self, realisations: int, period: int | None = None) -> ApproximateLinear:
+        """The same with so many realisations; their length is that of the excitation."""
+        return replace(self, realisations=realisations, relative_error=None)
 
     @property
     def _raw(self) -> bool:
@@ -157,12 +165,14 @@ class ApproximateLinear:
         inputs = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
         return Drive(excitation, rms, tuple(delays.get(name) for name in inputs))
 
-    def _answer(self, question: Question, linear: LinearModel | None, runs: Runs) -> Estimate:
-        if linear is not None and linear.status.kind is StatusKind.DIRECT_TERM:
-            return Estimate(math.inf, question.unit, linear.status)
-        known, notes = self._control(linear, runs.drive)
+    def _counterpart(self, mechanism: Mechanism, question: Question) -> Counterpart | None:
+        """What the linear design that moves alike is made from; None where none may serve."""
+        return None if self._raw else counterpart(mechanism, question, CONVENTIONS[self.conventions])
+
+    def _answer(self, question: Question, linear: Counterpart | None, runs: Runs) -> Estimate:
+        notes: tuple[str, ...] = ()
         if question.amplitude is not None:
-            notes = (*notes, "the amplitude of a sine says nothing here: the excitation has its own size")
+            notes = ("the amplitude of a sine says nothing here: the excitation has its own size",)
         count, estimate = int(self.realisations), None
         while estimate is None or not self._is_settled(estimate, count):
             count = count if estimate is None else min(2 * count, _MOST)
@@ -172,11 +182,30 @@ class ApproximateLinear:
             places = [runs.outputs.index(output.output) for output in question.outputs]
             pooled = not self._raw or question.combination is Combination.PEAK_GAIN
             gains = _gains(squares[:, places], inputs[:, None], pooled)
-            estimate = self._combine(question, known, gains * self._filter(question, runs.drive), runs.drive)
-        status = runs.warning
+            estimate = self._from_gains(question, linear, gains * self._filter(question, runs.drive), runs)
+        status = worst([estimate.status, runs.warning])
         if status.ok and self.relative_error is not None and not self._reached(estimate):
             status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
-        return replace(estimate, status=status, notes=notes)
+        return replace(estimate, status=status, notes=(*estimate.notes, *notes))
+
+    def _from_gains(self, question: Question, linear: Counterpart | None, gains: Array, runs: Runs) -> Estimate:
+        """The index from squared gains, with what is known of the linear design that moves alike if there is one."""
+        drive = runs.drive
+        if self._raw:
+            return self._combine(question, None, gains, drive)
+        if linear is None or drive.excitation.is_held:
+            return replace(self._combine(question, None, gains, drive), notes=(_HELD if linear else _UNLIKE,))
+        model = linear_model(linear, runs.speeds, drive.excitation.period)
+        if not model.status.ok:
+            return Estimate(math.inf if np.any(np.isinf(model.norms)) else math.nan, question.unit, model.status)
+        unseen = model.unseen(gains.mean(axis=0), drive.omega)
+        if unseen <= _LOST:
+            return self._combine(question, model, gains, drive, unseen)
+        if has_play(runs.system):
+            return replace(self._combine(question, None, gains, drive), notes=(_UNLIKE,))
+        motion = f"the motion at {abs(model.pole.imag):.3g} rad/s, which decays by {-model.pole.real:.2g} 1/s"
+        message = f"a period of {drive.excitation.period:g} s is too short for {motion}: take a longer one"
+        return Estimate(math.nan, question.unit, Status(StatusKind.INACCURATE, message))
 
     def _is_settled(self, estimate: Estimate, count: int) -> bool:
         return self.relative_error is None or count >= _MOST or self._reached(estimate)
@@ -184,18 +213,6 @@ class ApproximateLinear:
     def _reached(self, estimate: Estimate) -> bool:
         error, asked = estimate.standard_error or 0.0, self.relative_error or math.inf
         return error <= asked * estimate.value
-
-    def _control(self, linear: LinearModel | None, drive: Drive) -> tuple[LinearModel | None, tuple[str, ...]]:
-        """The linear model if it can serve, and what to say if not."""
-        if self._raw:
-            return None, ()
-        if linear is None:
-            return None, ("there is no linear model: gains stand alone, up to the highest frequency excited",)
-        if drive.excitation.is_held:
-            return None, ("noise is held: gains at the instants of its samples stand alone, without the linear model",)
-        if not linear.status.ok or linear.slowest * drive.excitation.period < _DECAYED:
-            return None, ("motions of the linear model outlast the period: gains stand alone, without it",)
-        return linear, ()
 
     def _filter(self, question: Question, drive: Drive) -> Array:
         """From the squared gain to what the index adds up, at the excited frequencies."""
@@ -205,34 +222,39 @@ class ApproximateLinear:
         corner = corner_of(question, delays, CONVENTIONS[self.conventions]) or 0.0
         return np.asarray(1.0 / (drive.omega**2 + corner**2))
 
-    def _combine(self, question: Question, known: LinearModel | None, gains: Array, drive: Drive) -> Estimate:
-        """The index from squared gains (realisations, outputs, harmonics)."""
+    def _combine(
+        self, question: Question, known: LinearModel | None, gains: Array, drive: Drive, unseen: float = 0.0
+    ) -> Estimate:
+        """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`."""
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
         scale = 1.0 if question.road is None else question.road.velocity_intensity
         weights = scale * np.array([abs(output.weight) for output in question.outputs])
         if question.combination is Combination.PEAK_GAIN:
             weight = float(weights[0])
-            value, scatter, found = largest_gain(rest[:, 0], lines, known, drive.omega, self._window(drive.omega))
-            value, scatter = weight * value, weight * scatter
+            windows = [self._window(drive.omega, times) for times in (1.0, 2.0)]
+            (value, scatter, found), (wider, *_) = (
+                largest_gain(rest[:, 0], lines, known, drive.omega, window) for window in windows
+            )
+            value, scatter, smeared = weight * value, weight * scatter, weight * abs(wider - value)
             peaks = tuple(Peak(peak.omega, weight * peak.gain) for peak in found)
         else:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
-            value, peaks = float(weights @ sizes), ()
+            value, peaks, smeared = float(weights @ sizes), (), 0.0
             scatter = (sums - sums.mean(axis=0)) @ (0.5 * weights / np.maximum(sizes, 1e-300))
             if self._raw:
-                single = np.sqrt(sums) @ weights
-                value = float(np.median(single))
-                scatter = math.sqrt(0.5 * math.pi) * (single - single.mean())
+                logs = np.log(np.sqrt(sums) @ weights)  # a standard error of raw ratios has no expectation, theirs has
+                value = float(np.exp(np.median(logs)))
+                scatter = math.sqrt(0.5 * math.pi) * value * (logs - logs.mean())
         count = scatter.size
-        error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
+        error = math.hypot(np.sqrt(np.sum(scatter**2) / (count * (count - 1))), 0.5 * unseen * value, smeared)
         interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())
         return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples)
 
-    def _window(self, omega: Array) -> Array:
-        reach = min(int(2.0 * math.pi * self.smoothing / omega[0] * (1.0 + 1e-9)), (omega.size - 1) // 2)
+    def _window(self, omega: Array, times: float) -> Array:
+        reach = min(int(2.0 * math.pi * times * self.smoothing / omega[0] * (1.0 + 1e-9)), (omega.size - 1) // 2)
         window: Array = np.hanning(2 * reach + 3)[1:-1]
         return np.asarray(window / window.sum())
 
@@ -247,22 +269,6 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
     size = inputs.mean(axis=0)
     ratio = outputs.mean(axis=0) / size
     return np.asarray(ratio + (outputs - ratio * inputs) / size)
-
-
-def _linear_model(mechanism: Mechanism, question: Question, conventions: str) -> LinearModel | None:
-    """The linear model of a mechanism, or None where friction or a gap alone holds something."""
-    try:
-        problem: LinearProblem = linear_problem(mechanism, question, CONVENTIONS[conventions])
-        system = problem.system(close(problem.descriptor, {}))
-    except MechanismError:
-        if not _is_nonlinear(mechanism):
-            raise
-        return None
-    slowest = float(-np.linalg.eigvals(system.A).real.max(initial=-math.inf))
-    if question.combination is Combination.PEAK_GAIN:
-        return LinearModel(system, np.full(1, np.inf), slowest, OK)
-    norms = h2(system, problem.pade_order)
-    return LinearModel(system, norms.outputs, slowest, norms.status)
 
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:

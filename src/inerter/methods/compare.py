@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import hypot
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import Status
 from inerter.indices.index import Index
 from inerter.methods.averages import interval_of, mean_and_error
-from inerter.methods.method import Controlled, Estimate, Method, evaluate
+from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
 from inerter.vehicle.cars import Vehicle
 
 _FEWEST = 4  # samples for a regression
@@ -68,11 +67,11 @@ def compare(
 ) -> Comparison:
     """Two designs by one index and one method, with the standard error of their difference.
 
-    A method that averages drives both over the same roads, as many for both, and the difference is averaged road by
-    road: what the roads do to both alike cancels. What friction does to first order, which is quickly computed, is
-    averaged over many more roads by `ExpectedValue`, and only the rest over these (a control variate).
-    Standard errors of numbers without samples add up as independent ones. `known` is the estimate of the second by this
-    very method, if it is there already.
+    A method that averages drives both over the same roads, as many and as long for both, and the difference is averaged
+    road by road: what the roads do to both alike cancels. What friction does to first order, which is quickly
+    computed, is averaged over many more roads by `ExpectedValue`, and only the rest over these (a control variate).
+    Standard errors of numbers without samples add up as independent ones. `known` is the estimate of the second by
+    this very method, if it is there already.
 
     Raises what `evaluate` raises.
 
@@ -88,12 +87,14 @@ def compare(
     (-0.3, True)
     """
     one, other = evaluate(first, index, method), known or evaluate(second, index, method)
-    most = max(one.realisations, other.realisations)
-    if min(one.realisations, other.realisations) < most and hasattr(method, "realisations"):
-        settled: Any = replace(method, realisations=most, relative_error=None)  # type: ignore[type-var]
+    most, longest = max(one.realisations, other.realisations), max(one.period or 0, other.period or 0) or None
+    if most > 0 and isinstance(method, Averaging):
+        method = method.fixed(most, longest)
         one, other = (
-            estimate if estimate.realisations in (0, most) else evaluate(design, index, settled)
-            for estimate, design in ((one, first), (other, second))
+            found
+            if found.realisations in (0, most) and found.period in (None, longest)
+            else evaluate(design, index, method)
+            for found, design in ((one, first), (other, second))
         )
     controls: list[Controls | None] = []
     if most > 0 and isinstance(method, Controlled):
@@ -115,7 +116,9 @@ def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | 
         error = hypot(one.standard_error or 0.0, other.standard_error or 0.0)
         return Difference(value, one.unit, error, interval_of(value, error, max(count, samples[1].size)))
     differences = samples[0] - samples[1]
-    value, error, interval = mean_and_error(differences)
+    mean, error, _ = mean_and_error(differences)
+    value = one.value - other.value  # which may be roots of mean squares
+    interval = interval_of(value, error, count)
     if count < _FEWEST or len(controls) != 2 or controls[0] is None or controls[1] is None:
         return Difference(value, one.unit, error, interval)
     here, more = (a - b for a, b in zip(*controls, strict=True))
@@ -126,7 +129,7 @@ def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | 
     if spread == 0.0:
         return Difference(value, one.unit, error, interval)
     slope = float(centred @ differences) / spread
-    rest = differences - value - slope * centred
+    rest = differences - mean - slope * centred
     variance = float(rest @ rest) / (count - 2) * (1.0 / count + shift**2 / spread)
     error = float(np.sqrt(variance + slope**2 * np.var(more, ddof=1) / more.size))
     value += slope * shift

@@ -1,8 +1,8 @@
 """`Norm` for many designs of one layout, and for the optimiser: the same numbers from compiled code.
 
-The compiled path serves designs that decay and pass no white noise straight through, which the topology decides. It
-is tried at one design with the exact norms; where it does not serve, and for the single design at which it fails, the
-exact norms answer instead, so that no number is silently wrong.
+Compiled code serves outputs whose norm is finite, which the topology decides: it is asked at one design without special
+values. The single design at which double precision is not sure goes to the norms without rounding, so that no number is
+silently wrong.
 """
 
 from __future__ import annotations
@@ -15,17 +15,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import Status, StatusKind
 from inerter.indices.index import Combination, Question
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
+from inerter.methods.method import Estimate
 from inerter.norms.delay import pade
+from inerter.norms.exact import h2_exactly
 from inerter.norms.h2 import h2
 from inerter.systems.descriptor import Descriptor, close
+from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+_ASIDE = 0.0137  # relative distance from the middle of the bounds, another one for each value
+_ASTRIDE, _SAME_SLOPE = 1e-4, 1e-7  # relative distance at which a gradient is looked at, and what it may be off by
+_FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +45,16 @@ class CompiledQuestion:
         """The descriptor's arrays in the order in which compiled code takes them."""
         names = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
         return tuple(np.ascontiguousarray(getattr(self.problem.descriptor, name), dtype=float) for name in names)
+
+    @cached_property
+    def twofold(self) -> tuple[Array, Array]:
+        """S, [R F], Y_eta and [Y_x Y_u] in a row, and what rounding has taken: no entries where that is nothing."""
+        d = self.problem.descriptor
+        stacks = (d.S, np.concatenate([d.R, d.F], axis=2), d.Y_eta, np.concatenate([d.Y_x, d.Y_u], axis=2))
+        stack = np.concatenate([part.reshape(part.shape[0], -1) for part in stacks], axis=1)
+        rounded = np.ascontiguousarray(stack, dtype=float)
+        lost = np.ascontiguousarray(stack - rounded, dtype=float)
+        return rounded, lost if lost.any() else np.zeros((0, 0))
 
     @cached_property
     def arrivals(self) -> tuple[Array, NDArray[np.complex128], NDArray[np.complex128], float]:
@@ -63,84 +78,108 @@ class CompiledQuestion:
         return self.problem.question.combination is Combination.PEAK_GAIN
 
     @cached_property
-    def serves(self) -> bool:
-        """Whether compiled code may be used for this topology, judged at the middle of the bounds."""
+    def serves(self) -> NDArray[np.bool_]:
+        """Which outputs compiled code may value: those that are finite at a design beside the middle of the bounds."""
         middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._variables.items()}
-        return bool(self._exact(np.array(list(middle.values()))).status.ok)
+        special = np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1))
+        if self.is_peak:
+            return np.array([self._exact(special).status.ok])
+        return np.asarray(~np.isinf(self._norms(special)))
 
     @property
     def _variables(self) -> dict[str, Any]:
         return dict(self.problem.descriptor.variables)
 
-    def _exact(self, point: Array) -> Any:
-        values = dict(zip(self._variables, point.tolist(), strict=True))
-        return self.problem.estimate(close(self.problem.descriptor, values))
+    def _closed(self, point: Array) -> LinearSystem:
+        return close(self.problem.descriptor, dict(zip(self._variables, point.tolist(), strict=True)))
+
+    def _exact(self, point: Array) -> Estimate:
+        return self.problem.estimate(self._closed(point))
+
+    def _norms(self, point: Array) -> Array:
+        return h2(self.problem.system(self._closed(point)), self.problem.pade_order).outputs
+
+    def _exact_norms(self, point: Array) -> Array:
+        return h2_exactly(self.problem.system(self._closed(point)), self.problem.pade_order)[0]
 
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`, for a search: infinite where compiled code cannot tell.
+        """The index at each row of `points`, for a search: infinite where it is not known.
 
-        Those are designs with hardly any damping, which no search wants; to value them exactly would cost more than
-        all the others.
+        Where compiled code is not sure there is hardly any damping, or nearly a rigid link, which few searches want. So
+        such designs are valued without rounding only where there are few others to choose from.
         """
-        values = self._compiled(points) if self.serves else self.known(points)
+        values = self._compiled(points)
+        unsure = np.flatnonzero(np.isnan(values))
+        if points.shape[0] <= _FEW or unsure.size > 0.9 * points.shape[0]:
+            values[unsure[:_MOST_EXACT]] = self.known(points[unsure[:_MOST_EXACT]])
         return np.where(np.isnan(values), np.inf, values)
 
     def known(self, points: Array) -> Array:
-        """The index at each row of `points`, from the exact norms where need be; nan where rounding decides."""
+        """The index at each row of `points`; infinite where it is, nan where it is not known."""
         if not self.is_peak:
             return np.asarray(self.output_norms(points) @ self.problem.weights)
         result = self._compiled(points)
         for i in np.flatnonzero(np.isnan(result)):
-            estimate = self._exact(points[i])
-            result[i] = np.nan if _is_lost(estimate.status) else estimate.value
+            result[i] = self._exact(points[i]).value
         return result
 
     def output_norms(self, points: Array) -> Array:
         """Norms (designs, outputs) at each row of `points`, for an index of r.m.s. values."""
         result = self._compiled_norms(points)
         for i in np.flatnonzero(np.isnan(result).any(axis=1)):
-            values = dict(zip(self._variables, points[i].tolist(), strict=True))
-            system = self.problem.system(close(self.problem.descriptor, values))
-            exact = h2(system, self.problem.pade_order)
-            result[i] = np.nan if _is_lost(exact.status) else exact.outputs
+            result[i] = self._norms(points[i])
         return result
 
     def _compiled(self, points: Array) -> Array:
-        """The index by compiled code alone; nan where it cannot tell."""
+        """The index by compiled code alone; infinite where the topology makes it so, nan where it is not sure."""
         if not self.is_peak:
             return np.asarray(self._compiled_norms(points) @ self.problem.weights)
-        if not self.serves:
-            return np.full(points.shape[0], np.nan)
-        largest = gain_kernels.peaks_of(points, self.descriptor)[1].max(axis=1)
+        if not self.serves[0]:
+            return np.full(points.shape[0], np.inf)
+        largest = gain_kernels.peaks_of(points, self.descriptor, self.twofold)[1].max(axis=1)
         return np.where(np.isfinite(largest), largest * self.problem.weights[0], np.nan)
 
     def _compiled_norms(self, points: Array) -> Array:
-        if not self.serves:
-            return np.full((points.shape[0], len(self.problem.descriptor.outputs)), np.nan)
-        norms, _, good = h2_kernels.norms(points, self.descriptor, self.arrivals, self.corner, np.empty(0))
-        norms[~good] = np.nan
-        return np.asarray(norms)
+        result = np.full((points.shape[0], self.serves.size), np.inf)
+        if np.all(self.serves):
+            arguments = self.descriptor, self.twofold, self.arrivals, self.corner
+            norms, _, good = h2_kernels.norms(points, *arguments, np.empty(0))
+            norms[~good] = np.nan
+            return np.asarray(norms)
+        if np.any(self.serves):
+            result[:, self.serves] = CompiledQuestion(self.problem.part(self.serves))._compiled_norms(points)
+        return result
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
-        """An index of r.m.s. values and its gradient; by differences where compiled code does not serve."""
-        if self.serves:
-            weights = self.problem.weights
-            norms, gradients, good = h2_kernels.norms(point[None], self.descriptor, self.arrivals, self.corner, weights)
-            if good[0]:
-                return float(norms[0] @ weights), gradients[0]
-        return self._exact(point).value, self._difference(point)
-
-    def _difference(self, point: Array) -> Array:
+        """An index of r.m.s. values and its gradient: by differences of exact values where compiled code is unsure."""
+        weights = self.problem.weights
+        if np.all(self.serves):
+            arguments = self.descriptor, self.twofold, self.arrivals, self.corner
+            norms, gradients, good = h2_kernels.norms(point[None], *arguments, weights)
+            value = float(norms[0] @ weights)
+            if good[0] and self._confirmed(point, value, gradients[0], arguments):
+                return value, gradients[0]
         steps = 1e-5 * point * np.eye(point.size)
-        ends = self.values(np.vstack([point + steps, point - steps]))
+        places = np.vstack([point[None], point + steps, point - steps])
+        values = np.array([self._exact_norms(place) @ weights for place in places])
         with np.errstate(invalid="ignore"):  # infinite on both sides: no gradient
-            return np.asarray((ends[: point.size] - ends[point.size :]) / (2e-5 * point))
+            slopes = (values[1 : 1 + point.size] - values[1 + point.size :]) / (2e-5 * point)
+        return float(values[0]), slopes
+
+    def _confirmed(self, point: Array, value: float, gradient: Array, arguments: tuple[Any, Any, Any, float]) -> bool:
+        """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
+        direction = np.cos(1.0 + np.arange(point.size))
+        ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
+        norms, _, good = h2_kernels.norms(ends, *arguments, np.empty(0))
+        ahead, behind = norms @ self.problem.weights
+        slope = (ahead - behind) / (2.0 * _ASTRIDE)
+        return bool(np.all(good)) and abs(slope - (gradient * point) @ direction) <= _SAME_SLOPE * value
 
     def active(self, point: Array) -> Array | None:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""
         if not self.is_peak:
             return None
-        omegas, gains = (found[0] for found in gain_kernels.peaks_of(point[None], self.descriptor))
+        omegas, gains = (found[0] for found in gain_kernels.peaks_of(point[None], self.descriptor, self.twofold))
         peaks = np.isfinite(omegas)
         if not peaks.any():  # equal poles have no partial fractions
             return np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])
@@ -157,7 +196,7 @@ class CompiledQuestion:
 def evaluate_problems(
     mechanism: Mechanism, questions: Sequence[Question], conventions: Conventions, points: Mapping[str, Array]
 ) -> Array:
-    """Indices (designs, indices); questions that share road and filter share one solve a design."""
+    """Indices (designs, indices), nan where they are not ok; questions that share road and filter share one solve."""
     problems = [linear_problem(mechanism, question, conventions) for question in questions]
     groups: dict[Any, list[int]] = {}
     for i, (question, problem) in enumerate(zip(questions, problems, strict=True)):
@@ -179,11 +218,8 @@ def evaluate_problems(
         for i in members:
             columns = [places.index(o.output) for o in questions[i].outputs]
             result[:, i] = norms[:, columns] @ problems[i].weights
+    result[np.isinf(result)] = np.nan  # an infinite index has a status that is not ok
     return result
-
-
-def _is_lost(status: Status) -> bool:
-    return status.kind in (StatusKind.INACCURATE, StatusKind.FAILED)
 
 
 def _rows(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:

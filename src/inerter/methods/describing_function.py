@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, IndicatorError, Status, StatusKind
 from inerter.indices.index import Question
 from inerter.kernels import harmonic as kernels
-from inerter.methods.equivalent import Equivalent, equivalent
+from inerter.methods.equivalent import POORLY, Equivalent, equivalent
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import Peak
 from inerter.systems.descriptor import Descriptor, describe
@@ -25,6 +25,7 @@ from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _PEAKS: Array = np.empty(0)  # frequencies that are not known yet
+_NEAR = 0.5  # of the highest gain: peaks that could be the highest, since an untold one may be off by that much
 _NUDGE = 1e-6  # relative change of a value for differences
 
 
@@ -74,22 +75,31 @@ class HarmonicBalance:
         rows = np.hstack([points, dampers])[:, self.parts.order(self.descriptor)]
         return np.ascontiguousarray(rows), np.ascontiguousarray(4.0 / math.pi * self.parts.limits(points))
 
-    def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool]]:
-        """Frequencies, gains and whether all went well, at `omegas` or at the peaks, for each row of `points`."""
+    def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool, bool]]:
+        """Frequencies and gains at `omegas` or at the peaks, for each row of `points`.
+
+        Whether all went well, and whether frictions are so weak, or so strong, that one harmonic tells what they do (at
+        peaks that is not asked).
+        """
         for row, limit in zip(*self._rows(points), strict=True):
             yield kernels.gains(row, limit, self.places, self.arrays, self.amplitude, self.parts.scale, omegas)
 
-    def known(self, points: Array) -> Array:
-        """The index at each row of `points`; nan where it could not be found."""
+    def known(self, points: Array, trusted: bool = True) -> Array:
+        """The index at each row of `points`; nan where it could not be found, or is not to be `trusted`."""
         result = np.full(points.shape[0], np.nan)
-        for i, (_, gains, fine) in enumerate(self._gains(points)):
-            if fine and gains.size:
+        for i, (omegas, gains, fine, _) in enumerate(self._gains(points)):
+            if fine and gains.size and (not trusted or self._trusted(points[i], omegas, gains)):
                 result[i] = self.weight * gains.max()
         return result
 
+    def _trusted(self, point: Array, omegas: Array, gains: Array) -> bool:
+        """Whether one harmonic tells what friction does at the peaks that could be the highest."""
+        highest = np.maximum(omegas[gains >= _NEAR * gains.max()], _slowest(omegas))
+        return next(self._gains(point[None], highest))[3]
+
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`; infinite where it could not be found."""
-        known = self.known(points)
+        """The index at each row of `points`, also where it is not to be trusted; infinite where there is none."""
+        known = self.known(points, trusted=False)
         return np.where(np.isnan(known), np.inf, known)
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
@@ -102,7 +112,7 @@ class HarmonicBalance:
 
     def peaks(self, point: Array) -> tuple[tuple[Peak, ...], bool]:
         """Local maxima of the index's gain, the highest first, and whether all went well."""
-        omegas, gains, fine = next(self._gains(point[None]))
+        omegas, gains, fine, _ = next(self._gains(point[None]))
         order = np.argsort(-gains, kind="stable")
         return tuple(Peak(float(omegas[i]), self.weight * float(gains[i])) for i in order), bool(fine)
 
@@ -114,9 +124,8 @@ class HarmonicBalance:
         """Gains at the frequencies `which`, and their gradients over the free values."""
         steps = _NUDGE * np.diag(point)
         points = np.vstack([point, point + steps, point - steps])
-        low = 1e-7 * float(np.min(which[which > 0.0], initial=1.0))
         found = np.full((points.shape[0], which.size), np.nan)
-        for i, (_, gains, _) in enumerate(self._gains(points, np.maximum(which, low))):
+        for i, (_, gains, *_) in enumerate(self._gains(points, np.maximum(which, _slowest(which)))):
             found[i, : gains.size] = self.weight * gains
         ahead, behind = found[1 : 1 + point.size], found[1 + point.size :]
         return found[0], np.asarray((ahead - behind).T / (2.0 * _NUDGE * point))
@@ -127,7 +136,14 @@ class HarmonicBalance:
         result = Estimate(math.nan, self.question.unit, peaks=peaks, notes=self.descriptor.notes)
         if not peaks:
             return replace(result, status=Status(StatusKind.FAILED, "the frequency response could not be computed"))
-        status = OK if fine else Status(StatusKind.INACCURATE, "the frictions did not settle at every frequency")
+        omegas, gains = np.array([peak.omega for peak in peaks]), np.array([peak.gain for peak in peaks])
+        status = (
+            OK
+            if self._trusted(np.zeros(0), omegas, gains)
+            else Status(StatusKind.INACCURATE, f"friction as large as the forces beside it {POORLY}")
+        )
+        if not fine:
+            status = Status(StatusKind.INACCURATE, "the frictions did not settle at every frequency")
         if not np.isfinite(peaks[0].gain):
             status = Status(StatusKind.MARGINAL, "a motion that nothing holds: the gain grows without bound")
         words = [f"{said} by its describing function" for said in self.parts.frictions]
@@ -153,3 +169,8 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
         (question.outputs[0].output, *(f"{name}_velocity" for name in parts.dampers)),
     )
     return HarmonicBalance(question, descriptor, parts)
+
+
+def _slowest(omegas: Array) -> float:
+    """A frequency [rad/s] that stands for the limit of low ones beside these."""
+    return 1e-7 * float(np.min(omegas[omegas > 0.0], initial=1.0))

@@ -20,11 +20,14 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, IndicatorError
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Spring, Value
 from inerter.networks.transform import map_elements
-from inerter.systems.descriptor import Descriptor
-from inerter.systems.graph import linear_graph
-from inerter.vehicle.mechanism import Mechanism
+from inerter.systems.descriptor import Descriptor, close, describe
+from inerter.systems.graph import full_graph, linear_graph
+from inerter.vehicle.mechanism import Mechanism, Tyre
 
 Array = NDArray[np.float64]
+GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
+POORLY = "is poorly told by one damper: the value may be off by more than 3 %. Simulate it, as ExpectedValue() does"
+STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,7 @@ class Equivalent:
 
     mechanism: Mechanism
     dampers: tuple[str, ...]  # names of the dampers, as variables and as elements
+    numbers: tuple[int, ...]  # which of all frictions with a force each of them stands for
     frictions: tuple[str, ...]  # in words, for each damper
     locked: tuple[str, ...]  # in words, those replaced by a rigid link instead
     forces: tuple[Value, ...]  # of each friction [N]
@@ -80,9 +84,20 @@ def check_gaps(mechanism: Mechanism) -> None:
                 )
 
 
+def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
+    """Raises `IndicatorError` for the velocity or force of a friction: a damper has its place."""
+    frictions = [branch.label for branch in full_graph(mechanism).branches if isinstance(branch.element, Friction)]
+    for name in names:
+        if name.rpartition("_")[0] in frictions:
+            raise IndicatorError(
+                f"Statistical linearisation does not tell {name!r}: it puts a damper in the place of the friction. "
+                f"Use ExpectedValue() or ApproximateLinear(), which simulate it."
+            )
+
+
 def has_friction(mechanism: Mechanism) -> bool:
     """Whether any friction has a force."""
-    return any(_acts(element) for mount in mechanism.mounts() for element in mount.network.elements())
+    return any(acts(element) for mount in mechanism.mounts() for element in mount.network.elements())
 
 
 def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = ()) -> Equivalent:
@@ -99,7 +114,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
 
     def changed(mount: str, network: Network) -> Network:
         def damped(element: Element) -> Network:
-            if not _acts(element):
+            if not acts(element):
                 return element
             name = f"equivalent_damper_{len(found) + 1}"
             while name in taken:
@@ -123,6 +138,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     return Equivalent(
         mechanism=other,
         dampers=names,
+        numbers=tuple(list(found).index(name) for name in names),
         frictions=tuple(found[name][0] for name in names),
         locked=tuple(words for name, (words, _) in found.items() if name in locked),
         forces=tuple(found[name][1] for name in names),
@@ -131,7 +147,33 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     )
 
 
-def _acts(element: Element) -> bool:
+def slipping_freely(mechanism: Mechanism) -> frozenset[str]:
+    """The dampers of frictions that white noise passes straight to, as of one in a tyre.
+
+    With a velocity of infinite variance across them, they are zero. Only what is mounted on a road can be reached so.
+    """
+    roads = {road.name for road in mechanism.roads}
+    on_road = [m for m in mechanism.mounts() if isinstance(m, Tyre) or roads & {*m.upper, *m.lower}]
+    if not any(acts(element) for mount in on_road for element in mount.network.elements()):
+        return frozenset()
+    found: frozenset[str] = frozenset()
+    while True:
+        parts = equivalent(mechanism, found)
+        velocities = [f"{name}_velocity" for name in parts.dampers]
+        reached = _reached_directly(describe(parts.mechanism, sorted(roads), velocities))
+        if not reached:
+            return found
+        found |= {parts.dampers[i] for i in reached}
+
+
+def _reached_directly(descriptor: Descriptor) -> list[int]:
+    """Numbers of the outputs that white noise passes straight to."""
+    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in descriptor.variables.items()}
+    return [int(i) for i in np.flatnonzero(np.any(close(descriptor, middle).D != 0.0, axis=1))]
+
+
+def acts(element: Element) -> bool:
+    """Whether an element is a friction with a force, or with one still to be chosen."""
     return isinstance(element, Friction) and element.value != 0.0
 
 

@@ -6,26 +6,22 @@ import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import partial
 from numbers import Integral
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, IndicatorError, InerterError, LinearSystemError, MechanismError, Status, StatusKind
+from inerter.errors import IndicatorError, InerterError, LinearSystemError, MechanismError, StatusKind
 from inerter.indices.index import Combination, Index, Question
-from inerter.methods.averages import mean_and_error
-from inerter.methods.equivalent import has_friction
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Objective
+from inerter.methods.on_roads import mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
-from inerter.methods.realisations import Drive, check_drive, drive, realisation_seeds, squares, worst
+from inerter.methods.realisations import drive, realisation_seeds, worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
-from inerter.norms.h2 import h2
-from inerter.norms.response import modal_response
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.cars import Vehicle
@@ -33,29 +29,30 @@ from inerter.vehicle.cars import Vehicle
 Array = NDArray[np.float64]
 _DEFAULT = 8  # realisations
 _FEWEST = 8  # before the scatter of an adaptive estimate is believed
-_MOST = 1000
-_MOST_BEYOND = 0.1  # of the linear design's power that may be added for the road outside the band
 _MORE = 400  # roads on which the first-order change is averaged, which is quick
 
 
 @dataclass(frozen=True)
 class ExpectedValue:
-    """What the design does as it is, friction and gaps included: the mean over random roads, or over all sines.
+    """What the design does as it is, friction and gaps included: on random roads, or under all sines.
 
     Each of `realisations` roads (8 by default), which `seed` decides, is a multisine of eq. (17), 0.1 to 1000 Hz; the
-    design settles on it, and r.m.s. values are taken over the next period of 10 s. The value is the mean over the
-    roads of the index on each. With `relative_error`, roads are added, from 8 to 1000, until the standard error is
-    that part of the value. Designs are driven over the same roads, so that differences between them are known better
-    than either (see `compare`).
+    design settles on it, and mean squares are taken over the next period of 10 s. The value is made of the roots of
+    their means over the roads, `samples` of those on each. A design that remembers the road for longer than a period,
+    as one that is hardly damped, gets roads of 40, 160 or 640 s, with lines as much closer; `period` [s] sets their
+    length.
+    Where no such road shows a steady state, as with a strut that sticks on an undamped tyre, the value is nan. With
+    `relative_error`, roads are added, from 8 to 1000, until the standard error is that part of the value. Designs are
+    driven over the same roads, so that differences between them are known better than either (see `compare`).
 
-    Under the conventions "exact" the power of the road outside that band is added from the linear design; without
-    friction and gaps the value is therefore the norm, and is returned as such. "paper2008" samples roads at 1 ms and
-    holds them, adds nothing, and takes the tyre load of a half car over s + 2 pi rad/s.
+    Under the conventions "exact" the power of the road beyond its lines is added from a linear design that moves alike:
+    its frictions are dampers of the r.m.s. velocity that was simulated. Without friction and gaps the value is the
+    norm, and is returned as such. "paper2008" samples roads at 1 ms and holds them, adds nothing, takes the mean of
+    r.m.s. values, and the tyre load of a half car over s + 2 pi rad/s.
 
     A peak gain is the largest ratio of r.m.s. displacement to r.m.s. force over all frequencies for a sine of the
     index's `amplitude`; `peaks` holds every local maximum, each found near where harmonic balance has one (with gaps:
-    where a grid of frequencies has one). It has no scatter. Under "paper2008" the value is the local maximum nearest
-    to the highest peak of the linear design, which need not be the highest.
+    where a grid of frequencies has one). It has no scatter, and is the same under both conventions.
 
     `jobs` threads share the work (all cores by default). Source: Wang and Su (2008), section 4.
 
@@ -77,6 +74,7 @@ class ExpectedValue:
     relative_error: float | None = None
     conventions: str = "exact"
     jobs: int | None = None
+    period: int | None = None
     name = "expected-value"
 
     def __post_init__(self) -> None:
@@ -86,6 +84,8 @@ class ExpectedValue:
             _check_whole("The number of realisations", self.realisations, 2)
         if self.jobs is not None:
             _check_whole("The number of threads", self.jobs, 1)
+        if self.period is not None:
+            _check_whole("The length of a road in seconds", self.period, 1)
         if self.realisations is not None and self.relative_error is not None:
             raise IndicatorError("Give either realisations or a relative_error to reach, not both.")
         if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
@@ -118,8 +118,12 @@ class ExpectedValue:
         if self.relative_error is not None:
             middle = {name: (free.lower * free.upper) ** 0.5 for name, free in vehicle.free_values().items()}
             roads = self.estimate(vehicle.with_values(middle), index).realisations
-            fixed = replace(self, relative_error=None, realisations=max(roads, 2))
+            fixed = self.fixed(max(roads, 2))
         return SampledObjective(fixed.estimate, vehicle, index)
+
+    def fixed(self, realisations: int, period: int | None = None) -> ExpectedValue:
+        """The same with so many roads, whatever their scatter, of this length [s] if one is given."""
+        return replace(self, realisations=realisations, relative_error=None, period=period or self.period)
 
     def controls(self, vehicle: Vehicle, index: Index, count: int) -> tuple[Array, Array] | None:
         """What friction does to the index, to first order, on the first `count` roads (count,), and on many more.
@@ -132,7 +136,7 @@ class ExpectedValue:
             return None
         if not is_nonlinear(system):
             return np.zeros(count), np.zeros(_MORE)
-        change = first_order(system, question, drive(system, question, conventions))
+        change = first_order(system, question, drive(system, question, conventions, self.period))
         if change is None:
             return None
         seeds = realisation_seeds(self.seed, 0, count + _MORE)
@@ -140,8 +144,7 @@ class ExpectedValue:
         return changes[:count], changes[count:]
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
-        mechanism = vehicle.mechanism()
-        question, conventions = index.question(mechanism), CONVENTIONS[self.conventions]
+        question, conventions = index.question(vehicle.mechanism()), CONVENTIONS[self.conventions]
         linear = _linear(vehicle, question, conventions)
         system = piecewise(vehicle)
         if conventions.hold is None and not is_nonlinear(system):
@@ -149,30 +152,9 @@ class ExpectedValue:
             return replace(linear.estimate(close(linear.descriptor, {})), standard_error=0.0)
         if question.combination is Combination.PEAK_GAIN:
             return self._peak_gain(vehicle, index, system, question, linear, pool)
-        way = drive(system, question, conventions)
-        check_drive(system, way)
-        names = tuple(output.output for output in question.outputs)
-        weights = np.array([abs(output.weight) for output in question.outputs])
-        beyond, status = (None, OK)
-        if conventions.hold is None and linear is not None:
-            beyond, status = _beyond(linear, way)
-        if status.kind is StatusKind.MARGINAL and has_friction(mechanism):
-            status = OK  # friction damps what nothing else does
-        if beyond is None and not status.ok:
-            return Estimate(np.inf, question.unit, status)
-        rest = np.zeros(len(names)) if beyond is None else beyond
-        values, statuses = np.zeros(0), []
         wanted = self.realisations or (_FEWEST if self.relative_error else _DEFAULT)
-        while values.size < wanted:
-            seeds = realisation_seeds(self.seed, values.size, wanted)
-            found = list(pool.map(partial(squares, system, way, outputs=names), seeds))
-            statuses += [s for _, s in found]
-            power = np.array([p for p, _ in found])
-            values = np.concatenate([values, np.sqrt(np.maximum(power + rest, 0.0)) @ weights])
-            if self.relative_error is not None and np.all(np.isfinite(values)):
-                wanted = _enough(values, self.relative_error)
-        notes = () if beyond is not None or conventions.hold is not None else (_NO_LINEAR,)
-        return _averaged(values, question.unit, worst([*statuses, status]), self.relative_error, notes)
+        design = on_roads(system, question, conventions, self.seed, self.period)
+        return mean_on_roads(design, wanted, self.relative_error, pool)
 
     def _peak_gain(
         self,
@@ -201,15 +183,10 @@ class ExpectedValue:
         peaks, statuses = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool)
         weighted = tuple(replace(peak, gain=abs(output.weight) * peak.gain) for peak in peaks)
         value = weighted[0].gain if weighted else np.nan
-        if self.conventions == "paper2008" and weighted and known.size and known[0] > 0.0:
-            value = min(weighted, key=lambda peak: abs(np.log(max(peak.omega, 1e-9) / known[0]))).gain
         status = worst(statuses)
         if status.kind is StatusKind.FAILED:
             value = np.nan
         return Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
-
-
-_NO_LINEAR = "friction or a gap alone holds or damps a part: nothing is added for the road outside 0.1 to 1000 Hz"
 
 
 def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
@@ -233,51 +210,6 @@ def _linear(vehicle: Vehicle, question: Question, conventions: Conventions) -> L
         return linear_problem(vehicle.mechanism(), question, conventions)
     except (MechanismError, LinearSystemError):
         return None
-
-
-def _beyond(linear: LinearProblem, way: Drive) -> tuple[Array | None, Status]:
-    """Mean squares of the linear design's outputs from the road outside the multisine's band.
-
-    A resonance much narrower than the distance of its lines, on one of them or between two, would pass for a part of
-    that: it is then inaccurate, and nothing is taken away for it.
-    """
-    system = linear.system(close(linear.descriptor, {}))
-    whole = h2(system, linear.pade_order)
-    if not whole.status.ok:
-        return None, whole.status
-    lines = way.signal(0)
-    omega = 2.0 * np.pi * lines.frequencies
-    gains = np.abs(modal_response(system, omega, linear.pade_order)[:, :, 0]) ** 2
-    inside = 0.5 * (omega * lines.amplitudes) ** 2 @ gains
-    power = (way.road.velocity_intensity * whole.outputs) ** 2
-    rest = np.asarray(power - inside)
-    share = float(np.abs(rest / np.maximum(power, 1e-300)).max(initial=0.0))
-    if share <= _MOST_BEYOND:
-        return rest, OK
-    message = f"the linear design rings so sharply that lines 0.1 Hz apart miss its power by {100.0 * share:.0f} %"
-    return np.maximum(rest, 0.0), Status(StatusKind.INACCURATE, message)
-
-
-def _enough(values: Array, relative_error: float) -> int:
-    """How many realisations will do, from the scatter of those that there are."""
-    scatter, mean = float(np.std(values, ddof=1)), float(np.mean(values))
-    if scatter / np.sqrt(values.size) <= relative_error * mean or values.size >= _MOST:
-        return values.size
-    guess = 1.05 * (scatter / (relative_error * mean)) ** 2
-    return int(min(max(np.ceil(guess), values.size + 2), 4 * values.size, _MOST))
-
-
-def _averaged(
-    values: Array, unit: str, status: Status, relative_error: float | None, notes: tuple[str, ...]
-) -> Estimate:
-    mean, error, interval = mean_and_error(values)
-    if status.ok and relative_error is not None and error > relative_error * mean:
-        message = f"after {values.size} roads the standard error is {error / mean:.1e} of the value"
-        status = Status(StatusKind.INACCURATE, message)
-    return Estimate(
-        mean, unit, status, standard_error=error, interval=interval, realisations=values.size, notes=notes,
-        samples=tuple(values.tolist()),
-    )  # fmt: skip
 
 
 def _check_whole(what: str, value: object, least: int) -> None:

@@ -45,7 +45,7 @@ class Forced:
         signals = [None] * len(mechanism.roads) + [signal if f.name == self.force else None for f in mechanism.forces]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, np.zeros(len(signals)), "rest")
-        found, integration = mean_squares(self.system, table, [self.output], state, _MOST_PERIODS, _REPEATS)
+        found, integration, _ = mean_squares(self.system, table, [self.output], state, _MOST_PERIODS, _REPEATS)
         status = integration.status if not integration.status.ok else integration.warning
         return sqrt(2.0 * float(found[0])) / self.amplitude, status
 

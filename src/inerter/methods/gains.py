@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -9,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
+from inerter.methods.counterpart import Counterpart, memory
 from inerter.methods.excitation import Drive
+from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak
 from inerter.norms.response import frequency_response
 from inerter.simulation.inputs import check_holds
@@ -19,21 +22,45 @@ from inerter.systems.linear import LinearSystem
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
+_UNSEEN = 5e-4  # of a mean square that harmonics may miss without a doubt
 _REPEATS = 1e-4  # change of the state over a period, relative to its size, that leaves an estimate alone
 
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """What is known of the linear model of a design for one question."""
+    """The linear design that a motion resembles, for one question."""
 
     system: LinearSystem
-    norms: Array  # of its outputs; infinite for a peak gain, which needs none
-    slowest: float  # rate of its slowest motion [rad/s]
+    norms: Array  # of its outputs
     status: Status
+    missed: float  # share of a mean square that the harmonics of the period may miss
+    unlike: float  # by what part of a mean square another motion would make it another design
+    pole: complex  # of the motion that outlasts the others
 
     def squares(self, omega: Array) -> Array:
         """Squared gains (outputs, frequencies) from the road's velocity or the force."""
         return np.asarray(np.abs(frequency_response(self.system, omega)[:, :, 0].T) ** 2)
+
+    def unseen(self, gains: Array, omega: Array) -> float:
+        """Share of a mean square that may hide between harmonics at which squared `gains` (outputs, harmonics) are
+        known: what they miss, so far as the motion there is not this model's.
+        """
+        if self.missed <= _UNSEEN:
+            return self.missed
+        total = np.maximum(gains.sum(axis=1), 1e-300)
+        misfit = float(np.max(np.abs(self.squares(omega).sum(axis=1) / total - 1.0)))
+        return float(self.missed * min(misfit + self.unlike, 1.0))
+
+
+def linear_model(linear: Counterpart, speeds: Array, period: float) -> LinearModel:
+    """The model for a motion with these r.m.s. velocities across the frictions that repeats after `period` [s]."""
+    system = linear.system(speeds)
+    whole = h2(system, linear.problem.pade_order)
+    if not whole.status.ok:
+        return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, 0j)
+    left, pole = memory(system, whole.outputs, period)
+    unlike = linear.unlike(speeds, whole.outputs) if 2.0 * left > _UNSEEN else 0.0
+    return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, pole)
 
 
 @dataclass(eq=False)
@@ -43,9 +70,11 @@ class Runs:
     system: PiecewiseSystem
     drive: Drive
     outputs: tuple[str, ...]
+    frictions: tuple[str, ...]  # velocities across them
     seed: int
     squares: list[Array] = field(default_factory=list)  # (outputs, harmonics)
     inputs: list[Array] = field(default_factory=list)  # (harmonics,)
+    powers: list[Array] = field(default_factory=list)  # mean squares of the velocities (frictions,)
     status: Status = OK
     warning: Status = OK
 
@@ -57,6 +86,11 @@ class Runs:
         while len(self.squares) < count and self.status.ok:
             self._add(len(self.squares))
         return np.array(self.squares), np.array(self.inputs)
+
+    @property
+    def speeds(self) -> Array:
+        """R.m.s. velocities across the frictions so far [m/s]."""
+        return np.asarray(np.sqrt(np.mean(self.powers, axis=0)))
 
     def _add(self, number: int) -> None:
         seed = int(np.random.SeedSequence([self.seed, number]).generate_state(1)[0])
@@ -76,6 +110,7 @@ class Runs:
         trajectory = trajectory_of(run, None, "", run.state)
         self.squares.append(np.array([self.drive.power(trajectory[name]) for name in self.outputs]))
         self.inputs.append(power)
+        self.powers.append(np.array([np.mean(trajectory[name][:-1] ** 2) for name in self.frictions]))
 
 
 def largest_gain(
@@ -96,7 +131,10 @@ def largest_gain(
         linear = 0.0 if known is None else known.squares(at)[0]
         return np.asarray(np.maximum(np.interp(at, omega, mean) + linear, 0.0))
 
-    found = sorted((_refined(between, omega, i) for i in _summits(total, window.size)), key=lambda peak: -peak.gain)
+    peaks = [_refined(between, omega, i) for i in _summits(total, window.size)]
+    if known is not None:  # whose gain is known below the lowest harmonic too
+        peaks.append(_refined(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1))
+    found = sorted(peaks, key=lambda peak: -peak.gain)
     best = found[0]
     deviation = np.array([np.interp(best.omega, omega, row) for row in smooth - mean])
     return best.gain, deviation / (2.0 * max(best.gain, 1e-300)), tuple(found)

@@ -17,20 +17,22 @@ from numpy.typing import NDArray
 from inerter.errors import MechanismError, Status, StatusKind
 from inerter.indices.index import Question
 from inerter.methods.compiled_norm import CompiledQuestion
-from inerter.methods.equivalent import Equivalent, equivalent
-from inerter.methods.linear import Conventions, LinearProblem, linear_problem
+from inerter.methods.equivalent import GAUSSIAN, POORLY, STIFFEST, Equivalent, equivalent, slipping_freely
+from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
-from inerter.systems.descriptor import Descriptor, close
+from inerter.systems.descriptor import close
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
 Array = NDArray[np.float64]
-_SHARE = math.sqrt(2.0 / math.pi)  # r.m.s. force of the equivalent damper over the friction force
 _STEPS = 160
 _SETTLED = 1e-10  # relative error of a damper's r.m.s. force
 _NUDGE = 1e-4  # relative change of a damper for differences
 _LOCKED = 0.02  # d log(force) / d log(damper) below which a friction whose force is too small will not slip
-_STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 _RIGID = 1e-5  # the same for a damper that stands for a rigid link
+_LINEAR = 0.7  # the same from which on friction is weak enough for the velocity across it to be Gaussian
+_HELD = 0.4  # force through a rigid link over that of friction up to which friction holds all the time
+_MATTERS = 0.03  # relative change of the index by a friction, whatever becomes of it, that is of no account
+_FIRM = 1e4  # times a typical damper is as good as a rigid link for that
 
 Speeds = Callable[[Array, NDArray[np.intp]], Array]
 
@@ -40,11 +42,17 @@ class Dampers:
     """Equivalent dampers (designs, frictions) [N s/m], those that stand for a friction that sticks, and the error.
 
     `error` is the largest relative error of the force of a friction that slips; nan where the covariance was lost.
+    `doubtful` are frictions that stick for a part of the time, or damp so much that their velocity is not Gaussian.
     """
 
     damping: Array
     sticks: NDArray[np.bool_]
     error: Array  # (designs,)
+    doubtful: NDArray[np.bool_]
+
+    def of(self, designs: NDArray[np.intp]) -> Dampers:
+        """Those of some designs."""
+        return Dampers(self.damping[designs], self.sticks[designs], self.error[designs], self.doubtful[designs])
 
 
 def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.bool_] | None = None) -> Dampers:
@@ -56,22 +64,23 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
     """
     damping, error = start.copy(), np.full(limits.shape[0], np.inf)
     held = np.zeros(limits.shape, dtype=bool) if held is None else held
-    sticks, left = held.copy(), np.arange(limits.shape[0])
+    sticks, doubtful, left = held.copy(), held.copy(), np.arange(limits.shape[0])
     for step in range(_STEPS):
         if left.size == 0:
             break
         ratio, slope = _forces(speeds, damping[left], limits[left], left)
         own = np.einsum("rii->ri", slope)
-        saturated = (own < _LOCKED) | (damping[left] > _STIFFEST * start[left])
+        saturated = (own < _LOCKED) | (damping[left] > STIFFEST * start[left])
         stuck = held[left] | (ratio * (1.0 + 20.0 * np.maximum(own, 0.0)) < 1.0) & saturated | (ratio == 0.0)
         miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
         settled = (miss <= _SETTLED) | np.isnan(miss)
         error[left], sticks[left] = miss, stuck
+        doubtful[left] = np.where(stuck, GAUSSIAN * ratio > _HELD, own < _LINEAR)
         factor = np.where(stuck, 1.0, _newton(ratio, slope, stuck, alone=step % 40 >= 15))
         rigid = np.where(stuck & ~held[left], np.clip(own / _RIGID, 1.0, 1.0 / _RIGID), 1.0)
         damping[left] *= np.where(settled[:, None], rigid, factor)
         left = left[~settled]
-    return Dampers(damping, sticks, error)
+    return Dampers(damping, sticks, error, doubtful)
 
 
 def _forces(speeds: Speeds, damping: Array, limits: Array, designs: NDArray[np.intp]) -> tuple[Array, Array]:
@@ -118,7 +127,7 @@ class Pattern:
     def single(self) -> tuple[CompiledQuestion, ...]:
         """The velocity across each friction by itself."""
         problem = self.velocities.problem
-        return tuple(CompiledQuestion(_part(problem, slice(i, i + 1))) for i in range(len(problem.question.outputs)))
+        return tuple(CompiledQuestion(problem.part(slice(i, i + 1))) for i in range(len(problem.question.outputs)))
 
     def rows(self, points: Array, damping: Array) -> Array:
         """Rows of values for the descriptors."""
@@ -132,8 +141,9 @@ class Pattern:
             return np.asarray(weight * self.velocities.output_norms(self.rows(points[designs], damping)))
 
         if not start.shape[1]:
-            return Dampers(start, np.zeros(start.shape, dtype=bool), np.zeros(points.shape[0]))
-        return solve_dampers(speeds, _SHARE * self.parts.limits(points), start, held)
+            none = np.zeros(start.shape, dtype=bool)
+            return Dampers(start, none, np.zeros(points.shape[0]), none)
+        return solve_dampers(speeds, GAUSSIAN * self.parts.limits(points), start, held)
 
     def value_and_gradient(self, question: CompiledQuestion, row: Array) -> tuple[float, Array]:
         """A value and its gradient over (values of the design, dampers)."""
@@ -145,11 +155,15 @@ class Pattern:
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """Some designs that share a pattern, and their dampers there."""
+    """Some designs that share a pattern, and their dampers there.
+
+    `doubtful` (designs, frictions) is told of all frictions of the mechanism, those that are links in the pattern too.
+    """
 
     pattern: Pattern
     designs: NDArray[np.intp]
     dampers: Dampers
+    doubtful: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,17 +183,8 @@ class GaussianClosure:
 
     @cached_property
     def without(self) -> frozenset[str]:
-        """Frictions that white noise passes straight to, as one in a tyre: with a velocity of infinite variance across
-        them, their dampers are zero.
-        """
-        left_out: frozenset[str] = frozenset()
-        while True:
-            pattern = _pattern(self, left_out, frozenset())
-            direct = _direct(pattern.velocities.problem.descriptor)
-            if not direct:
-                self.patterns[frozenset()] = pattern
-                return left_out
-            left_out |= {pattern.parts.dampers[i] for i in direct}
+        """Frictions whose dampers are zero, because white noise passes straight to them."""
+        return slipping_freely(self.mechanism)
 
     def pattern(self, locked: frozenset[str]) -> Pattern | None:
         """The linear model with these frictions stuck; None if that makes a mount rigid, which has no model."""
@@ -205,40 +210,75 @@ class GaussianClosure:
     def solve(self, points: Array) -> list[Solved]:
         """The dampers of every row of `points`, by which frictions stick."""
         start = np.full((points.shape[0], len(self.free.parts.dampers)), self.free.parts.scale)
-        return self._solve(points, np.arange(points.shape[0]), start, frozenset())
+        none = np.zeros(start.shape, dtype=bool)
+        return self._solve(points, np.arange(points.shape[0]), start, frozenset(), none)
 
-    def _solve(self, points: Array, designs: NDArray[np.intp], start: Array, locked: frozenset[str]) -> list[Solved]:
+    def _solve(
+        self,
+        points: Array,
+        designs: NDArray[np.intp],
+        start: Array,
+        locked: frozenset[str],
+        doubtful: NDArray[np.bool_],
+    ) -> list[Solved]:
         pattern = self.pattern(locked)
         assert pattern is not None
         found = pattern.dampers(points[designs], start)
+        doubtful[designs[:, None], self._numbers(pattern)] = found.doubtful
         kinds, kind_of = np.unique(found.sticks, axis=0, return_inverse=True)
         solved: list[Solved] = []
         for number, sticks in enumerate(kinds):
             here = np.flatnonzero(kind_of.ravel() == number)
-            part = Dampers(found.damping[here], found.sticks[here], found.error[here])
+            part = found.of(here)
             more = {name for name, sticks_too in zip(pattern.parts.dampers, sticks, strict=True) if sticks_too}
             inner = self.pattern(locked | more) if more else None
             if inner is not None:
                 still = [i for i, name in enumerate(pattern.parts.dampers) if name in inner.parts.dampers]
-                solved += self._solve(points, designs[here], part.damping[:, still], locked | more)
+                solved += self._solve(points, designs[here], part.damping[:, still], locked | more, doubtful)
                 continue
             if more:
-                too_stiff = np.any(part.sticks & (part.damping > _STIFFEST * pattern.parts.scale), axis=1)
+                too_stiff = np.any(part.sticks & (part.damping > STIFFEST * pattern.parts.scale), axis=1)
                 part = pattern.dampers(points[designs[here]], part.damping, part.sticks)
                 part.error[too_stiff] = np.nan
-            solved.append(Solved(pattern, designs[here], part))
+            solved.append(Solved(pattern, designs[here], part, doubtful[designs[here]]))
         return solved
 
+    def _numbers(self, pattern: Pattern) -> list[int]:
+        """Which of all frictions those that slip in a pattern are."""
+        return [self.free.parts.dampers.index(name) for name in pattern.parts.dampers]
+
+    def trusted(self, points: Array, solved: Solved) -> NDArray[np.bool_]:
+        """Which of these designs the closure is right for.
+
+        Those without doubtful frictions, and those whose doubtful frictions do not matter: the index is the same
+        without the friction and with a rigid link in its place.
+        """
+        free, designs = self.free, solved.designs
+        damping = np.full((designs.size, len(free.parts.dampers)), _FIRM * free.parts.scale)
+        damping[:, self._numbers(solved.pattern)] = np.minimum(solved.dampers.damping, _FIRM * free.parts.scale)
+        sure = np.ones(designs.size, dtype=bool)
+        for i in np.flatnonzero(solved.doubtful.any(axis=0)):
+            here = np.flatnonzero(solved.doubtful[:, i])
+            ends = []
+            for end in (free.parts.scale / _FIRM, _FIRM * free.parts.scale):
+                damping_there = damping[here].copy()
+                damping_there[:, i] = end
+                ends.append(free.index.known(free.rows(points[designs[here]], damping_there)))
+            sure[here] &= np.abs(ends[1] - ends[0]) <= _MATTERS * np.minimum(*ends)
+        return sure
+
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`: infinite where it cannot be told."""
-        known = self.known(points)
+        """The index at each row of `points`, also where it is not to be trusted; infinite where there is none."""
+        known = self.known(points, trusted=False)
         return np.where(np.isnan(known), np.inf, known)
 
-    def known(self, points: Array) -> Array:
+    def known(self, points: Array, trusted: bool = True) -> Array:
         """The index at each row of `points`; nan where it cannot be told."""
         result = np.full(points.shape[0], np.nan)
         for solved in self.solve(points):
             good = solved.dampers.error <= _SETTLED
+            if trusted:
+                good &= self.trusted(points, solved)
             rows = solved.pattern.rows(points[solved.designs[good]], solved.dampers.damping[good])
             result[solved.designs[good]] = solved.pattern.index.known(rows)
         return result
@@ -280,6 +320,11 @@ class GaussianClosure:
         if dampers.error[0] > _SETTLED and result.status.ok:
             message = f"the equivalent dampers are known to {dampers.error[0]:.1e} only"
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
+        if result.status.ok and not self.trusted(np.zeros((1, 0)), solved)[0]:
+            words = " and ".join(self.free.parts.frictions[i] for i in np.flatnonzero(solved.doubtful[0]))
+            result = replace(
+                result, status=Status(StatusKind.INACCURATE, f"{words} sticks for a part of the time, which {POORLY}")
+            )
         told = [f"{words} sticks" for words in parts.locked]
         told += [
             f"{words} sticks" if sticks else f"{words} taken as a damper of {c:.6g} N s/m"
@@ -293,19 +338,5 @@ def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozense
     wanted = tuple(Weighted(f"{name}_velocity") for name in parts.dampers)
     outputs = closure.question.outputs
     joint = linear_problem(parts.mechanism, replace(closure.question, outputs=(*outputs, *wanted)), closure.conventions)
-    index, velocities = _part(joint, slice(0, len(outputs))), _part(joint, slice(len(outputs), None))
+    index, velocities = joint.part(slice(0, len(outputs))), joint.part(slice(len(outputs), None))
     return Pattern(CompiledQuestion(index), CompiledQuestion(replace(velocities, corner=None)), parts)
-
-
-def _part(problem: LinearProblem, which: slice) -> LinearProblem:
-    """The problem with some of its outputs."""
-    d = problem.descriptor
-    descriptor = replace(d, Y_eta=d.Y_eta[:, which], Y_x=d.Y_x[:, which], Y_u=d.Y_u[:, which], outputs=d.outputs[which])
-    question = replace(problem.question, outputs=problem.question.outputs[which])
-    return replace(problem, question=question, descriptor=descriptor)
-
-
-def _direct(descriptor: Descriptor) -> list[int]:
-    """Numbers of the outputs that white noise passes straight to."""
-    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in descriptor.variables.items()}
-    return [int(i) for i in np.flatnonzero(np.any(close(descriptor, middle).D != 0.0, axis=1))]

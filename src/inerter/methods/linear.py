@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -64,6 +64,16 @@ class LinearProblem:
         road = self.question.road
         scale = 1.0 if road is None else road.velocity_intensity
         return scale * np.array([abs(output.weight) for output in self.question.outputs])
+
+    def part(self, which: NDArray[np.bool_] | slice) -> LinearProblem:
+        """The problem with some of its outputs."""
+        d, chosen = self.descriptor, np.arange(len(self.descriptor.outputs))[which]
+        outputs = tuple(d.outputs[i] for i in chosen)
+        sizes = (*d.sizes[:3], *(stack[:, chosen] for stack in d.sizes[3:]))
+        Y_eta, Y_x, Y_u = d.Y_eta[:, chosen], d.Y_x[:, chosen], d.Y_u[:, chosen]
+        descriptor = replace(d, Y_eta=Y_eta, Y_x=Y_x, Y_u=Y_u, outputs=outputs, sizes=sizes)
+        question = replace(self.question, outputs=tuple(self.question.outputs[i] for i in chosen))
+        return replace(self, question=question, descriptor=descriptor)
 
     def system(self, closed: LinearSystem) -> LinearSystem:
         """The closed descriptor with delays and filter."""

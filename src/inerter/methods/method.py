@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, DesignError, IndicatorError, Status
-from inerter.indices.index import Index
+from inerter.indices.index import Index, Question
 from inerter.norms.hinf import Peak
+from inerter.systems.graph import full_graph
+from inerter.systems.outputs import find, main_outputs, outputs
 from inerter.vehicle.cars import Vehicle, check_vehicle
-from inerter.vehicle.mechanism import check_known
+from inerter.vehicle.mechanism import Mechanism, check_known
 
 Array = NDArray[np.float64]
 
@@ -30,7 +32,8 @@ class Estimate:
     realisations: int = 0  # random inputs that were averaged
     peaks: tuple[Peak, ...] = ()  # local maxima of the gain, for an index that is a peak gain
     notes: tuple[str, ...] = ()  # what the method left out
-    samples: tuple[float, ...] = field(default=(), repr=False)  # the values that were averaged
+    samples: tuple[float, ...] = field(default=(), repr=False)  # the value on each random input
+    period: int | None = None  # of each random input [s]
 
 
 class Objective(Protocol):
@@ -55,6 +58,15 @@ class Objective(Protocol):
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Those smooth functions and their gradients (components,), (components, values)."""
+        ...
+
+
+@runtime_checkable
+class Averaging(Protocol):
+    """A method whose value is a mean over random inputs."""
+
+    def fixed(self, realisations: int, period: int | None = None) -> Method:
+        """The same with so many random inputs, whatever their scatter, of this length [s] if one is given."""
         ...
 
 
@@ -116,7 +128,7 @@ def evaluate_many(
     """Indices of many designs of one layout: an array (designs, indices).
 
     `values` gives for each free value of `vehicle` an array of one length (or one number for all designs); they
-    need not lie between its bounds. Where `evaluate` would call the value inaccurate, it is nan here.
+    need not lie between its bounds. Where `evaluate` would not say `ok`, the value is nan here.
 
     Raises `DesignError` if a free value is missing, unknown, not positive or not finite, or if lengths differ; and
     what `evaluate` raises.
@@ -127,13 +139,30 @@ def evaluate_many(
     return method.estimate_many(vehicle, several, check_points(vehicle, values))
 
 
-def check_request(vehicle: object, index: object, method: object) -> None:
-    """Raises `DesignError` or `IndicatorError` where an argument is not what its place asks for."""
+def check_request(vehicle: Vehicle, index: Index, method: object) -> None:
+    """Raises `DesignError` or `IndicatorError` where an argument is not what its place asks for.
+
+    So it does for an index that names an input or output which the vehicle does not have.
+    """
     check_vehicle(vehicle)
     if isinstance(index, type) or not hasattr(index, "question"):
         raise IndicatorError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
     if isinstance(method, type) or not isinstance(method, Method):
         raise IndicatorError(f"Expected a method such as Norm(), got {method!r}.")
+    mechanism = vehicle.mechanism()
+    _check_names(mechanism, index.question(mechanism))
+
+
+def _check_names(mechanism: Mechanism, question: Question) -> None:
+    inputs = [*(road.name for road in mechanism.roads), *(force.name for force in mechanism.forces)]
+    for name in question.inputs:
+        if name not in inputs:
+            raise IndicatorError(f"There is no input named {name!r} (there are: {', '.join(inputs) or 'none'}).")
+    unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(mechanism)]
+    if unusual:  # finding all names takes longer than most norms
+        known = outputs(mechanism, full_graph(mechanism))
+        for name in unusual:
+            find(known, name, IndicatorError)
 
 
 def check_points(vehicle: Vehicle, values: Mapping[str, ArrayLike]) -> dict[str, Array]:

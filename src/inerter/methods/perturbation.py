@@ -25,9 +25,9 @@ from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-_LINES = 1000  # of the road: what moves a vehicle lies below 100 Hz
-_TIMES = 8192  # a period
-_TOGETHER = 64  # roads at a time: 8 MB
+_HIGHEST = 100.0  # [Hz] of the road's lines: what moves a vehicle lies below
+_TIMES = 8  # at least, a period of the highest line
+_TOGETHER = 2**19  # times of several roads at once: 8 MB
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,25 +40,33 @@ class FirstOrder:
 
     def __call__(self, seeds: Sequence[int]) -> Array:
         """The change on the roads of realisations' seeds (seeds,), in the unit of the index."""
-        parts = [seeds[i : i + _TOGETHER] for i in range(0, len(seeds), _TOGETHER)]
+        size = max(_TOGETHER // self._times, 1)
+        parts = [seeds[i : i + size] for i in range(0, len(seeds), size)]
         return np.concatenate([self._changes(part) for part in parts]) if parts else np.zeros(0)
 
     def _changes(self, seeds: Sequence[int]) -> Array:
-        roads = np.array([_lines(self.way.road, seed) for seed in seeds])
+        lines, times = self.velocities.shape[0], self._times
+        roads = np.array([_lines(self.way.road, self.way.period, lines, seed) for seed in seeds])
         total = np.zeros(len(seeds))
         for velocity, effect in zip(self.velocities.T, self.effects.T, strict=True):
-            spectrum = np.zeros((len(seeds), _TIMES // 2 + 1), dtype=complex)
-            spectrum[:, 1 : _LINES + 1] = velocity * roads
-            sides = np.sign(np.fft.irfft(spectrum, _TIMES))
-            forces = np.fft.rfft(sides)[:, 1 : _LINES + 1] * (2.0 / _TIMES)
+            spectrum = np.zeros((len(seeds), times // 2 + 1), dtype=complex)
+            spectrum[:, 1 : lines + 1] = velocity * roads
+            sides = np.sign(np.fft.irfft(spectrum, times))
+            forces = np.fft.rfft(sides)[:, 1 : lines + 1] * (2.0 / times)
             total += np.real(np.conj(roads) * forces @ effect)
         return total
 
+    @property
+    def _times(self) -> int:
+        """Of a period: a power of two."""
+        lines = int(self.velocities.shape[0])
+        return 1 << (_TIMES * lines - 1).bit_length()
+
 
 @lru_cache(maxsize=1024)
-def _lines(road: Road, seed: int) -> Complex:
+def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
     """The slow lines of a realisation."""
-    return multisine(road, seed).coefficient[:_LINES].copy()
+    return multisine(road, seed, lowest=1.0 / period).coefficient[:count].copy()
 
 
 def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> FirstOrder | None:
@@ -70,8 +78,9 @@ def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> Firs
     integration = event_driven.start(system, table(way, 0), np.zeros(n))
     slip, forces = _slipping(integration)
     signal = way.signal(0)
-    omega = 2.0 * np.pi * signal.frequencies[:_LINES]
-    amplitudes = signal.amplitudes[:_LINES]
+    lines = round(_HIGHEST * way.period)
+    omega = 2.0 * np.pi * signal.frequencies[:lines]
+    amplitudes = signal.amplitudes[:lines]
     arrival = np.exp(-1j * np.outer(omega, way.delays))
     inputs = np.zeros((omega.size, nu), dtype=complex)
     for order in range(3):

@@ -18,12 +18,14 @@ from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
 from inerter.simulation.observe import trajectory_of
 from inerter.simulation.start import initial_state
-from inerter.simulation.steady import mean_squares, settle
+from inerter.simulation.steady import FEW_PERIODS, mean_squares, settle
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
 STEP = 2e-4  # [s] of continuous roads: errors of 1e-6
+PERIOD = 10  # [s] of a road, if that does
 _KEPT = 48  # tables, of 4 MB each
+_FEWEST_PERIODS = 4  # of the longest roads, until they must repeat
 
 
 @dataclass(frozen=True)
@@ -35,30 +37,47 @@ class Drive:
     forces: int  # external forces, which stay zero
     hold: float | None  # [s]
     corner: float | None  # of a high-pass filter on the outputs [rad/s]
+    period: int = PERIOD  # of a realisation [s]
 
     def signal(self, seed: int) -> Harmonics:
         """The road of one realisation, before it is held."""
-        return multisine(self.road, seed)
+        return multisine(self.road, seed, lowest=1.0 / self.period)
 
 
-def drive(system: PiecewiseSystem, question: Question, conventions: Conventions) -> Drive:
-    """How `question` drives the mechanism of `system`."""
+@dataclass(frozen=True)
+class Ran:
+    """One period of the steady state on one road."""
+
+    power: Array  # mean squares of the filtered outputs and of the plain ones, nan where there are none
+    status: Status
+    periods: int  # until it repeated
+
+
+def drive(system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None) -> Drive:
+    """How `question` drives the mechanism of `system`, over roads of the usual length or of another `period` [s]."""
     assert question.road is not None
     mechanism, road = system.mechanism, question.road
     delays = np.array([r.distance for r in mechanism.roads]) / road.speed
     corner = corner_of(question, delays, conventions)
-    return Drive(road, tuple(delays.tolist()), len(mechanism.forces), conventions.hold, corner)
+    forces = len(mechanism.forces)
+    return Drive(road, tuple(delays.tolist()), forces, conventions.hold, corner, period or PERIOD)
 
 
-@lru_cache(maxsize=_KEPT)
 def table(way: Drive, seed: int) -> InputTable:
     """One period of a realisation along the knots of an integration."""
+    return _kept_table(way, seed) if way.period <= PERIOD else _table(way, seed)
+
+
+def _table(way: Drive, seed: int) -> InputTable:
     signal = way.signal(seed)
     moved = signal if way.hold is None else signal.held(way.hold)
     signals = [*(moved for _ in way.delays), *(None for _ in range(way.forces))]
     delays = [*way.delays, *(0.0 for _ in range(way.forces))]
     parts = 1 if way.hold is None else parts_of(way.hold, way.delays)
     return tabulate(signals, delays, signal.period, (way.hold or STEP) / parts, every=parts)
+
+
+_kept_table = lru_cache(maxsize=_KEPT)(_table)
 
 
 def check_drive(system: PiecewiseSystem, way: Drive) -> None:
@@ -68,26 +87,28 @@ def check_drive(system: PiecewiseSystem, way: Drive) -> None:
         check_holds(system, [held for _ in way.delays])
 
 
-def squares(system: PiecewiseSystem, way: Drive, seed: int, outputs: Sequence[str]) -> tuple[Array, Status]:
-    """Mean squares (outputs,) of the filtered outputs over one period of the steady state on one road; or nan."""
+def run(system: PiecewiseSystem, way: Drive, outputs: Sequence[str], plain: Sequence[str], seed: int) -> Ran:
+    """One period of the steady state on the road of a realisation's seed; `plain` outputs are not filtered."""
+    names = [*outputs, *plain]
     inputs = table(way, seed)
     state = initial_state(system, inputs.value[0], "rest")
     if way.corner is None:
-        found, integration = mean_squares(system, inputs, outputs, state)
+        most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / way.period))
+        found, integration, periods = mean_squares(system, inputs, names, state, most)
         if not integration.status.ok:
-            return np.full(len(outputs), np.nan), integration.status
-        return found, integration.warning
+            return Ran(np.full(len(names), np.nan), integration.status, periods)
+        return Ran(found, integration.warning, periods)
     integration, steady = settle(system, inputs, state, energy=False)
     integration.advance(inputs.time.size - 1)
-    run = trajectory_of(integration, steady, "", state)
+    trajectory = trajectory_of(integration, steady, "", state)
     if not integration.status.ok:
-        return np.full(len(outputs), np.nan), integration.status
-    count = run.time.size - 1
+        return Ran(np.full(len(names), np.nan), integration.status, steady.periods)
+    count = trajectory.time.size - 1
     s = 2j * np.pi * np.fft.rfftfreq(count, way.hold or STEP)
-    gain = np.abs(s / (s + way.corner)) ** 2
-    lines = np.array([np.abs(np.fft.rfft(run[name][:count])) ** 2 for name in outputs])
+    lines = np.array([np.abs(np.fft.rfft(trajectory[name][:count])) ** 2 for name in names])
+    lines[: len(outputs)] *= np.abs(s / (s + way.corner)) ** 2
     lines[:, 1 : (count + 1) // 2] *= 2.0
-    return np.asarray(lines @ gain) / count**2, run.status
+    return Ran(lines.sum(axis=1) / count**2, trajectory.status, steady.periods)
 
 
 def realisation_seeds(seed: int, first: int, stop: int) -> list[int]:

@@ -11,16 +11,23 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade, propagate
-from inerter.norms.stability import Split, split
-from inerter.systems.linear import LinearSystem, check_system
+from inerter.norms.exact import h2_exactly
+from inerter.norms.stability import balance, split
+from inerter.systems.linear import Fine, LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
-_LOST = "some motions are so much slower than others that rounding hides their damping"
+_LOST = Status(StatusKind.INACCURATE, "some motions are so much slower than others that rounding hides their damping")
+_EPS = float(np.finfo(float).eps)
+_SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
+_DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
+_LONG = float(np.finfo(np.longdouble).eps)
+_SMALL = 1e-6  # relative size of the terms of a correction at first order up to which the rest is below 1e-9
+ACCURATE = 1e-9  # relative error of a mean square up to which it is believed
 
 
 @dataclass(frozen=True, eq=False)
 class H2:
-    """The norm of each output, and why it is infinite where it is."""
+    """The norm of each output, and why it is infinite, or nan because it is not known, where it is."""
 
     outputs: Matrix  # (p,)
     status: Status
@@ -47,22 +54,45 @@ def h2_norm(system: LinearSystem, pade_order: int | None = None) -> float:
 def h2(system: LinearSystem, pade_order: int | None = None) -> H2:
     """The H2 norm of each output of `system`, and a `Status`. See `h2_norm`.
 
-    The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
-    of each delayed arrival with the state that its earlier arrivals have left: exp(A dt) Bi Bj' and its transpose.
+    A system that comes from a mechanism is right to 1e-9: where the error bound of double precision exceeds that, its
+    transfer functions are evaluated without rounding. Matrices that are given are taken for exact, but a pole that
+    their rounding could put on the imaginary axis counts as lying there; where double precision fails them, the norm
+    is nan.
     """
     check_system(system)
     if pade_order is not None:
         pade(pade_order)  # refuses an order that there is not, even where nothing is late
+    fine = system.fine
+    if fine is None:
+        return _of_matrices(system, pade_order)
+    if not (np.any(system.D) or np.any(fine.errors[3])):
+        squares = _squares(system, fine, pade_order)
+        if squares is not None:
+            return H2(np.sqrt(squares), OK)
+    return H2(*h2_exactly(system, pade_order))
+
+
+def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
     direct = np.any(_merged_direct(system) != 0.0, axis=1)
     parts = split(system)
-    square, lasting, status = _squares(system, parts, pade_order)
-    outputs = np.where(direct | lasting, np.inf, np.sqrt(np.maximum(square, 0.0)))
-    if np.any(direct) and not np.any(lasting):
+    seen = parts.visible() if parts.poles.size else np.zeros(len(system.outputs), dtype=bool)
+    part, drifts = parts.decaying, False
+    if np.any(seen) and parts.poles.size == np.sum(_drifting(system.A)):
+        drifts = np.allclose(_per_source(system, system.B[_drifting(system.A)]), 0.0, atol=1e-13)
+    A, B, C = (system.A, system.B, system.C) if drifts else (part.A, part.B, part.C)
+    seen = seen & (not drifts)
+    given = LinearSystem(A, B, C, system.D, delays=system.delays, sources=system.sources)
+    matrices = A, B, C, system.D
+    squares = _squares(given, Fine(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
+    if np.any(seen):
+        status = parts.status
+    elif np.any(direct):
         names = ", ".join(name for name, is_direct in zip(system.outputs, direct, strict=True) if is_direct)
         status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
-    if np.any(np.isnan(outputs)):
-        status = Status(StatusKind.FAILED, "the covariance of the state could not be computed")
-    return H2(outputs, status)
+    else:
+        status = _LOST if squares is None else OK
+    norms = np.full(len(system.outputs), np.nan) if squares is None else np.sqrt(squares)
+    return H2(np.where(direct | seen, np.inf, norms), status)
 
 
 def _merged_direct(system: LinearSystem) -> Matrix:
@@ -73,33 +103,9 @@ def _merged_direct(system: LinearSystem) -> Matrix:
     return np.asarray(system.D @ merge.reshape(len(arrivals), len(unique)))
 
 
-def _squares(system: LinearSystem, parts: Split, pade_order: int | None) -> tuple[Matrix, NDArray[np.bool_], Status]:
-    """Squared norms of the decaying part (and of drifts that cancel), which outputs see a lasting motion, and why."""
-    decaying, lasting = parts.decaying, parts.lasting
-    none = np.zeros(len(system.outputs), dtype=bool)
-    seen = parts.visible() if parts.poles.size else none
-    drifts = bool(np.any(seen)) and _is_drift(parts)
-    if drifts:
-        seen = parts.visible(_per_source(system, lasting.B))
-    n = decaying.A.shape[0]
-    A = scipy.linalg.block_diag(decaying.A, np.zeros_like(lasting.A)) if drifts else decaying.A
-    B = np.vstack([decaying.B, lasting.B]) if drifts else decaying.B
-    W = _excitation(system, A, B, pade_order)
-    P, converged = solve_lyapunov(decaying.A, W[:n, :n])
-    square = np.einsum("ij,jk,ik->i", decaying.C, P, decaying.C)
-    if drifts:
-        cross = -np.linalg.solve(decaying.A, W[:n, n:]) if n else W[:n, n:]
-        square = square + 2.0 * np.einsum("ij,jk,ik->i", decaying.C, cross, lasting.C)
-        square = square + np.einsum("ij,jk,ik->i", lasting.C, _drift_covariance(system, lasting.B), lasting.C)
-    if np.any(seen):
-        return square, seen, parts.status
-    return square, seen, OK if converged else Status(StatusKind.INACCURATE, _LOST)
-
-
-def _is_drift(parts: Split) -> bool:
-    """Whether the lasting motions are plain integrals of the inputs, such as a tyre's share of the road profile."""
-    rate = float(np.linalg.norm(parts.decaying.A)) if parts.decaying.A.size else 1.0
-    return bool(np.all(np.abs(parts.lasting.A) <= 1e-11 * rate))
+def _drifting(A: Matrix) -> NDArray[np.bool_]:
+    """States that nothing but the inputs moves, such as a share of the road's shape that tyres keep."""
+    return np.asarray(~np.any(A, axis=1))
 
 
 def _per_source(system: LinearSystem, B: Matrix) -> Matrix:
@@ -118,42 +124,138 @@ def _drift_covariance(system: LinearSystem, B: Matrix) -> Matrix:
     return result
 
 
-def _excitation(system: LinearSystem, A: Matrix, B: Matrix, pade_order: int | None) -> Matrix:
-    """W of `h2`: the noise that enters, and what of it the state has met before."""
-    W = B @ B.T
-    for source in dict.fromkeys(system.sources):
-        arrivals = [j for j in np.argsort(system.delays, kind="stable") if system.sources[j] == source]
-        met = np.zeros((B.shape[0], 0))
-        for before, now in pairwise(arrivals):
-            met = np.hstack([met, B[:, [before]]])
-            met = propagate(A, met, float(system.delays[now] - system.delays[before]), pade_order)
-            cross = np.outer(met.sum(axis=1), B[:, now])
-            W = W + cross + cross.T
-    return W
+def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> Matrix | None:
+    """The squared norm of each output; None where it may be off by more than `ACCURATE`.
 
-
-def solve_lyapunov(A: Matrix, W: Matrix) -> tuple[Matrix, bool]:
-    """The symmetric P with A P + P A' + W = 0, refined with residuals in extended precision; whether that converged.
-
-    Bartels and Stewart (1972), with one Schur form for all steps of refinement.
+    The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
+    of each delayed arrival with the state that its earlier arrivals have left: exp(A dt) Bi Bj' and its transpose.
+    With the solution Q of A' Q + Q A + C' C = 0 for one output, what P leaves of the first equation changes the square
+    by tr(Q rest). With the matrices before they were rounded that corrects all rounding at first order, and is
+    believed while it is small. What rounding has done to those matrices themselves counts as an error.
     """
-    if A.shape[0] == 0:
-        return np.zeros((0, 0)), True
-    T, Z = scipy.linalg.schur(A, output="real")
+    A, scale = balance(system.A)
+    row = scale[:, None]
+    fine_A, fine_B, fine_C = fine.matrices[0] / row * scale, fine.matrices[1] / row, fine.matrices[2] * scale
+    EA, EB, EC = fine.errors[0] / row * scale, fine.errors[1] / row, fine.errors[2] * scale
+    drift = _drifting(EA + np.abs(A))
+    if np.any(drift):
+        walks = system.B[drift]
+        if np.any(np.abs(_per_source(system, walks)) > 4.0 * _EPS * _per_source(system, np.abs(walks))):
+            return None
+    moved = EA + np.abs(fine_A - A).astype(float)
+    W, EW = _excitation(system, (A, moved), (fine_B, EB), pade_order)
+    try:
+        solver = _Lyapunov(A[np.ix_(~drift, ~drift)])
+        P, rest, solved = _covariance(system, solver, A, (fine_A, fine_B, W), drift)
+        size, C = np.abs(P), fine_C.astype(float)
+        seen = np.abs(C) @ size
+        squares = np.einsum("ij,jk,ik->i", fine_C, P, fine_C)
+        goals = np.where(np.sum(seen * np.abs(C), axis=1) > 0.0, squares, np.inf).astype(float)
+        if not np.all(goals > 0.0):
+            return None
+        Q = [_adjoint(solver, A, row, drift) / goal for row, goal in zip(C, goals, strict=True)]
+    except np.linalg.LinAlgError:
+        return None
+    change = np.array([np.sum(one * rest) for one in Q])
+    together = np.abs(Q).sum(axis=0)
+    unsure = np.sum(together * (2.0 * EA @ size + EW + len(A) * _LONG * (2.0 * np.abs(A) @ size)))
+    unsure += np.sum(seen * (2.0 * EC + len(A) * _LONG * np.abs(C)) / goals[:, None])
+    if not (unsure <= ACCURATE and np.sum(together * np.abs(rest)) <= _SMALL and solved):
+        return None
+    return np.asarray(squares * (1.0 + change), dtype=float)
 
-    def solve(right: Matrix) -> Matrix:
-        Y, scale, _ = scipy.linalg.lapack.dtrsyl(T, T, -(Z.T @ right @ Z), tranb="T")
-        P = Z @ (Y / scale) @ Z.T
+
+def _covariance(
+    system: LinearSystem, solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix, Matrix], drift: NDArray[np.bool_]
+) -> tuple[Matrix, Matrix, bool]:
+    """P, what it leaves of its equation, and whether that is little of the noise that enters each state.
+
+    Of states that only drift the covariance is known, and the others follow them.
+    """
+    fine_A, fine_B, W = fine
+    P = np.zeros_like(A)
+    decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
+    d, dw = np.ix_(decays, decays), np.ix_(decays, w)
+    follow, noise = A[dw], W.astype(float)
+    walks = _drift_covariance(system, fine_B[w]).astype(float)
+    P[np.ix_(w, w)] = walks
+    P[dw] = _once(A[d], -(follow @ walks + noise[dw]))
+    P[np.ix_(w, decays)] = P[dw].T
+    P[d] = solver.refined(fine_A[d], W[d] + _both(follow @ P[dw].T))
+    rest = np.asarray(_both(fine_A @ P) + W, dtype=float)
+    rest[np.ix_(w, w)] = 8.0 * _EPS * walks
+    enters = np.diag(noise)
+    terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + enters
+    return P, rest, not np.any((enters > 0.0) & (np.abs(np.diag(rest)) > _SOLVED * terms))
+
+
+def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drift: NDArray[np.bool_]) -> Matrix:
+    """Q of `_squares` for one output."""
+    Q, goal = np.zeros_like(A), np.outer(row, row)
+    decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
+    d, dw = np.ix_(decays, decays), np.ix_(decays, w)
+    Q[d] = solver.solve(goal[d], adjoint=True)
+    Q[dw] = _once(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
+    Q[np.ix_(w, decays)] = Q[dw].T
+    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _both(Q[dw].T @ A[dw])
+    return Q
+
+
+def _once(A: Matrix, right: Matrix) -> Matrix:
+    return np.asarray(np.linalg.solve(A, right)) if right.size else right
+
+
+class _Lyapunov:
+    """Equations with one matrix A, by one Schur form (Bartels and Stewart, 1972)."""
+
+    def __init__(self, A: Matrix) -> None:
+        self.T, self.Z = scipy.linalg.schur(A, output="real") if len(A) else (A, A)
+
+    def solve(self, W: Matrix, adjoint: bool = False) -> Matrix:
+        """P with A P + P A' + W = 0, or of the equation with A' in place of A."""
+        if not W.size:
+            return W
+        kinds = ("T", "N") if adjoint else ("N", "T")
+        right = -(self.Z.T @ W @ self.Z)
+        Y, scale, _ = scipy.linalg.lapack.dtrsyl(self.T, self.T, right, trana=kinds[0], tranb=kinds[1])
+        P = self.Z @ (Y / scale) @ self.Z.T
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
-    P = solve(W)
-    long_A, long_W = A.astype(np.longdouble), W.astype(np.longdouble)
-    before = np.inf
-    for _ in range(20):
-        half = long_A @ P.astype(np.longdouble)
-        step = solve(np.asarray(half + half.T + long_W, dtype=float))
-        change = float(np.linalg.norm(step))
-        if not change < 0.5 * before:
-            break
-        P, before = P + step, change
-    return P, bool(before <= 1e-9 * float(np.linalg.norm(P)))
+    def refined(self, A: Matrix, W: Matrix) -> Matrix:
+        """P for an A and a W in extended precision, corrected for its residuals while that helps.
+
+        Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.
+        """
+        P, before = self.solve(W.astype(float)), np.inf
+        for turn in range(20):
+            step = self.solve(np.asarray(_both(A @ P) + W, dtype=float))
+            change = float(np.linalg.norm(step))
+            if turn == 0 and np.any(np.abs(np.diag(step)) > _DAMPED * np.diag(P)):
+                raise np.linalg.LinAlgError("rounding damps a motion")
+            if not change < 0.5 * before:
+                break
+            P, before = P + step, change
+        return P
+
+
+def _excitation(
+    system: LinearSystem, dynamics: tuple[Matrix, Matrix], entries: tuple[Matrix, Matrix], pade_order: int | None
+) -> tuple[Matrix, Matrix]:
+    """W of `_squares`, the noise that enters and what of it the state has met before, and its error."""
+    (A, EA), (B, EB) = dynamics, entries
+    size = np.abs(B).astype(float)
+    W, EW = B @ B.T, _both(EB @ size.T) + 2.0 * _LONG * size @ size.T
+    for source in dict.fromkeys(system.sources):
+        arrivals = [j for j in np.argsort(system.delays, kind="stable") if system.sources[j] == source]
+        met = unsure = np.zeros((B.shape[0], 0))
+        for before, now in pairwise(arrivals):
+            met, unsure = np.hstack([met, B[:, [before]]]), np.hstack([unsure, EB[:, [before]]])
+            time = float(system.delays[now] - system.delays[before])
+            met, unsure = propagate(A, EA, met.astype(float), unsure + _EPS * np.abs(met), time, pade_order)
+            W = W + _both(np.outer(met.sum(axis=1), B[:, now]))
+            EW = EW + _both(np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(met).sum(axis=1), EB[:, now]))
+    return W, EW
+
+
+def _both(matrix: Matrix) -> Matrix:
+    return np.asarray(matrix + matrix.T)

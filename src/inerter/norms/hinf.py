@@ -11,6 +11,7 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from inerter.errors import OK, LinearSystemError, Status, StatusKind
+from inerter.norms.exact import peaks_exactly
 from inerter.norms.response import resolvent
 from inerter.norms.stability import pole_rates, split
 from inerter.systems.linear import LinearSystem, check_system
@@ -40,19 +41,35 @@ class HInfinity:
 def hinf_norm(system: LinearSystem) -> HInfinity:
     """Largest singular value of G(j omega) over all frequencies, with every local maximum.
 
-    Peaks are sought from every pole and on a grid, refined one by one, and the highest is then certified by the level
-    sets of the gain: eigenvalues of a Hamiltonian matrix on the imaginary axis tell where the gain crosses a level
-    just above it (Bruinsma and Steinbuch, 1990). Motions that do not decay count only if they can be excited and seen.
+    A system that comes from a mechanism and has one input or one output is a fraction of polynomials with whole
+    coefficients: its peaks are all roots of the slope of that, and nothing is left to rounding. For others peaks are
+    sought from every pole and on a grid, refined one by one, and the highest is then certified by the level sets of
+    the gain: eigenvalues of a Hamiltonian matrix on the imaginary axis tell where the gain crosses a level just above
+    it (Bruinsma and Steinbuch, 1990). Motions that do not decay count only if they can be excited and seen. Where
+    rounding hides the damping of the highest resonance, the value is nan.
 
     Raises `LinearSystemError` if inputs of one source arrive at different times.
     """
     check_system(system)
     merged = _merge(system)
+    exact = system.fine is not None
+    found = peaks_exactly(system) if exact else None
+    if found is not None:
+        known, status = found
+        return HInfinity(known[0][1] if known else 0.0, tuple(Peak(*peak) for peak in known), status)
     parts = split(merged)
     if parts.poles.size and np.any(parts.visible()):
+        if exact:  # the transfer functions have no such poles
+            return HInfinity(np.nan, (), _hidden(float(np.abs(parts.poles.imag).max())))
         frequencies = np.unique(np.abs(parts.poles.imag))
         return HInfinity(np.inf, tuple(Peak(float(w), np.inf) for w in frequencies), parts.status)
     stable = LinearSystem(parts.decaying.A, parts.decaying.B, parts.decaying.C, merged.D)
+    value, peaks = _largest(stable)
+    status = _sharpness(stable.A, peaks)
+    return HInfinity(value if status.ok else np.nan, tuple(peaks), status)
+
+
+def _largest(stable: LinearSystem) -> tuple[float, list[Peak]]:
     gain = _gain(stable)
     poles = np.linalg.eigvals(stable.A) if stable.order else np.zeros(0)
     grid = _grid(np.asarray(poles, dtype=complex))
@@ -63,8 +80,7 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
             break
         grid = np.unique(np.concatenate([grid, higher]))
         peaks = _peaks(gain, grid, stable.D)
-    value = peaks[0].gain if peaks else 0.0
-    return HInfinity(value, tuple(peaks), _sharpness(stable.A, peaks))
+    return peaks[0].gain if peaks else 0.0, peaks
 
 
 def _sharpness(A: Matrix, peaks: list[Peak]) -> Status:
@@ -75,11 +91,12 @@ def _sharpness(A: Matrix, peaks: list[Peak]) -> Status:
     poles = np.linalg.eigvals(A)
     nearest = int(np.argmin(np.abs(1j * peaks[0].omega - poles)))
     there = int(np.argmin(np.abs(rates - poles[nearest].real)))
-    if abs(poles[nearest].imag) > 1e3 * abs(rates[there]) and errors[there] > 1e-6 * abs(rates[there]):
-        return Status(
-            StatusKind.INACCURATE, f"rounding hides the damping of the resonance at {peaks[0].omega:.6g} rad/s"
-        )
-    return OK
+    sharp = abs(poles[nearest].imag) > 1e3 * abs(rates[there]) and errors[there] > 1e-6 * abs(rates[there])
+    return _hidden(peaks[0].omega) if sharp else OK
+
+
+def _hidden(omega: float) -> Status:
+    return Status(StatusKind.INACCURATE, f"rounding hides the damping of the resonance at {omega:.6g} rad/s")
 
 
 def _merge(system: LinearSystem) -> LinearSystem:

@@ -100,7 +100,8 @@ def balance(A: Matrix) -> tuple[Matrix, Matrix]:
     """A after a diagonal change of units by powers of two, and the units: A_new = A / scale[:, None] * scale."""
     if A.shape[0] == 0:
         return A, np.ones(0)
-    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    with np.errstate(invalid="ignore", over="ignore"):
+        balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     return np.asarray(balanced, dtype=float), np.asarray(scale, dtype=float)
 
 
@@ -116,8 +117,11 @@ def pole_rates(A: Matrix) -> tuple[Matrix, Matrix]:
     poles, left, right = eigen
     eps = np.finfo(float).eps
     overlap = np.sum(left.conj() * right, axis=0)
-    close = np.sum(np.abs(poles[:, None] - poles) <= 1e-2 * np.abs(poles)[:, None], axis=1).clip(1)
     alone = np.abs(overlap) > np.sqrt(eps)
+    apart = np.abs(poles[:, None] - poles)
+    near = apart <= 1e-2 * np.abs(poles)[:, None]
+    near |= ~alone[:, None] & ~alone & (apart <= np.sqrt(eps) * np.linalg.norm(A))  # a cluster at zero
+    close = np.sum(near, axis=1).clip(1)
     poles[alone] = np.sum(left.conj() * (A @ right), axis=0)[alone] / overlap[alone]
     spread = np.einsum("ik,ij,jk->k", np.abs(left), np.abs(A), np.abs(right))
     size = np.maximum(np.abs(overlap), eps ** (1.0 - 1.0 / close))  # k equal poles move by eps^(1/k)

@@ -14,7 +14,7 @@ from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.indices.index import Index
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Method, check_request, evaluate
+from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element, Friction, Gap
 from inerter.networks.transform import map_elements
 from inerter.units import format_quantity
@@ -194,12 +194,12 @@ def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[f
     return present / _REACH, present * _REACH
 
 
-def _as_many_roads(design: Vehicle, index: Index, method: Any) -> Any:
+def _as_many_roads(design: Vehicle, index: Index, method: Method) -> Method:
     """The method with a fixed number of roads, so that differences are continuous in the parameter."""
-    if getattr(method, "relative_error", None) is None:
+    if not isinstance(method, Averaging):
         return method
     found = evaluate(design, index, method)
-    return replace(method, relative_error=None, realisations=found.realisations) if found.realisations else method
+    return method.fixed(found.realisations) if found.realisations else method
 
 
 def _crossing(difference: Callable[[float], float], known: dict[float, Comparison], a: float, b: float) -> Crossing:

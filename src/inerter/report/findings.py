@@ -24,6 +24,7 @@ from inerter.figures.labels import (
     quantity,
     swept_element,
 )
+from inerter.methods.ties import equally_least
 
 Writer = Callable[[float, str, float], str]
 
@@ -42,9 +43,25 @@ def headlines(results: xr.Dataset, write: Writer = quantity) -> list[str]:
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
     """The layout with the least value of `index`; None if no value is finite. For a study without a sweep."""
-    values = one_method(results)["value"].sel(index=index)
-    finite = values.where(np.isfinite(values))
-    return None if bool(finite.isnull().all()) else str(finite.idxmin("layout").item())
+    return next(iter(best_layouts(results, index)), None)
+
+
+def best_layouts(results: xr.Dataset, index: str) -> list[str]:
+    """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
+    values = one_method(results)["value"].sel(index=index).squeeze()
+    names = results["layout"].values.tolist()
+    return _simplest_first(results, [names[i] for i in equally_least(values.values.reshape(-1).tolist())])
+
+
+def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
+    """Of layouts that are equally good the one with the fewest elements comes first, then as in the file."""
+    if "elements" not in results.coords:
+        return names
+    return sorted(names, key=lambda name: int(results["elements"].sel(layout=name)))
+
+
+def _as_good(names: list[str]) -> str:
+    return f" (equally good: {_listed(names[1:])})" if len(names) > 1 else ""
 
 
 def extremes(row: xr.DataArray, element: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
@@ -104,11 +121,13 @@ def _listed(words: list[str]) -> str:
 def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
     every, results = results, one_method(results)
     title, baseline = index_title(results, index), results.attrs["baseline"]
-    best = best_layout(results, index)
-    if best is None:
+    names = best_layouts(results, index)
+    if not names:
         return f"Best {title}: no layout has a finite value."
+    best = names[0]
     design = results.sel(layout=best, index=index)
-    answer = f"Best {title}: {best}, {write(float(design['value']), index_unit(results, index), error_of(design))}"
+    value = write(float(design["value"]), index_unit(results, index), error_of(design))
+    answer = f"Best {title}: {best}{_as_good(names)}, {value}"
     if best == baseline:
         return f"{answer}; no other layout is better than this baseline."
     improvement = float(design["improvement"])
@@ -131,24 +150,26 @@ def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
 def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
     element, title, baseline = str(swept_element(results)), index_title(results, index), results.attrs["baseline"]
     unit = results[element].attrs["units"]
-    names = compared(results) or results["layout"].values.tolist()
+    layouts = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
-    found = {name: ends for name in names if (ends := extremes(rows.sel(layout=name), element)) is not None}
+    found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name), element)) is not None}
     if not found:
         return f"Best {title}: no layout has a finite value."
     if not compared(results):
-        name = min(found, key=lambda name: found[name][0][0])
-        value, at = found[name][0]
+        least_of_all = [ends[0][0] for ends in found.values()]
+        names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
+        value, at = found[names[0]][0]
         text = write(value, index_unit(results, index), np.nan)
-        return f"Best {title}: {name}, {text} at {element} = {write(at, unit, np.nan)}."
-    name = max(found, key=lambda name: found[name][1][0])
-    (least, _), (largest, at) = found[name]
+        return f"Best {title}: {names[0]}{_as_good(names)}, {text} at {element} = {write(at, unit, np.nan)}."
+    remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
+    names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
+    (least, _), (largest, at) = found[names[0]]
     if largest < _NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {element}."
+    best = f"{names[0]}{_as_good(names)}, {largest:.1f} % better at {element} = {write(at, unit, np.nan)}"
     return (
-        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {name}, {largest:.1f} % "
-        f"better at {element} = {write(at, unit, np.nan)}; its improvement over the sweep lies "
-        f"{_range(least, largest)}."
+        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {best}; its improvement over "
+        f"the sweep lies {_range(least, largest)}."
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.reproduce import Reproduction
-from inerter.papers.wang_su_2008.rows import DIFFERS, SimulatedRow
+from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK, SimulatedRow
 from inerter.records.result import Response
 
 
@@ -77,7 +77,13 @@ def csv_text(rows: list[dict[str, Any]]) -> str:
 
 
 def reason(r: SimulatedRow) -> str:
-    """Why a row differs from the printed one, as far as can be told; empty if it does not."""
+    """Why a row is not the printed one, as far as can be told; empty where scatter or rounding explains it."""
+    if r.verdict == OTHER_PEAK:
+        peak = r.compatible[0]
+        return (
+            f"the printed value follows the peak at {peak.omega:.1f} rad/s, {peak.gain:.5g} m/N, which is not the "
+            "highest; by which rule is not printed"
+        )
     if r.verdict != DIFFERS:
         return ""
     if r.row.index == "J5" and r.row.table == 2:
@@ -85,9 +91,9 @@ def reason(r: SimulatedRow) -> str:
             "a maximum of raw gains has no expectation where friction adds output of its own; how it was averaged "
             "there is not printed. Here: smoothed over 0.2 Hz to both sides"
         )
-    if not r.row.has_friction:
+    if not r.row.has_friction and r.score is None:
         return "the printed value differs from the linear norm beside it, which a linear design cannot do"
-    return "no convention that was tried explains the difference"
+    return f"{abs(r.score or 0.0):.1f} standard errors off; no convention that was tried explains it"
 
 
 def _linear_row(c: ComparedRow) -> dict[str, Any]:
@@ -137,12 +143,13 @@ def _simulated_row(r: SimulatedRow) -> dict[str, Any]:
         "exact": r.exact,
         "exact_standard_error": r.exact_error,
         "difference_percent": 100.0 * r.difference,
-        "tolerance_percent": 100.0 * r.tolerance,
+        "difference_in_standard_errors": r.score,
         "verdict": r.verdict,
         "reason": reason(r),
         "improvement_printed_percent": r.row.improvement,
         "improvement_percent": r.improvement,
-        "omega_followed": r.omega,
+        "nearest_peak_omega": None if r.nearest is None else r.nearest.omega,
+        "peaks_from_rest": "; ".join(f"{gain:.6g}" for gain in r.begun),
         "peaks": "; ".join(f"{peak.omega:.6g} rad/s: {peak.gain:.6g}" for peak in r.peaks),
     }
 

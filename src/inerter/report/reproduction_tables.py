@@ -5,7 +5,7 @@ from __future__ import annotations
 from inerter.figures.labels import printed, typeset
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.reproduce import Reproduction
-from inerter.papers.wang_su_2008.rows import DIFFERS, WITHIN, SimulatedRow
+from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK
 from inerter.report.reproduction_rows import reason
 from inerter.report.reproduction_text import budget_value, digits, share, signed, with_error
 from inerter.report.tables import Cell, Row, Table
@@ -40,7 +40,7 @@ def simulated_table(found: Reproduction, number: int) -> Table | None:
                 Cell(typeset(f"{signed(100.0 * r.difference)} %")),
                 Cell(typeset(with_error(r.exact, r.exact_error))),
                 *([] if r.improvement is None else [Cell(f"{r.improvement:.2f} %", f"printed {r.row.improvement}")]),
-                Cell(_printed_verdict(r), strong=r.verdict == DIFFERS),
+                Cell(r.verdict, strong=r.verdict in (DIFFERS, OTHER_PEAK)),
             ],
             status=reason(r),
         )
@@ -51,10 +51,6 @@ def simulated_table(found: Reproduction, number: int) -> Table | None:
     header = ["Design", "Printed", "paper2008", "Difference", "Exact", *over, "Verdict"]
     method = "approximated linear model (Method 1)" if number == 2 else "expected value (Method 2)"
     return Table(f"Table {number} anew, {method}: J1 in m/s², J3 in N, J5 in m/N", header, rows) if rows else None
-
-
-def _printed_verdict(r: SimulatedRow) -> str:
-    return f"within {100.0 * r.tolerance:g} %" if r.verdict == WITHIN else r.verdict
 
 
 def designs_table(found: list[FoundDesign], number: int) -> Table:

@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import Any
 
 from inerter.figures.labels import printed
-from inerter.papers.wang_su_2008.claims import Claim
+from inerter.papers.wang_su_2008.judging import Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rig import SIMULATED, Found
@@ -16,7 +16,7 @@ from inerter.papers.wang_su_2008.source import TITLE
 from inerter.report.text import WIDTH
 from inerter.units import format_quantity
 
-_SIGNS = dict(zip(VERDICTS, "=~!", strict=True))
+_SIGNS = dict(zip(VERDICTS, "=~<^!", strict=True))
 
 
 def reproduction_text(found: Reproduction) -> str:
@@ -107,8 +107,9 @@ def _simulated_text(table: int, rows: list[SimulatedRow]) -> list[str]:
     how = "the approximated linear model (Method 1)" if table == 2 else "expected values (Method 2)"
     return [
         *wrap(
-            f"Table {table} by {how}; = equal to the printed digits, ~ within the tolerance, ! differs (the report "
-            "says why). Standard errors are in simulated-rows.csv.",
+            f"Table {table} by {how}; = equal to the printed digits, ~ within the scatter of four runs, < as from a "
+            "start at rest, ^ another peak than the highest was printed, ! differs (the report says why). Standard "
+            "errors are in simulated-rows.csv.",
             WIDTH,
         ),
         "",

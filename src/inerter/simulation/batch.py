@@ -20,6 +20,7 @@ from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import InputTable, assign, check_holds, tabulate, whole_steps
 from inerter.simulation.start import Initial, initial_state
+from inerter.systems.outputs import find
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.cars import Vehicle
 
@@ -157,8 +158,7 @@ class _Tables:
 def _system(car: Vehicle, outputs: Sequence[str]) -> PiecewiseSystem:
     system = piecewise(car)
     for name in outputs:
-        if name not in system.outputs:
-            raise SimulationError(f"There is no output named {name!r} (there are: {', '.join(system.outputs)}).")
+        find(system.outputs, name, SimulationError)
     return system
 
 

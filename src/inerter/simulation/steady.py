@@ -19,7 +19,7 @@ from inerter.simulation.trajectory import Repetition
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
-_PERIODS, _RECORDED, _FEW_PERIODS = 300, 12, 30
+_PERIODS, _RECORDED, FEW_PERIODS = 300, 12, 30
 _SETTLING = 20.0  # [s]
 _REPEATS, _ENOUGH = 1e-10, 1e-6  # changes of the state over a period, relative to its size
 
@@ -96,10 +96,10 @@ def mean_squares(
     table: InputTable,
     outputs: Sequence[str],
     state: Matrix,
-    most: int = _FEW_PERIODS,
+    most: int = FEW_PERIODS,
     repeats: float = _ENOUGH,
-) -> tuple[Matrix, Integration]:
-    """Mean squares of outputs over one period, once the state repeats, and the integration.
+) -> tuple[Matrix, Integration, int]:
+    """Mean squares of outputs over one period, once the state repeats, the integration, and how many periods it took.
 
     It repeats if it changes by less than `repeats` of its size. Goes through `most` periods at most. What the
     integration's `status` or `warning` say holds for the squares.
@@ -108,7 +108,7 @@ def mean_squares(
     integration, settled = _repeated(begun, repeating(table), repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _unsettled(settled)
-    return integration.record.sums[0] / (table.samples - 1), integration
+    return integration.record.sums[0] / (table.samples - 1), integration, settled.periods
 
 
 def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:

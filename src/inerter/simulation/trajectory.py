@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError, Status
-from inerter.systems.outputs import Output
+from inerter.systems.outputs import Output, find
 
 if TYPE_CHECKING:
     import xarray
@@ -99,12 +98,9 @@ class Trajectory:
 
         Raises `SimulationError` for a name that is not there.
         """
-        if name not in self.outputs:
-            close = get_close_matches(str(name), self.outputs, n=3)
-            hint = f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join(self.outputs)}."
-            raise SimulationError(f"There is no output named {name!r}. {hint}")
+        output = find(self.outputs, name, SimulationError)
         if name not in self._known:
-            self._known[name] = self._evaluate(self.outputs[name])
+            self._known[name] = self._evaluate(output)
         return np.asarray(self._known[name])
 
     def rms(self, name: str) -> float:

@@ -78,6 +78,7 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         variables[name] = (dims, array, {"long_name": long_name})
     coords: dict[str, Any] = {
         "layout": list(study.layouts),
+        "elements": ("layout", [_count(study, layout) for layout in study.layouts]),
         "index": list(indices),
         "method": list(study.evaluate),
         "other": list(indices),
@@ -93,6 +94,11 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     for name in _PERCENT & set(variables):
         data[name].attrs["units"] = "percent"
     return data
+
+
+def _count(study: Study, layout: str) -> int:
+    """How many elements the struts of a layout have."""
+    return sum(len(list(strut.network.elements())) for strut in study.design(layout).mechanism().struts)
 
 
 def is_uncertain(study: Study) -> bool:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from inerter.errors import DesignError
+import numpy as np
+
+from inerter.errors import DesignError, LinearSystemError
 from inerter.systems.descriptor import close, describe
 from inerter.systems.linear import LinearSystem, check_names
 from inerter.vehicle.cars import Vehicle, check_vehicle
@@ -21,7 +23,7 @@ def assemble(
     comes only when it is named.
 
     Raises `DesignError` if a value is free, `MechanismError` if the mechanism is ill-posed, `LinearSystemError` for
-    an input or output that is not there.
+    an input or output that is not there, or where rounding leaves nothing of the matrices.
     """
     check_vehicle(vehicle)
     mechanism = vehicle.mechanism()
@@ -30,4 +32,10 @@ def assemble(
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
     inputs = None if inputs is None else check_names("inputs", inputs)
     outputs = None if outputs is None else check_names("outputs", outputs)
-    return close(describe(mechanism, inputs, outputs), {})
+    system = close(describe(mechanism, inputs, outputs), {})
+    if system.fine is not None and not np.all(np.isfinite(system.fine.errors[0])):
+        raise LinearSystemError(
+            "The values of this mechanism lie so far apart that no digit of its matrices is certain. Its indices do "
+            "not need them: evaluate(...) gives them all the same."
+        )
+    return system

@@ -16,7 +16,7 @@ is made once for all designs of a layout.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache, wraps
 
 import numpy as np
@@ -24,6 +24,8 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
+from inerter.systems import rationals
+from inerter.systems.rationals import Rows
 
 Matrix = NDArray[np.float64]
 _RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
@@ -31,7 +33,11 @@ _RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehi
 
 @dataclass(frozen=True, eq=False)
 class Coordinates:
-    """Node velocities v = R a + U u + Y y + Z z; elongations e = G g + Z_e zeta; g' = P e'."""
+    """Node velocities v = R a + U u + Y y + Z z; elongations e = G g + Z_e zeta; g' = P e'.
+
+    `rates` gives g' over a, y and the roads. A share of the roads' shape that nothing can relax, as three axles under
+    a rigid body keep it in their tyres, is an elongation of its own whose rate over a and y is zero.
+    """
 
     R: Matrix
     U: Matrix
@@ -40,6 +46,18 @@ class Coordinates:
     G: Matrix
     Z_e: Matrix
     P: Matrix
+    rates: tuple[Matrix, Matrix, Matrix]
+    motions: Rows  # R, U, Y and Z in fractions, a column each
+    known: dict[bytes, list[Matrix]] = field(default_factory=dict)  # what `rate` has found
+
+    def rate(self, nodes: Matrix) -> list[Matrix]:
+        """The velocity of a combination of nodes over a, u, y and z; what is zero is zero."""
+        key = nodes.tobytes()
+        if key not in self.known:
+            row = rationals.product(rationals.exact(nodes[None]), self.motions, nodes.size)
+            edges = np.cumsum([self.R.shape[1], self.U.shape[1], self.Y.shape[1]])
+            self.known[key] = np.split(rationals.rounded(row, nodes.size)[0], edges)
+        return self.known[key]
 
 
 def find_coordinates(
@@ -57,25 +75,93 @@ def find_coordinates(
 
     Raises `MechanismError` for a node that is held by nothing.
     """
-    n = len(nodes)
-    loose = null_space(np.vstack([inertia, damping, springs]))
-    if loose.shape[1]:
-        node = nodes[int(np.argmax(np.abs(loose[:, 0])))]
+    found = _found(*((m.shape, m.tobytes()) for m in (inertia, damping, springs, spring_roads, forces)))
+    if isinstance(found, int):
         raise MechanismError(
-            f"Node {node!r} is held by nothing: no mass, spring, damper or inerter resists its motion."
+            f"Node {nodes[found]!r} is held by nothing: no mass, spring, damper or inerter resists its motion."
         )
-    massless = null_space(inertia)
-    Z = null_space(np.vstack([inertia, damping]))
-    Y = complete(Z, massless)
-    U = null_space(np.vstack([damping, springs]))
-    U = U @ null_space(forces @ U)
-    R = complete(np.hstack([U, massless]), np.eye(n))
-    Z_e = springs @ Z
-    off_Z = np.eye(springs.shape[0]) - Z_e @ pseudo_inverse(Z_e) if Z.shape[1] else np.eye(springs.shape[0])
-    attainable = off_Z @ np.hstack([springs @ R, springs @ Y, spring_roads])
-    chosen = independent_rows(attainable)
-    G = clean(attainable @ pseudo_inverse(attainable[chosen])) if chosen else np.zeros((springs.shape[0], 0))
-    return Coordinates(R, U, Y, Z, G, Z_e, clean(off_Z[chosen]))
+    return found
+
+
+def combination(rows: Matrix, target: Matrix) -> Matrix | None:
+    """Numbers with which the rows add up to `target`; None if they cannot."""
+    return _combination(rows.shape, rows.tobytes(), target.tobytes())
+
+
+@lru_cache(maxsize=512)
+def _combination(shape: tuple[int, int], rows: bytes, target: bytes) -> Matrix | None:
+    matrix, wanted = np.frombuffer(rows).reshape(shape), np.frombuffer(target)[None]
+    found = rationals.weights(rationals.exact(matrix), rationals.exact(wanted))[0]
+    return None if found is None else rationals.rounded([found], shape[0])[0]
+
+
+@lru_cache(maxsize=512)
+def _found(*matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
+    """The coordinates, or the number of a node that is held by nothing; remembered for all designs of a layout."""
+    n, roads = matrices[0][0][1], matrices[3][0][1]
+    inertia, damping, springs, spring_roads, forces = (
+        rationals.exact(np.frombuffer(data).reshape(shape)) for shape, data in matrices
+    )
+    loose = rationals.null_space([*inertia, *damping, *springs], n)
+    if loose:
+        return max(range(n), key=lambda i: abs(loose[0][i]))
+    eye = rationals.exact(np.eye(n))
+    massless = rationals.null_space(inertia, n)
+    Z = rationals.null_space([*inertia, *damping], n)
+    Y = [massless[i] for i in rationals.independent(massless, Z)]
+    U = rationals.null_space([*damping, *springs], n)
+    pushed = rationals.product(forces, rationals.transposed(U, n), len(U))
+    U = rationals.product(rationals.null_space(pushed, len(U)), U, n)
+    R = [eye[i] for i in rationals.independent(eye, [*U, *massless])]
+    stretched = rationals.transposed(rationals.product(Z, rationals.transposed(springs, n), len(springs)), len(springs))
+    off_Z = _off(stretched, len(Z))
+    over_a, over_y = (rationals.product(springs, rationals.transposed(motions, n), len(motions)) for motions in (R, Y))
+    stretched_by = [[*a, *y, *u] for a, y, u in zip(over_a, over_y, spring_roads, strict=True)]
+    moved, width = len(R) + len(Y), len(R) + len(Y) + roads
+    attainable = rationals.product(off_Z, stretched_by, width)
+    P = _independent_elongations(attainable, off_Z, moved)
+    rates = rationals.product(P, stretched_by, width)
+    whole = rationals.rounded(rates, width)
+    return Coordinates(
+        R=rationals.rounded(R, n).T,
+        U=rationals.rounded(U, n).T,
+        Y=rationals.rounded(Y, n).T,
+        Z=rationals.rounded(Z, n).T,
+        G=rationals.rounded(_shares(rates, attainable), len(P)),
+        Z_e=rationals.rounded(stretched, len(Z)),
+        P=rationals.rounded(P, len(springs)),
+        rates=(whole[:, : len(R)], whole[:, len(R) : moved], whole[:, moved:]),
+        motions=rationals.transposed([*R, *U, *Y, *Z], n),
+    )
+
+
+def _shares(rows: Rows, targets: Rows) -> Rows:
+    """`rationals.weights` of targets that lie in the span of the rows."""
+    return [found for found in rationals.weights(rows, targets) if found is not None]
+
+
+def _off(columns: Rows, count: int) -> Rows:
+    """The projection that takes the span of so many independent columns out."""
+    size = len(columns)
+    turned = rationals.transposed(columns, count)
+    square = rationals.product(turned, columns, count)
+    inverse = _shares(square, rationals.exact(np.eye(count)))
+    spanned = rationals.product(rationals.product(columns, inverse, count), turned, size)
+    eye = rationals.exact(np.eye(size))
+    return [[x - y for x, y in zip(one, other, strict=True)] for one, other in zip(eye, spanned, strict=True)]
+
+
+def _independent_elongations(attainable: Rows, off_Z: Rows, moved: int) -> Rows:
+    """Combinations of springs whose elongations are independent: first of those that motions stretch, then of what is
+    left of the others when these are taken out, which only roads stretch.
+    """
+    motions = [row[:moved] for row in attainable]
+    first = rationals.independent(motions)
+    others = rationals.independent(attainable, [attainable[i] for i in first])
+    taken = _shares([motions[i] for i in first], [motions[i] for i in others])
+    P = [off_Z[i] for i in first]
+    away = rationals.product(taken, P, len(off_Z))
+    return P + [[x - y for x, y in zip(off_Z[i], row, strict=True)] for i, row in zip(others, away, strict=True)]
 
 
 def _remembered(function: Callable[..., Matrix]) -> Callable[..., Matrix]:

@@ -1,7 +1,8 @@
 """Equations of motion of a mechanism as one linear solve whose coefficients are affine in the element values.
 
 With the states x = (velocities a, elongations g), the inputs u (road velocities, then forces) and the unknowns
-eta = (accelerations of R and U, velocities of Y, elongations zeta, velocities of U) of `coordinates`:
+eta = (accelerations of R and U, velocities of Y, elongations zeta, velocities of U) of `coordinates`, and the
+velocities of Z where an output asks for them:
 
     S(p) eta = R(p) x + F(p) u
     x'       = X_eta eta + X_x x + X_u u
@@ -16,19 +17,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, LinearSystemError, MechanismError
 from inerter.networks.elements import Damper, Element, Free, Inerter, Spring
-from inerter.systems.coordinates import Coordinates, find_coordinates
-from inerter.systems.graph import Branch, Graph, linear_graph
-from inerter.systems.linear import LinearSystem
+from inerter.systems.coordinates import Coordinates, combination, find_coordinates
+from inerter.systems.graph import Branch, Graph, full_graph, linear_graph
+from inerter.systems.linear import Fine, LinearSystem, Origin
+from inerter.systems.outputs import Output, find, main_outputs, outputs
+from inerter.systems.polynomials import TransferFunctions
+from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
+Rows = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
+_ROUNDING = float(np.finfo(np.longdouble).eps)
+_TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +58,9 @@ class Descriptor:
     outputs: tuple[str, ...]
     variables: dict[str, Free]
     notes: tuple[str, ...]
+    sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
+    mechanism: Mechanism
+    graph: Graph
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
@@ -61,30 +73,61 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
         raise DesignError(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
-    p = np.array([1.0, *(values[name] for name in descriptor.variables)])
-    S, R, F, Y_eta, Y_x, Y_u = (
-        np.tensordot(p, stack, 1)
-        for stack in (descriptor.S, descriptor.R, descriptor.F, descriptor.Y_eta, descriptor.Y_x, descriptor.Y_u)
-    )
-    size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
+    p = np.array([1.0, *(values[name] for name in descriptor.variables)], dtype=np.longdouble)
+    d = descriptor
+    S, R, F, Y_eta, Y_x, Y_u = (_summed(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (_summed(p.astype(float), stack) for stack in d.sizes)
+    T, T_error = _solved(S, np.hstack([R, F]), S_size, np.hstack([R_size, F_size]))
+    X, Y = np.hstack([d.X_x, d.X_u]), np.hstack([Y_x, Y_u])
+    top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
+    size = np.abs(T).astype(float)
+    with np.errstate(invalid="ignore"):  # nothing times infinite: as unsure
+        top_error = np.abs(d.X_eta) @ (T_error + _ROUNDING * size) + _ROUNDING * np.abs(X)
+        bottom_error = np.abs(Y_eta).astype(float) @ T_error
+    bottom_error += _TERMS * _ROUNDING * (np.hstack([Y_x_size, Y_u_size]) + Y_eta_size @ size)
     n = R.shape[1]
-    scaled, right = S / size, np.hstack([R, F]) / size
-    solved = np.linalg.solve(scaled, right)
-    rest = right.astype(np.longdouble) - scaled.astype(np.longdouble) @ solved.astype(np.longdouble)
-    solved = solved + np.linalg.solve(scaled, np.asarray(rest, dtype=float))
-    T_x, T_u = solved[:, :n], solved[:, n:]
-    if np.any(F):  # an input that reaches an acceleration by rounding only would make an r.m.s. value infinite
-        T_u = np.where(np.abs(T_u) > 1e-14 * np.abs(np.linalg.inv(scaled)) @ np.abs(F / size), T_u, 0.0)
+    for matrix, error in ((top[:, n:], top_error[:, n:]), (bottom[:, n:], bottom_error[:, n:])):
+        matrix[np.abs(matrix) <= error] = 0.0  # white noise that reaches an output by rounding only would be infinite
+    errors = top_error[:, :n], top_error[:, n:], bottom_error[:, :n], bottom_error[:, n:]
+    fine = Fine((top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]), errors)
+    A, B, C, D = (matrix.astype(float) for matrix in fine.matrices)
     return LinearSystem(
-        A=descriptor.X_x + descriptor.X_eta @ T_x,
-        B=descriptor.X_u + descriptor.X_eta @ T_u,
-        C=Y_x + Y_eta @ T_x,
-        D=Y_u + Y_eta @ T_u,
-        states=descriptor.states,
-        inputs=descriptor.inputs,
-        outputs=descriptor.outputs,
-        notes=descriptor.notes,
+        A=A,
+        B=B,
+        C=C,
+        D=D,
+        states=d.states,
+        inputs=d.inputs,
+        outputs=d.outputs,
+        notes=d.notes,
+        origin=Origin(partial(_functions, d, dict(values)), (A, B, C, D), fine, d.inputs, d.outputs),
     )
+
+
+def _summed(p: NDArray[Any], stack: Matrix) -> Matrix:
+    return stack[0] if p.size == 1 else np.tensordot(p, stack, 1)
+
+
+def _solved(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
+    """S^-1 right in extended precision, and its error: infinite where S is singular to rounding."""
+    size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
+    scaled, right = S / size, right / size
+    try:
+        inverse = np.linalg.inv(scaled.astype(float))
+    except np.linalg.LinAlgError:
+        return np.zeros_like(right), np.full(right.shape, np.inf)
+    solved = step = (inverse @ right.astype(float)).astype(np.longdouble)
+    for _ in range(3):
+        step = inverse @ (right - scaled @ solved).astype(float)
+        solved = solved + step
+    terms = (S_size @ np.abs(solved).astype(float) + right_size) / size.astype(float)
+    return solved, np.abs(step) + _TERMS * _ROUNDING * (np.abs(inverse) @ terms)
+
+
+def _functions(
+    descriptor: Descriptor, values: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
+) -> TransferFunctions:
+    return transfer_functions(descriptor.mechanism, descriptor.graph, values, inputs, outputs)
 
 
 def describe(
@@ -94,7 +137,7 @@ def describe(
 
     By default all inputs, and every output that needs no state of its own; the displacement of a body over a moving
     road is such a state (it drifts like the road) and comes only when it is named. A road that is not an input lies
-    still. By name there are also, for every element, its `<label>_velocity` as an output, and `<label>_force` as an
+    still. By name there is every other output of `systems.outputs` too, and, for every element, `<label>_force` as an
     input: a force beside the element, positive in tension.
 
     Raises `MechanismError` for what is ill-posed, `LinearSystemError` for a name that is not there.
@@ -106,7 +149,9 @@ def describe(
     for name in chosen:
         if name not in (*names, *beside):
             raise LinearSystemError(f"There is no input named {name!r} (there are: {', '.join(names) or 'none'}).")
-    equations = _Equations(mechanism, graph, [n for n in dict.fromkeys((*names, *beside)) if n in chosen])
+    equations = _Equations(
+        mechanism, graph, [n for n in dict.fromkeys((*names, *beside)) if n in chosen], outputs or ()
+    )
     equations.add_balance()
     for name in equations.possible_outputs() if outputs is None else outputs:
         equations.add_output(name)
@@ -115,7 +160,7 @@ def describe(
 
 def is_held_by_springs(mechanism: Mechanism) -> bool:
     """Whether springs determine the position of every coordinate when all roads lie still."""
-    equations = _Equations(mechanism, linear_graph(mechanism), [])
+    equations = _Equations(mechanism, linear_graph(mechanism), [], ())
     still = np.zeros(len(mechanism.roads))
     rows = np.eye(len(equations.graph.nodes))[: len(mechanism.coordinates)]
     return all(equations.displacement(row, still) is not None for row in rows)
@@ -126,6 +171,7 @@ class _Equations:
     mechanism: Mechanism
     graph: Graph
     inputs: list[str]
+    wanted: Sequence[str]
     outputs: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -163,15 +209,23 @@ class _Equations:
         c = self.split
         self.variables = self._variables()
         self.na, self.ng = c.R.shape[1], c.G.shape[1]
-        sizes = [self.na, c.U.shape[1], c.Y.shape[1], c.Z.shape[1], c.U.shape[1]]
+        self.known = outputs(self.mechanism, self.graph)
+        sizes = [self.na, c.U.shape[1], c.Y.shape[1], c.Z.shape[1], c.U.shape[1], c.Z.shape[1] * self._settling()]
         edges = np.cumsum([0, *sizes])
-        self.a1, self.u1, self.y, self.z, self.u0 = (slice(int(i), int(j)) for i, j in pairwise(edges))
+        self.a1, self.u1, self.y, self.z, self.u0, self.z1 = (slice(int(i), int(j)) for i, j in pairwise(edges))
         self.a, self.g = slice(0, self.na), slice(self.na, self.na + self.ng)
         k, n, e, m = 1 + len(self.variables), self.na + self.ng, int(edges[-1]), len(self.inputs)
         self.k, self.n, self.e, self.m = k, n, e, m
-        self.S, self.R, self.F = np.zeros((k, e, e)), np.zeros((k, e, n)), np.zeros((k, e, m))
-        self.rows: list[tuple[Matrix, Matrix, Matrix]] = []
+        self.balance = np.zeros((k, e, e + n + m), np.longdouble)  # S, -R and -F beside each other
+        self.size = np.zeros_like(self.balance)
+        self.rows: list[Rows] = []
+        self.row_sizes: list[Rows] = []
         self.extra: list[tuple[str, Matrix, Matrix, Matrix]] = []  # integrators: name, rows on eta, x, u
+
+    def _settling(self) -> bool:
+        """Whether an output asks how fast something moves that only springs hold."""
+        asked = [self.known[name].velocity for name in self.wanted if name in self.known]
+        return any(np.any(self.split.rate(row)[3]) for row in asked if row.size)
 
     def _variables(self) -> dict[str, Free]:
         elements = (branch.element for branch in self.graph.branches)
@@ -185,16 +239,16 @@ class _Equations:
 
     def _by_value(self, element: Element, array: Matrix) -> Matrix:
         """`array` times the element's value, as a stack over the design variables."""
-        stack = np.zeros((self.k, *array.shape))
+        stack = np.zeros((self.k, *array.shape), np.longdouble)
         value = element.value
         if isinstance(value, Free):
             stack[1 + list(self.variables).index(str(value.name))] = array
         else:
-            stack[0] = value * array
+            stack[0] = value * array.astype(np.longdouble)
         return stack
 
     def add_balance(self) -> None:
-        """Rows of the balance of forces on R, U, Y, Z, and of momentum on U."""
+        """Rows of the balance of forces on R, U, Y, Z, of momentum on U, and of how fast forces change on Z."""
         c = self.split
         masses = [
             Branch(Inerter(coordinate.inertia), coordinate.name, row, np.zeros(0))
@@ -202,33 +256,47 @@ class _Equations:
         ]
         for branch in (*masses, *self.graph.branches):
             on = np.zeros(self.e)  # how the element's force acts on each row of the balance
-            on[self.a1], on[self.u1] = branch.nodes @ c.R, branch.nodes @ c.U
-            on[self.y], on[self.z] = branch.nodes @ c.Y, branch.nodes @ c.Z
-            eta, x, u = self._elongation_rate(branch)
-            self.S += self._by_value(branch.element, np.outer(on, eta))
-            self.R -= self._by_value(branch.element, np.outer(on, x))
-            self.F -= self._by_value(branch.element, np.outer(on, u))
+            on[self.a1], on[self.u1], on[self.y], on[self.z] = c.rate(branch.nodes)
+            self._add(branch.element, on, self._elongation_rate(branch))
             if isinstance(branch.element, Inerter):
                 momentum = np.zeros(self.e)
-                momentum[self.u0] = branch.nodes @ c.U
+                momentum[self.u0] = on[self.u1]
                 eta, x, _ = self._velocity(branch.nodes)
-                self.S += self._by_value(branch.element, np.outer(momentum, eta))
-                self.R -= self._by_value(branch.element, np.outer(momentum, x))
+                self._add(branch.element, momentum, (eta, x, np.zeros(self.m)))
+            if isinstance(branch.element, Spring) and self.z1.stop > self.z1.start:
+                change = np.zeros(self.e)
+                change[self.z1] = on[self.z]
+                self._add(branch.element, change, self._velocity(branch.nodes, branch.roads))
         for j, row in enumerate(self.force_rows):
-            column = len(self.road_names) + j
-            self.F[0, self.a1, column] = row @ c.R
-            self.F[0, self.y, column] = row @ c.Y
-            self.F[0, self.z, column] = row @ c.Z
+            force = np.zeros(self.e)
+            force[self.a1], _, force[self.y], force[self.z] = c.rate(row)
+            if self.z1.stop > self.z1.start and np.any(force[self.z]):
+                raise LinearSystemError(
+                    "How fast springs settle between each other under a force that jumps is not known."
+                )
+            column = self.e + self.n + len(self.road_names) + j
+            self.balance[0, :, column], self.size[0, :, column] = -force, np.abs(force)
 
-    def _blank(self) -> tuple[Matrix, Matrix, Matrix]:
+    def _add(self, element: Element, on: Matrix, to: Rows) -> None:
+        """Add an element that acts so on the rows of the balance."""
+        value, place, on = element.value, 0, on.astype(np.longdouble)
+        if isinstance(value, Free):
+            place = 1 + list(self.variables).index(str(value.name))
+        else:
+            on = value * on
+        term = np.multiply.outer(on, np.concatenate(to))
+        self.balance[place] += term
+        self.size[place] += np.abs(term)
+
+    def _blank(self) -> Rows:
         return np.zeros(self.e), np.zeros(self.n), np.zeros(self.m)
 
-    def _elongation_rate(self, branch: Branch) -> tuple[Matrix, Matrix, Matrix]:
+    def _elongation_rate(self, branch: Branch) -> Rows:
         """What the element's value multiplies: its elongation, velocity or acceleration, as rows on eta, x and u."""
         eta, x, u = self._blank()
         match branch.element:
             case Inerter():
-                eta[self.a1], eta[self.u1] = branch.nodes @ self.split.R, branch.nodes @ self.split.U
+                eta[self.a1], eta[self.u1] = self.split.rate(branch.nodes)[:2]
             case Damper():
                 eta, x, u = self._velocity(branch.nodes, branch.roads)
             case Spring():
@@ -237,10 +305,11 @@ class _Equations:
                 eta, x = self._elongation(row)
         return eta, x, u
 
-    def _velocity(self, nodes: Matrix, roads: Matrix | None = None) -> tuple[Matrix, Matrix, Matrix]:
+    def _velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
         eta, x, u = self._blank()
-        x[self.a] = nodes @ self.split.R
-        eta[self.u0], eta[self.y] = nodes @ self.split.U, nodes @ self.split.Y
+        x[self.a], eta[self.u0], eta[self.y], settling = self.split.rate(nodes)
+        if self.z1.stop > self.z1.start:
+            eta[self.z1] = settling
         if roads is not None and roads.size:
             u[: len(self.road_names)] = roads[self.road_columns]
         return eta, x, u
@@ -253,87 +322,72 @@ class _Equations:
 
     def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
         """The combination of spring elongations that is this displacement whatever moves, if there is one."""
-        c = self.split
-        motions = np.hstack([c.R, c.U, c.Y, c.Z])
-        moves = np.hstack([self.spring_rows @ motions, self.spring_roads])
-        target = np.hstack([nodes @ motions, roads[self.road_columns]])
-        weights = np.linalg.lstsq(moves.T, target, rcond=1e-12)[0]
-        weights = np.where(np.abs(weights) < 1e-13, 0.0, weights)
-        fits = np.allclose(moves.T @ weights, target, rtol=0.0, atol=1e-9 * max(1.0, float(np.abs(target).max())))
-        return weights if fits else None
+        return combination(
+            np.hstack([self.spring_rows, self.spring_roads]), np.hstack([nodes, roads[self.road_columns]])
+        )
 
     def possible_outputs(self) -> list[str]:
-        """Names of the outputs that need no state of their own."""
-        names = [f"{c.name}_{what}" for c in self.mechanism.coordinates for what in ("velocity", "acceleration")]
-        names += [f"{strut.name}_force" for strut in self.mechanism.struts]
-        names += [f"{tyre.name}_load" for tyre in self.mechanism.tyres]
-        for name, (nodes, roads) in self._displacements().items():
-            if self.displacement(nodes, roads) is not None:
-                names.append(name)
-        return names
-
-    def _displacements(self) -> dict[str, tuple[Matrix, Matrix]]:
+        """Names of what is asked for by default: motions and mounts, as far as they need no state of their own."""
         still = np.zeros(len(self.mechanism.roads))
-        found = {
-            f"{coordinate.name}_displacement": (row, still)
-            for coordinate, row in zip(self.mechanism.coordinates, np.eye(len(self.graph.nodes)), strict=False)
-        }
-        for strut in self.mechanism.struts:
-            found[f"{strut.name}_travel"] = (self.graph.mounts[strut.name].nodes, still)
-        for tyre in self.mechanism.tyres:
-            mount = self.graph.mounts[tyre.name]
-            found[f"{tyre.name}_deflection"] = (mount.nodes, mount.roads)
-        return found
+        known = ((name, self.known[name]) for name in main_outputs(self.mechanism))
+        return [
+            name
+            for name, output in known
+            if not output.displacement.size
+            or self.displacement(output.displacement, _or(output.road, still)) is not None
+        ]
 
     def add_output(self, name: str) -> None:
-        """One row of y: a velocity, an acceleration, a displacement, or the force of a mounted network."""
-        coordinates = {c.name: self._port({c.name: 1.0}) for c in self.mechanism.coordinates}
-        stem, _, what = name.rpartition("_")
-        displacements = self._displacements()
-        mounts = {m.name: "force" if m in self.mechanism.struts else "load" for m in self.mechanism.mounts()}
-        branches = {branch.label: branch for branch in self.graph.branches}
-        if stem in coordinates and what == "velocity":
-            rows = self._constant(*self._velocity(coordinates[stem]))
-        elif stem in coordinates and what == "acceleration":
-            eta, x, u = self._blank()
-            eta[self.a1], eta[self.u1] = coordinates[stem] @ self.split.R, coordinates[stem] @ self.split.U
-            rows = self._constant(eta, x, u)
-        elif name in displacements:
-            rows = self._displacement_output(name, *displacements[name])
-        elif mounts.get(stem) == what:
-            rows = self._force(stem)
-        elif stem in branches and what == "velocity":
-            rows = self._constant(*self._velocity(branches[stem].nodes, branches[stem].roads))
-        else:
-            known = [*(f"{c}_{w}" for c in coordinates for w in ("velocity", "acceleration")), *displacements]
-            known += [f"{mount}_{w}" for mount, w in mounts.items()]
-            raise LinearSystemError(f"There is no output named {name!r} (there are: {', '.join(known)}).")
+        """One row of y: the sum of what the output is made of."""
+        if name not in self.known and name in outputs(self.mechanism, full_graph(self.mechanism)):
+            raise LinearSystemError(
+                f"There is no output named {name!r} in linear analysis, which leaves friction out and closes gaps. "
+                f"Simulate the design: simulate(...), ExpectedValue() or ApproximateLinear()."
+            )
+        output = find(self.known, name, LinearSystemError)
+        rows = self._constant(*map(_fine, self._motion(output)))
+        sizes = _absolute(rows)
+        for i in np.flatnonzero(output.forces):
+            branch = self.graph.branches[i]
+            for stack, size, row in zip(rows, sizes, self._elongation_rate(branch), strict=True):
+                term = self._by_value(branch.element, row)
+                stack += term
+                size += np.abs(term)
+        if output.displacement.size or output.road.size:
+            rows = self._with_displacement(name, output, rows)
+            sizes = _absolute(rows)
         self.rows.append(rows)
+        self.row_sizes.append(sizes)
         self.outputs.append(name)
 
-    def _constant(self, *rows: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size))]) for row in rows)
+    def _motion(self, output: Output) -> Rows:
+        """An output's velocities, accelerations and external forces, as rows on eta, x and u."""
+        eta, x, u = self._blank()
+        if output.velocity.size or output.road_velocity.size:
+            eta, x, u = self._velocity(_or(output.velocity, np.zeros(len(self.graph.nodes))), output.road_velocity)
+        if output.acceleration.size:
+            eta[self.a1], eta[self.u1] = self.split.rate(output.acceleration)[:2]
+        for force, weight in zip(self.mechanism.forces, output.external, strict=False):
+            if force.name in self.inputs:
+                u[self.inputs.index(force.name)] += weight
         return eta, x, u
 
-    def _displacement_output(self, name: str, nodes: Matrix, roads: Matrix) -> tuple[Matrix, Matrix, Matrix]:
+    def _constant(self, *rows: Matrix) -> Rows:
+        eta, x, u = (np.concatenate([row[None], np.zeros((self.k - 1, row.size), row.dtype)]) for row in rows)
+        return eta, x, u
+
+    def _with_displacement(self, name: str, output: Output, rows: Rows) -> Rows:
+        """An output that is a displacement: a combination of spring elongations, or a state of its own."""
+        nodes = _or(output.displacement, np.zeros(len(self.graph.nodes)))
+        roads = _or(output.road, np.zeros(len(self.mechanism.roads)))
         weights = self.displacement(nodes, roads)
         if weights is not None:
             return self._constant(*self._elongation(weights), np.zeros(self.m))
         self.extra.append((name, *self._velocity(nodes, roads)))
-        eta, x, u = self._constant(*self._blank())
+        eta, x, u = rows
         column = np.zeros((self.k, len(self.extra)))
         column[0, -1] = 1.0
         return eta, np.hstack([x, column]), u
-
-    def _force(self, mount: str) -> tuple[Matrix, Matrix, Matrix]:
-        eta, x, u = np.zeros((self.k, self.e)), np.zeros((self.k, self.n)), np.zeros((self.k, self.m))
-        for i in self.graph.mounts[mount].carriers:
-            branch = self.graph.branches[i]
-            on_eta, on_x, on_u = self._elongation_rate(branch)
-            eta += self._by_value(branch.element, on_eta)
-            x += self._by_value(branch.element, on_x)
-            u += self._by_value(branch.element, on_u)
-        return eta, x, u
 
     def finish(self, order: list[str]) -> Descriptor:
         """All arrays, with integrators behind the other states and inputs in the order asked for."""
@@ -341,31 +395,46 @@ class _Equations:
         n = self.n + q
         X_eta, X_x, X_u = np.zeros((n, self.e)), np.zeros((n, n)), np.zeros((n, self.m))
         X_eta[self.a, self.a1] = np.eye(self.na)
-        X_eta[self.g, self.y] = c.P @ self.spring_rows @ c.Y
-        X_x[self.g, self.a] = c.P @ self.spring_rows @ c.R
-        X_u[self.g, : len(self.road_names)] = c.P @ self.spring_roads
+        X_x[self.g, self.a], X_eta[self.g, self.y], X_u[self.g, : len(self.road_names)] = c.rates
         for i, (_, eta, x, u) in enumerate(self.extra, start=self.n):
             X_eta[i], X_x[i, : self.n], X_u[i] = eta, x, u
-        Y_x = np.zeros((self.k, len(self.rows), n))
-        for i, (_, x, _) in enumerate(self.rows):
-            Y_x[:, i, : x.shape[1]] = x
         columns = [self.inputs.index(name) for name in order]
+        Y, Y_sizes = (self._output_stacks(rows, columns) for rows in (self.rows, self.row_sizes))
+        S, R, F = self._balance_stacks(self.balance, columns)
         return Descriptor(
-            S=self.S,
-            R=np.concatenate([self.R, np.zeros((self.k, self.e, q))], axis=2),
-            F=self.F[:, :, columns],
+            S=S,
+            R=-R,
+            F=-F,
             X_eta=X_eta,
             X_x=X_x,
             X_u=X_u[:, columns],
-            Y_eta=np.array([eta for eta, _, _ in self.rows]).reshape(-1, self.k, self.e).swapaxes(0, 1).copy(),
-            Y_x=Y_x,
-            Y_u=np.array([u for _, _, u in self.rows]).reshape(-1, self.k, self.m).swapaxes(0, 1)[:, :, columns],
+            Y_eta=Y[0],
+            Y_x=Y[1],
+            Y_u=Y[2],
             states=self._state_names(),
             inputs=tuple(order),
             outputs=tuple(self.outputs),
             variables=self.variables,
             notes=self.graph.notes,
+            sizes=tuple(size.astype(float) for size in (*self._balance_stacks(self.size, columns), *Y_sizes)),
+            mechanism=self.mechanism,
+            graph=self.graph,
         )
+
+    def _balance_stacks(self, balance: Matrix, columns: list[int]) -> list[Matrix]:
+        """Stacks over eta, over all states, and over the inputs in the order asked for."""
+        S, R, F = np.split(balance, [self.e, self.e + self.n], axis=2)
+        later = np.zeros((self.k, self.e, len(self.extra)), balance.dtype)
+        return [S, np.concatenate([R, later], axis=2), F[:, :, columns]]
+
+    def _output_stacks(self, rows: list[Rows], columns: list[int]) -> list[Matrix]:
+        """Rows of the outputs, some of which were added before the last state, as stacks over eta, x and u."""
+        widths = (self.e, self.n + len(self.extra), self.m)
+        stacks = [np.zeros((self.k, len(rows), width), np.longdouble) for width in widths]
+        for i, over in enumerate(rows):
+            for stack, row in zip(stacks, over, strict=True):
+                stack[:, i, : row.shape[1]] = row
+        return [*stacks[:2], stacks[2][:, :, columns]]
 
     def _state_names(self) -> tuple[str, ...]:
         velocities = [f"{self.graph.nodes[int(np.argmax(column))]}_velocity" for column in self.split.R.T]
@@ -375,3 +444,17 @@ class _Equations:
             elongations.append("_".join(labels) + ("_elongation" if len(labels) == 1 else "_mean_elongation"))
         names = [*velocities, *elongations, *(name for name, *_ in self.extra)]
         return tuple(n if names.count(n) == 1 else f"{n}{names[: i + 1].count(n)}" for i, n in enumerate(names))
+
+
+def _absolute(rows: Rows) -> Rows:
+    eta, x, u = rows
+    return np.abs(eta), np.abs(x), np.abs(u)
+
+
+def _fine(array: Matrix) -> Matrix:
+    return array.astype(np.longdouble)
+
+
+def _or(row: Matrix, none: Matrix) -> Matrix:
+    """A row of an output, where an empty one is of zeros."""
+    return row if row.size else none

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.networks.elements import Element, Network, Parallel, Series
-from inerter.networks.transform import linearise
+from inerter.networks.transform import linearise, map_elements
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
@@ -47,12 +49,15 @@ class Graph:
 def linear_graph(mechanism: Mechanism) -> Graph:
     """The graph that linear analysis sees: friction left out, gaps closed, both told in `notes`.
 
+    What is left has the labels that it has in `full_graph`.
+
     Raises `MechanismError` if a mounted network then carries no force at all, or is rigid.
     """
+    whole = _networks(mechanism)
     networks: dict[str, Network] = {}
     notes: list[str] = []
     for mount in mechanism.mounts():
-        linear = linearise(mount.network)
+        linear = linearise(whole[mount.name])
         if linear.network is None and linear.rigid:
             raise MechanismError(
                 f"{mount.name!r} is rigid in linear analysis, which closes gaps: {linear.gaps[0]!r} joins its two "
@@ -67,15 +72,29 @@ def linear_graph(mechanism: Mechanism) -> Graph:
         notes += [f"friction {label!r} in {mount.name!r} left out" for label in linear.frictions]
         notes += [f"gap {label!r} in {mount.name!r} closed" for label in linear.gaps]
         notes += [f"{label!r} in {mount.name!r} carries no force then" for label in linear.idle]
-    return _expand(mechanism, networks, tuple(notes))
+    return _expand(mechanism, networks, _labels(whole), tuple(notes))
 
 
 def full_graph(mechanism: Mechanism) -> Graph:
     """The graph with every element in it, friction and gaps included."""
-    return _expand(mechanism, {mount.name: mount.network for mount in mechanism.mounts()}, ())
+    networks = _networks(mechanism)
+    return _expand(mechanism, networks, _labels(networks), ())
 
 
-def _expand(mechanism: Mechanism, networks: dict[str, Network], notes: tuple[str, ...]) -> Graph:
+def _networks(mechanism: Mechanism) -> dict[str, Network]:
+    """The mounted networks, each element an object of its own: one may be mounted several times."""
+    return {mount.name: map_elements(mount.network, copy) for mount in mechanism.mounts()}
+
+
+def _labels(networks: Mapping[str, Network]) -> dict[int, str]:
+    """The label of each element, by its identity."""
+    placed = [(mount, element) for mount, network in networks.items() for element in network.elements()]
+    return {id(element): label for (_, element), label in zip(placed, _unique(placed), strict=True)}
+
+
+def _expand(
+    mechanism: Mechanism, networks: Mapping[str, Network], labels: Mapping[int, str], notes: tuple[str, ...]
+) -> Graph:
     coordinates = [c.name for c in mechanism.coordinates]
     roads = [r.name for r in mechanism.roads]
     size = len(coordinates) + sum(_inner_nodes(network) for network in networks.values())
@@ -95,24 +114,20 @@ def _expand(mechanism: Mechanism, networks: dict[str, Network], notes: tuple[str
         carriers = builder.add(mount.name, networks[mount.name], upper, lower)
         elongation = upper - lower
         mounts[mount.name] = Mount(elongation[:size], elongation[size:], carriers)
-    labels = _unique([(mount, element) for mount, element, _ in builder.branches])
-    branches = tuple(
-        Branch(element, label, row[:size], row[size:])
-        for (_, element, row), label in zip(builder.branches, labels, strict=True)
-    )
+    branches = tuple(Branch(element, labels[id(element)], row[:size], row[size:]) for element, row in builder.branches)
     return Graph(tuple(builder.nodes), branches, mounts, notes)
 
 
 @dataclass
 class _Builder:
     nodes: list[str]
-    branches: list[tuple[str, Element, Matrix]] = field(default_factory=list)
+    branches: list[tuple[Element, Matrix]] = field(default_factory=list)
 
     def add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> tuple[int, ...]:
         """Add `network` between two ends; returns the branches whose forces add up to its force."""
         match network:
             case Element():
-                self.branches.append((mount, network, upper - lower))
+                self.branches.append((network, upper - lower))
                 return (len(self.branches) - 1,)
             case Parallel(parts):
                 return sum((self.add(mount, part, upper, lower) for part in parts), ())

@@ -2,15 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError
+from inerter.systems.polynomials import TransferFunctions
 
 Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fine:
+    """A, B, C, D in extended precision, and bounds of what rounding has done to each of their entries."""
+
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix]
+    errors: tuple[Matrix, Matrix, Matrix, Matrix]
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """What a mechanism's matrices A, B, C, D were rounded from.
+
+    `functions` gives the transfer functions from named inputs to named outputs without rounding.
+    """
+
+    functions: Callable[[Sequence[str], Sequence[str]], TransferFunctions]
+    rounded: tuple[Matrix, Matrix, Matrix, Matrix]
+    fine: Fine
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    def of(self, system: LinearSystem) -> Fine | None:
+        """The part that a system has of it; None if the system's matrices were changed by hand."""
+        if not (set(system.inputs) <= set(self.inputs) and set(system.outputs) <= set(self.outputs)):
+            return None
+        rows, columns = [self.outputs.index(o) for o in system.outputs], [self.inputs.index(i) for i in system.inputs]
+
+        def part(matrices: tuple[Matrix, ...]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+            A, B, C, D = matrices
+            return A, B[:, columns], C[rows], D[np.ix_(rows, columns)]
+
+        if not all(map(np.array_equal, (system.A, system.B, system.C, system.D), part(self.rounded))):
+            return None
+        return Fine(part(self.fine.matrices), part(self.fine.errors))
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +71,7 @@ class LinearSystem:
     delays: Matrix = field(default_factory=lambda: np.zeros(0))
     sources: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()  # what was left out on the way here, for a reader
+    origin: Origin | None = None  # of matrices that come from a mechanism
 
     def __post_init__(self) -> None:
         for name in "ABCD":
@@ -69,6 +107,11 @@ class LinearSystem:
     def order(self) -> int:
         """Number of states."""
         return int(self.A.shape[0])
+
+    @property
+    def fine(self) -> Fine | None:
+        """The matrices before they were rounded; None where they were given, or changed by hand."""
+        return None if self.origin is None else self.origin.of(self)
 
     def select(
         self, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
@@ -114,15 +157,28 @@ def with_high_pass(system: LinearSystem, omega: float) -> LinearSystem:
     """
     if not omega > 0.0 or not np.isfinite(omega):
         raise LinearSystemError(f"A high-pass filter needs a corner above 0 rad/s, got {omega!r}.")
-    n, p, m = system.order, len(system.outputs), len(system.inputs)
-    A = np.block([[system.A, np.zeros((n, p))], [system.C, -omega * np.eye(p)]])
-    return replace(
-        system,
-        A=A,
-        B=np.vstack([system.B, system.D.reshape(p, m)]),
-        C=np.hstack([system.C, -omega * np.eye(p)]),
-        states=(*system.states, *(f"{name}_low_pass" for name in system.outputs)),
-    )
+    p = len(system.outputs)
+    matrices = _filtered((system.A, system.B, system.C, system.D), omega * np.eye(p))
+    origin, fine = system.origin, system.fine
+    if origin is not None and fine is not None:
+        functions = origin.functions
+        filtered = Fine(_filtered(fine.matrices, omega * np.eye(p)), _filtered(fine.errors, np.zeros((p, p))))
+        origin = Origin(
+            lambda chosen, wanted: functions(chosen, wanted).filtered(omega),
+            matrices,
+            filtered,
+            system.inputs,
+            system.outputs,
+        )
+    A, B, C, D = matrices
+    states = (*system.states, *(f"{name}_low_pass" for name in system.outputs))
+    return replace(system, A=A, B=B, C=C, D=D, states=states, origin=origin)
+
+
+def _filtered(matrices: tuple[Matrix, ...], corner: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    A, B, C, D = matrices
+    none = np.zeros((A.shape[0], corner.shape[0]))
+    return np.block([[A, none], [C, -corner]]), np.vstack([B, D]), np.hstack([C, -corner]), D
 
 
 def check_names(what: str, names: object) -> tuple[str, ...]:

@@ -1,19 +1,25 @@
 """The outputs of a mechanism by name, as rows over the motions of its nodes, the forces of its branches and its inputs.
 
-Both integrators know nodes, branches and inputs only; this is the one place that knows what people ask for.
+Linear analysis and both integrators know nodes, branches and inputs only; this is the one place that knows what people
+ask for.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.errors import InerterError
 from inerter.systems.graph import Graph
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
+_LISTED = 24  # names in a message
+_MOTIONS = ("displacement", "velocity", "acceleration")
 
 
 def _none() -> Matrix:
@@ -83,6 +89,23 @@ def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
         ]
     known = {output.name: output for output in reversed(found)}  # a mount's own name goes before an element's
     return {output.name: known[output.name] for output in found}
+
+
+def main_outputs(mechanism: Mechanism) -> list[str]:
+    """Names of the outputs that every analysis has: motions of coordinates, what mounts carry and how far they move."""
+    coordinates = [f"{c.name}_{what}" for c in mechanism.coordinates for what in _MOTIONS]
+    struts = [f"{strut.name}_{what}" for strut in mechanism.struts for what in ("force", "travel")]
+    return coordinates + struts + [f"{t.name}_{what}" for t in mechanism.tyres for what in ("load", "deflection")]
+
+
+def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -> Output:
+    """The output of this name; raises `error`, with the names that come close, if there is none."""
+    if isinstance(name, str) and name in known:
+        return known[name]
+    close = get_close_matches(str(name), known, n=3)
+    more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
+    hint = f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join([*known][:_LISTED])}{more}."
+    raise error(f"There is no output named {name!r}. {hint}")
 
 
 def _said(name: str) -> str:

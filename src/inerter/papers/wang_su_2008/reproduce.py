@@ -16,7 +16,8 @@ import inerter
 from inerter.errors import StudyError
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
-from inerter.papers.wang_su_2008.claims import Claim, Evidence, judge
+from inerter.papers.wang_su_2008.claims import judge
+from inerter.papers.wang_su_2008.judging import Claim, Evidence
 from inerter.papers.wang_su_2008.linear import Linear
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow

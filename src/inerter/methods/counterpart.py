@@ -1,0 +1,98 @@
+"""The linear design that a simulated motion resembles: each friction a damper of the force and speed that it had.
+
+A friction f across which the velocity has the r.m.s. value sigma is nearest to the damper sqrt(2/pi) f / sigma, as in
+statistical linearisation; here sigma is that of the simulated motion, so that no assumption decides what sticks. Gaps
+are closed. The counterpart tells what a road holds beyond the lines of a multisine, and for how long a design remembers
+it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import LinearSystemError, MechanismError
+from inerter.indices.index import Question
+from inerter.methods.equivalent import GAUSSIAN, Equivalent, acts, equivalent, slipping_freely
+from inerter.methods.linear import Conventions, LinearProblem, linear_problem
+from inerter.networks.elements import Gap
+from inerter.norms.h2 import h2
+from inerter.norms.stability import balance
+from inerter.systems.descriptor import close
+from inerter.systems.linear import LinearSystem
+from inerter.systems.outputs import Output
+from inerter.systems.piecewise import PiecewiseSystem
+from inerter.vehicle.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+_STUCK = 1e4  # times a typical damper is as good as stuck: more would only cost digits
+_DRIFT = 1e-3  # a motion that changes by less over the time asked about is a drift, which `h2` judges
+
+
+def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str, ...]]:
+    """`system` with the velocities across its frictions with a force as outputs, and their names."""
+    branches = (system.graph.branches[i] for i in system.nonlinear)
+    across = {
+        f"velocity across friction {i}": Output("", "m/s", "", velocity=branch.nodes, road_velocity=branch.roads)
+        for i, branch in enumerate(branches)
+        if acts(branch.element)
+    }
+    return replace(system, outputs={**system.outputs, **across}), tuple(across)
+
+
+def has_play(system: PiecewiseSystem) -> bool:
+    """Whether a gap is not zero, so that no linear design need resemble the motion."""
+    return any(isinstance(branch.element, Gap) and branch.element.value != 0.0 for branch in system.graph.branches)
+
+
+@dataclass(frozen=True, eq=False)
+class Counterpart:
+    """A question put to a mechanism whose frictions are dampers still to be chosen."""
+
+    problem: LinearProblem
+    parts: Equivalent
+
+    def system(self, speeds: Array) -> LinearSystem:
+        """The linear system for r.m.s. velocities [m/s] across all frictions with a force; those at zero stick."""
+        forces = GAUSSIAN * np.array(self.parts.forces, dtype=float)
+        slowest = forces / (_STUCK * self.parts.scale)
+        dampings = forces / np.maximum(speeds[list(self.parts.numbers)], slowest)
+        return self.problem.system(close(self.problem.descriptor, dict(zip(self.parts.dampers, dampings, strict=True))))
+
+    def unlike(self, speeds: Array, norms: Array) -> float:
+        """By what part of a mean square it changes if frictions slip twice as fast; `norms` are those at `speeds`."""
+        other = h2(self.system(2.0 * speeds), self.problem.pade_order).outputs
+        return float(np.nanmax(np.abs((other / norms) ** 2 - 1.0), initial=0.0))
+
+
+def counterpart(mechanism: Mechanism, question: Question, conventions: Conventions) -> Counterpart | None:
+    """The counterpart of a design without free values; None where it has none, as beside a closed gap."""
+    try:
+        parts = equivalent(mechanism, slipping_freely(mechanism))
+        return Counterpart(linear_problem(parts.mechanism, question, conventions), parts)
+    except (MechanismError, LinearSystemError):
+        return None
+
+
+def memory(system: LinearSystem, norms: Array, time: float) -> tuple[float, complex]:
+    """How much of an output's r.m.s. value is what the motion was `time` [s] ago, at most, and by which pole [rad/s].
+
+    Each mode's share of the outputs, which have these H2 `norms`, is taken by itself and decays at its own rate. The
+    power that lines 1/T Hz apart find in a response is off by twice its memory of T at most.
+    """
+    A, scale = balance(system.A)
+    if not A.size:
+        return 0.0, -np.inf
+    poles, vectors = np.linalg.eig(A)
+    try:
+        excited = np.linalg.norm(np.linalg.solve(vectors, (system.B / scale[:, None]).astype(complex)), axis=1)
+    except np.linalg.LinAlgError:  # poles that coincide to the last bit: no mode stands for itself
+        return 1.0, complex(poles[np.argmax(poles.real)])
+    seen = np.abs(system.C * scale @ vectors) / np.where(norms > 0.0, norms, np.inf)[:, None]
+    decay = np.maximum(-poles.real, 1e-300)
+    left = (seen * excited) ** 2 / (2.0 * decay) * np.exp(-2.0 * decay * time)
+    left[:, np.abs(poles) * time < _DRIFT] = 0.0
+    worst = int(np.argmax(left.max(axis=0)))
+    return float(np.sqrt(min(left.sum(axis=1).max(), 1.0))), complex(poles[worst])

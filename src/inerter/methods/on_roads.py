@@ -1,0 +1,210 @@
+"""An index of r.m.s. values over random roads: how long these must be, what they lack, and what they come to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import OK, Status, StatusKind
+from inerter.indices.index import Question
+from inerter.methods.averages import interval_of, mean_and_error
+from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
+from inerter.methods.linear import Conventions
+from inerter.methods.method import Estimate
+from inerter.methods.realisations import Drive, Ran, check_drive, drive, realisation_seeds, run, worst
+from inerter.norms.h2 import h2
+from inerter.norms.response import modal_response
+from inerter.systems.piecewise import PiecewiseSystem
+
+Array = NDArray[np.float64]
+LONGEST = 640  # [s] of a road
+MOST_ROADS = 1000
+_LONGER = 4  # times the length that does not do
+_FIRST = 2  # roads that decide how long the others must be
+_MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside the band
+_UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
+_LOST = 1e-2  # the same, beyond which nothing is known
+_UNLIKE = "no linear design resembles the motion with play: nothing is added for the road outside 0.1 to 1000 Hz"
+_FEW = 3  # periods after which a motion with play must repeat, or the period is too short to stand for a long road
+
+
+@dataclass(frozen=True, eq=False)
+class OnRoads:
+    """A design and a question, on roads of one length; `frictions` names the velocities across its frictions."""
+
+    system: PiecewiseSystem
+    frictions: tuple[str, ...]
+    question: Question
+    way: Drive
+    linear: Counterpart | None
+    seed: int
+    longest: int  # road that may be taken [s]
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """What the index is made of."""
+        return tuple(output.output for output in self.question.outputs)
+
+    @property
+    def weights(self) -> Array:
+        """Of the outputs' r.m.s. values in the index."""
+        return np.array([abs(output.weight) for output in self.question.outputs])
+
+    def runs(self, first: int, stop: int, pool: Executor) -> list[Ran]:
+        """The realisations `first`, ..., `stop` - 1."""
+        seeds = realisation_seeds(self.seed, first, stop)
+        return list(pool.map(partial(run, self.system, self.way, self.outputs, self.frictions), seeds))
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """What the lines of a road lack: mean squares to add to those of the outputs, and how well they are known."""
+
+    power: Array
+    unseen: float = 0.0  # share of the mean squares that may be missing, or too much
+    within_reach: bool = True  # whether longer roads would tell, if the motion stays as it is
+    status: Status = OK
+    notes: tuple[str, ...] = ()
+
+
+def on_roads(
+    system: PiecewiseSystem, question: Question, conventions: Conventions, seed: int, period: int | None = None
+) -> OnRoads:
+    """A question put to a system on roads of this `period` [s]; without, of the usual length or of a longer one."""
+    way = drive(system, question, conventions, period)
+    check_drive(system, way)
+    if conventions.hold is not None:
+        return OnRoads(system, (), question, way, None, seed, LONGEST)
+    linear = counterpart(system.mechanism, question, conventions)
+    longest = LONGEST if period is None else way.period
+    return OnRoads(*with_velocities(system), question, way, linear, seed, longest)
+
+
+def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Ran], Rest]:
+    """The design on roads so long that their lines tell what it does, the first runs there, and what they lack.
+
+    On those of the usual length if none of the lengths will do. On a longer road friction that stuck may slip, so one
+    is tried even if the motion is out of reach as it is.
+    """
+    found = design.runs(0, _FIRST, pool)
+    usual = design, found, rest_of(design, found)
+    longer, found, lacking = usual
+    while not _is_resolved(longer, found, lacking):
+        period = _LONGER * longer.way.period
+        if period > design.longest or (longer is not design and not lacking.within_reach):
+            return usual
+        longer = replace(longer, way=replace(longer.way, period=period))
+        found = longer.runs(0, _FIRST, pool)
+        lacking = rest_of(longer, found)
+    return longer, found, lacking
+
+
+def _is_resolved(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> bool:
+    """Whether a period of the motion stands for a long road, or whether that of no road would."""
+    if design.way.hold is not None or worst([ran.status for ran in found]).kind is StatusKind.FAILED:
+        return True
+    settled = all(ran.status.ok for ran in found)
+    if has_play(design.system) or design.linear is None:
+        return settled and max(ran.periods for ran in found) <= _FEW
+    return bool(np.any(np.isinf(lacking.power))) or (settled and lacking.unseen <= _UNSEEN)
+
+
+def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
+    """What the counterpart of the motion that was `found` has of the road beyond the lines of these roads.
+
+    Its squared norms less its mean squares on the lines.
+    """
+    count, way, linear = len(design.outputs), design.way, design.linear
+    if linear is None:
+        return Rest(np.zeros(count), notes=() if way.hold is not None else (_UNLIKE,))
+    power = np.mean([ran.power for ran in found], axis=0)
+    if not np.all(np.isfinite(power)):
+        return Rest(np.full(count, np.nan))
+    speeds = np.sqrt(power[count:])
+    system = linear.system(speeds)
+    pade_order = linear.problem.pade_order
+    whole = h2(system, pade_order)
+    if not whole.status.ok:
+        return Rest(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
+    lines = way.signal(0)
+    omega = 2.0 * np.pi * lines.frequencies
+    gains = np.abs(modal_response(system, omega, pade_order)[:, :, 0]) ** 2
+    inside = 0.5 * (omega * lines.amplitudes) ** 2 @ gains
+    added = (way.road.velocity_intensity * whole.outputs) ** 2 - inside
+    (left, pole), (at_last, _) = (memory(system, whole.outputs, time) for time in (way.period, design.longest))
+    unseen, within_reach = 2.0 * left, True
+    if unseen > _UNSEEN:  # by as much as the counterpart may be another once the lines tell more
+        misfit = float(np.max(np.abs(inside / np.maximum(power[:count], 1e-300) - 1.0)))
+        unlike = min(misfit + linear.unlike(speeds, whole.outputs), 1.0)
+        unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
+    if has_play(design.system) and unseen > _UNSEEN:
+        return Rest(np.zeros(count), notes=(_UNLIKE,))
+    if unseen > _LOST:
+        return Rest(np.full(count, np.nan), unseen, within_reach, _undamped(pole, design.longest))
+    share = float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left
+    return Rest(added, unseen, within_reach, OK if share <= _MOST_BEYOND else _mostly_beyond(share))
+
+
+def _undamped(pole: complex, longest: float) -> Status:
+    return Status(
+        StatusKind.MARGINAL,
+        f"next to nothing damps the motion at {abs(pole.imag):.3g} rad/s, friction neither (it decays by "
+        f"{-pole.real:.1e} 1/s): roads of up to {longest:g} s show no steady state",
+    )
+
+
+def _mostly_beyond(share: float) -> Status:
+    message = f"{100.0 * share:.0f} % of a mean square lie outside 0.1 to 1000 Hz, which is not simulated"
+    return Status(StatusKind.INACCURATE, message)
+
+
+def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, pool: Executor) -> Estimate:
+    """The index over `wanted` roads, or over as many as a relative standard error asks for."""
+    design, found, lacking = long_enough(design, pool)
+    while True:
+        estimate = _averaged(design, found, lacking)
+        if relative_error is not None and len(found) >= wanted and np.isfinite(estimate.value):
+            wanted = _enough(np.array(estimate.samples), relative_error)
+        if len(found) >= wanted or not np.all(np.isfinite(lacking.power)):
+            return _with_error_reached(estimate, relative_error)
+        found += design.runs(len(found), wanted, pool)
+
+
+def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
+    """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
+    power = np.array([ran.power[: len(design.outputs)] for ran in found]) + lacking.power
+    status, unit = worst([lacking.status, *(ran.status for ran in found)]), design.question.unit
+    samples = np.sqrt(np.maximum(power, 0.0)) @ design.weights
+    sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))
+    if not np.all(np.isfinite(samples)):
+        return Estimate(float(sizes @ design.weights), unit, status, notes=lacking.notes)
+    mean, scatter, _ = mean_and_error(samples)
+    value = mean if design.way.hold is not None else float(sizes @ design.weights)
+    error = float(np.hypot(scatter, 0.5 * lacking.unseen * value))
+    return Estimate(
+        value, unit, status, error, interval_of(value, error, samples.size), samples.size, notes=lacking.notes,
+        samples=tuple(samples.tolist()), period=design.way.period,
+    )  # fmt: skip
+
+
+def _with_error_reached(estimate: Estimate, relative_error: float | None) -> Estimate:
+    """The estimate, inaccurate if its standard error is more than was asked for."""
+    error = estimate.standard_error or 0.0
+    if not estimate.status.ok or relative_error is None or error <= relative_error * estimate.value:
+        return estimate
+    message = f"after {estimate.realisations} roads the standard error is {error / estimate.value:.1e} of the value"
+    return replace(estimate, status=Status(StatusKind.INACCURATE, message))
+
+
+def _enough(values: Array, relative_error: float) -> int:
+    """How many realisations will do, from the scatter of those that there are."""
+    scatter, mean = float(np.std(values, ddof=1)), float(np.mean(values))
+    if scatter / np.sqrt(values.size) <= relative_error * mean or values.size >= MOST_ROADS:
+        return values.size
+    guess = 1.05 * (scatter / (relative_error * mean)) ** 2
+    return int(min(max(np.ceil(guess), values.size + 2), 4 * values.size, MOST_ROADS))

@@ -1,0 +1,21 @@
+"""Which of several values is the least, where those that their accuracy cannot tell apart are equal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+ACCURACY = 1e-9  # relative, of a value that is ok
+
+
+def equally_least(values: Sequence[float]) -> list[int]:
+    """Numbers of the values that may be the least, in their order; values that are not finite never are.
+
+    >>> equally_least([2.0, 1.0 + 1e-15, math.nan, 1.0])
+    [1, 3]
+    """
+    finite = [value for value in values if math.isfinite(value)]
+    if not finite:
+        return []
+    level = min(finite) + 2.0 * ACCURACY * abs(min(finite))  # each of two may be off
+    return [i for i, value in enumerate(values) if value <= level]

@@ -1,0 +1,122 @@
+"""Norms of a system that comes from a mechanism, from its transfer functions without rounding.
+
+They answer where double precision cannot, and are what it is checked against. A Pade approximant of a delay is a
+fraction like the others.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import OK, Status, StatusKind
+from inerter.norms.delay import pade_coefficients
+from inerter.norms.gain_squared import GainSquared
+from inerter.norms.mean_square import Response, UnknownError, lasting, mean_square
+from inerter.systems.linear import LinearSystem
+from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirrored, multiply
+
+Matrix = NDArray[np.float64]
+
+
+def undamped(frequencies: Sequence[float]) -> Status:
+    """What makes a norm infinite where motions at these frequencies [rad/s] last."""
+    where = f"0 + {frequencies[0]:.4g}j" if frequencies[0] > 0.0 else "0"
+    return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {where} rad/s")
+
+
+def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, Status]:
+    """The H2 norm of each output, and why it is infinite or unknown where it is."""
+    functions = _functions(system)
+    squares, direct, status = np.zeros(len(system.outputs)), [], OK
+    for i, (name, row) in enumerate(zip(system.outputs, functions.numerators, strict=True)):
+        for response in _by_source(functions.denominator, row, system, pade_order):
+            try:
+                square, frequencies = (math.inf, []) if response.is_direct else mean_square(response)
+            except UnknownError as error:
+                square, frequencies = math.nan, []
+                status = Status(StatusKind.FAILED, str(error)) if status.ok else status
+            squares[i] += square
+            if response.is_direct:
+                direct.append(name)
+            if frequencies:
+                status = undamped(frequencies)
+    if direct and status.kind is not StatusKind.MARGINAL:
+        names = ", ".join(dict.fromkeys(direct))
+        status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
+    return np.sqrt(squares), status
+
+
+def peaks_exactly(system: LinearSystem) -> tuple[list[tuple[float, float]], Status] | None:
+    """Frequencies [rad/s] and values of all local maxima of the gain, the highest first, with one column a source.
+
+    With undamped motions, these and infinity. None for several outputs of several sources: their largest singular
+    value is no fraction.
+    """
+    functions = _functions(system)
+    sources = list(dict.fromkeys(system.sources))
+    entries = [
+        _sum([n for n, of in zip(row, system.sources, strict=True) if of == source])
+        for row in functions.numerators
+        for source in sources
+    ]
+    response = Response(functions.denominator, tuple(entries), (0.0,) * len(entries)).reduced()
+    frequencies = lasting(response.denominator)
+    if frequencies:
+        return [(frequency, math.inf) for frequency in frequencies], undamped(frequencies)
+    if min(len(functions.numerators), len(sources)) > 1:
+        return None
+    try:
+        found = GainSquared.of(response).peaks()
+    except UnknownError as error:
+        return [(math.nan, math.nan)], Status(StatusKind.FAILED, str(error))
+    return sorted(found, key=lambda peak: -peak[1]), OK
+
+
+def _functions(system: LinearSystem) -> TransferFunctions:
+    assert system.origin is not None
+    return system.origin.functions(system.inputs, system.outputs)
+
+
+def _by_source(
+    denominator: Polynomial, row: Sequence[Polynomial], system: LinearSystem, pade_order: int | None
+) -> list[Response]:
+    """One output's response to each source, with what arrives at one time added up."""
+    found = []
+    for source in dict.fromkeys(system.sources):
+        arrivals: dict[float, Polynomial] = {}
+        for numerator, of, delay in zip(row, system.sources, system.delays.tolist(), strict=True):
+            if of == source:
+                arrivals[delay] = add(arrivals.get(delay, []), numerator)
+        times = sorted(arrivals)
+        numerators = [arrivals[time] for time in times]
+        response = Response(denominator, tuple(numerators), tuple(times))
+        found.append((response if pade_order is None else _approximated(response, pade_order)).reduced())
+    return [response for response in found if any(response.numerators)]
+
+
+def _approximated(response: Response, order: int) -> Response:
+    """With a Pade approximant for the time between one arrival and the next: they become one."""
+    denominator, total, factor = response.denominator, response.numerators[0], [1]
+    for before, time, numerator in zip(response.times, response.times[1:], response.numerators[1:], strict=False):
+        bottom = _pade(time - before, order)
+        factor = multiply(factor, mirrored(bottom))
+        total = add(multiply(total, bottom), multiply(numerator, factor))
+        denominator = multiply(denominator, bottom)
+    return Response(denominator, (total,), (0.0,))
+
+
+def _pade(time: float, order: int) -> Polynomial:
+    """The denominator of the approximant of exp(-s time), whose mirror image is the numerator."""
+    top, bottom = time.as_integer_ratio()
+    return [c * top**k * bottom ** (order - k) for k, c in enumerate(pade_coefficients(order))]
+
+
+def _sum(polynomials: Sequence[Polynomial]) -> Polynomial:
+    total: Polynomial = []
+    for polynomial in polynomials:
+        total = add(total, polynomial)
+    return total

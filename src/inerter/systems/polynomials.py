@@ -1,0 +1,242 @@
+"""Polynomials with whole coefficients, from the constant upwards: nothing here rounds.
+
+Whether two polynomials share a root, whether one has roots on the imaginary axis, and where its positive roots lie, is
+decided by arithmetic alone. Shared roots are rare, and a prime modulus shows nearly always that there are none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import gcd as common
+
+Polynomial = list[int]
+_PRIME = (1 << 61) - 1
+
+
+def trimmed(p: Sequence[int]) -> Polynomial:
+    """`p` without leading zeros; the zero polynomial is empty."""
+    size = len(p)
+    while size and p[size - 1] == 0:
+        size -= 1
+    return list(p[:size])
+
+
+def primitive(p: Polynomial) -> Polynomial:
+    """`p` over the largest number that divides all its coefficients."""
+    content = common(*p) if p else 1
+    return [c // content for c in p] if content > 1 else p
+
+
+def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
+    """The product."""
+    result = [0] * max(len(p) + len(q) - 1, 0)
+    for i, a in enumerate(p):
+        if a:
+            for j, b in enumerate(q):
+                result[i + j] += a * b
+    return trimmed(result)
+
+
+def add(p: Polynomial, q: Polynomial) -> Polynomial:
+    """The sum."""
+    short, long = sorted((p, q), key=len)
+    return trimmed([a + b for a, b in zip(short, long, strict=False)] + long[len(short) :])
+
+
+def scaled(p: Polynomial, factor: int) -> Polynomial:
+    """`p` times a number."""
+    return trimmed([factor * c for c in p])
+
+
+def derivative(p: Polynomial) -> Polynomial:
+    """The derivative."""
+    return [i * c for i, c in enumerate(p)][1:]
+
+
+def mirrored(p: Polynomial) -> Polynomial:
+    """p(-s)."""
+    return [-c if i % 2 else c for i, c in enumerate(p)]
+
+
+def interpolated(values: Sequence[int]) -> Polynomial:
+    """The polynomial with these values at 1, 2, 3, ..., which has whole coefficients.
+
+    Divided differences of such a polynomial are whole too.
+    """
+    differences = list(values)
+    for order in range(1, len(values)):
+        for i in range(len(values) - 1, order - 1, -1):
+            differences[i] = (differences[i] - differences[i - 1]) // order
+    result: Polynomial = []
+    for i in range(len(values) - 1, -1, -1):  # Horner's scheme in Newton's form: result (s - i - 1) + difference
+        result = [(result[j - 1] if j else differences[i]) - (i + 1) * c for j, c in enumerate([*result, 0])]
+    return trimmed(result)
+
+
+def quotient(p: Polynomial, q: Polynomial) -> Polynomial:
+    """P / q up to a constant factor, where q divides p and both are primitive."""
+    rest, result = list(p), [0] * (len(p) - len(q) + 1)
+    for i in range(len(result) - 1, -1, -1):
+        result[i] = rest[i + len(q) - 1] // q[-1]
+        if result[i]:
+            for j, c in enumerate(q):
+                rest[i + j] -= result[i] * c
+    assert not any(rest)
+    return result
+
+
+def shared(p: Polynomial, *others: Polynomial) -> Polynomial:
+    """The greatest common divisor of all, primitive, with a positive leading coefficient; zeros are passed over."""
+    result = primitive(trimmed(p))
+    for other in others:
+        if len(result) == 1:
+            break
+        if other:
+            result = _shared(result, primitive(other))
+    return [-c for c in result] if result and result[-1] < 0 else result
+
+
+def _shared(p: Polynomial, q: Polynomial) -> Polynomial:
+    if not p or not q:
+        return p or q
+    if p[-1] % _PRIME and q[-1] % _PRIME and _degree_of_shared(p, q) == 0:
+        return [1]
+    if len(p) < len(q):
+        p, q = q, p
+    while q:
+        p, q = q, primitive(_remainder(p, q))
+    return primitive(p)
+
+
+def _remainder(p: Polynomial, q: Polynomial) -> Polynomial:
+    rest = list(p)
+    while len(rest) >= len(q):
+        factor = common(rest[-1], q[-1])
+        up, down = q[-1] // factor, rest[-1] // factor
+        shift = len(rest) - len(q)
+        rest = [up * c for c in rest]
+        for j, c in enumerate(q):
+            rest[shift + j] -= down * c
+        rest = trimmed(rest)
+    return rest
+
+
+def _degree_of_shared(p: Polynomial, q: Polynomial) -> int:
+    """The degree of the greatest common divisor modulo a prime, which is never less than the true one."""
+    a, b = trimmed([c % _PRIME for c in p]), trimmed([c % _PRIME for c in q])
+    while b:
+        inverse = pow(b[-1], -1, _PRIME)
+        while len(a) >= len(b):
+            factor, shift = a[-1] * inverse % _PRIME, len(a) - len(b)
+            for j, c in enumerate(b):
+                a[shift + j] = (a[shift + j] - factor * c) % _PRIME
+            a = trimmed(a)
+        a, b = b, a
+    return len(a) - 1
+
+
+def on_axis(p: Polynomial) -> Polynomial:
+    """The polynomial whose roots are the squares of those roots of `p` whose negative is a root too.
+
+    If no root lies to the right of the imaginary axis, these are the roots on it.
+    """
+    return shared(trimmed(p[0::2]), trimmed(p[1::2])) if any(p[1::2]) else primitive(trimmed(p[0::2]))
+
+
+def value(p: Polynomial, x: Fraction) -> int:
+    """p(x) times the denominator of x to the degree of p, which has the sign of p(x)."""
+    result, power = 0, 1
+    for c in reversed(p):
+        result = result * x.numerator + c * power
+        power *= x.denominator
+    return result
+
+
+def positive_roots(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
+    """Intervals above zero, apart from each other and in rising order, that hold one positive root of `p` each.
+
+    By Descartes' rule of signs and bisection (Collins and Akritas, 1976). A root that is met has its interval (x, x).
+    """
+    p = trimmed(p)
+    while p and p[0] == 0:
+        p = p[1:]
+    if len(p) < 2:
+        return []
+    repeated = shared(p, derivative(p))
+    if len(repeated) > 1:
+        p = quotient(p, repeated)
+    one = Fraction(1)
+    found = [_above_zero(p, *ends) for ends in _between_zero_and_one(p)]
+    found += [(one, one)] if sum(p) == 0 else []
+    beyond = [_above_zero(p[::-1], *ends) for ends in _between_zero_and_one(p[::-1])]
+    found += [(1 / high, 1 / low) for low, high in reversed(beyond)]
+    for i in range(len(found) - 1):
+        while found[i][1] >= found[i + 1][0]:
+            found[i], found[i + 1] = _halved(p, *found[i]), _halved(p, *found[i + 1])
+    return found
+
+
+def _above_zero(p: Polynomial, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+    while low == 0:
+        low, high = _halved(p, low, high)
+    return low, high
+
+
+def _halved(p: Polynomial, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+    """The half that holds the one root of `p` above `low` and up to `high`; `p` has no double root."""
+    middle = (low + high) / 2
+    here = value(p, middle)
+    if here == 0:
+        return middle, middle
+    before = value(p, low) or value(derivative(p), low)
+    return (middle, high) if (before > 0) == (here > 0) else (low, middle)
+
+
+def _between_zero_and_one(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
+    found: list[tuple[Fraction, Fraction]] = []
+    waiting = [(p, 0, 0)]  # p((x + place) / 2^depth)
+    while waiting:
+        q, place, depth = waiting.pop()
+        if q[0] == 0:
+            if place:
+                found.append((Fraction(place, 1 << depth),) * 2)
+            q = q[1:]
+        changes = _changes(_shifted(q[::-1]))
+        if changes == 1:
+            found.append((Fraction(place, 1 << depth), Fraction(place + 1, 1 << depth)))
+        elif changes > 1:
+            left = [c << (len(q) - 1 - i) for i, c in enumerate(q)]
+            waiting.append((_shifted(left), 2 * place + 1, depth + 1))
+            waiting.append((left, 2 * place, depth + 1))
+    return found
+
+
+def _shifted(p: Polynomial) -> Polynomial:
+    """p(x + 1)."""
+    result = list(p)
+    for i in range(len(p) - 1):
+        for j in range(len(p) - 2, i - 1, -1):
+            result[j] += result[j + 1]
+    return result
+
+
+def _changes(p: Polynomial) -> int:
+    signs = [c > 0 for c in p if c]
+    return sum(a != b for a, b in pairwise(signs))
+
+
+@dataclass(frozen=True)
+class TransferFunctions:
+    """G(s) = numerators[output][input] / denominator, with whole coefficients."""
+
+    denominator: Polynomial
+    numerators: tuple[tuple[Polynomial, ...], ...]
+
+    def filtered(self, corner: float) -> TransferFunctions:
+        """Every output filtered by s/(s + corner)."""
+        top, bottom = corner.as_integer_ratio()
+        numerators = tuple(tuple(multiply([0, bottom], n) for n in row) for row in self.numerators)
+        return TransferFunctions(multiply(self.denominator, [top, bottom]), numerators)

@@ -1,0 +1,69 @@
+"""Where statistical linearisation says ok it is within 3 % of simulation; where it is not, it says so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from strategies import paper_half_car
+from white_noise import ROAD, drawn
+
+import inerter as it
+from inerter import Damper, Friction, Inerter, Spring
+
+INDICES = (it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying(amplitude=1000.0))
+METHOD = it.StatisticalLinearisation()
+
+
+def half_car(number):
+    """Frictions in both struts, one beside the damper and one beside an inerter in series with it."""
+    rng = np.random.default_rng([1968, number])
+    front, rear = np.exp(rng.uniform(np.log(3.0), np.log(2000.0), 2))
+    k = Spring(float(rng.uniform(15e3, 120e3)))
+    damper, inner = (Damper(float(np.exp(rng.uniform(np.log(500.0), np.log(2e4))))) for _ in range(2))
+    b = Inerter(float(np.exp(rng.uniform(np.log(20.0), np.log(800.0)))))
+    return paper_half_car(k | damper | Friction(float(front)), k | damper | inner - (b | Friction(float(rear))))
+
+
+def judged(car):
+    """For each index whether the method trusts itself, after checking that it may."""
+    trusted = []
+    for index in INDICES:
+        found = it.evaluate(car, index, METHOD)
+        trusted.append(found.status.ok)
+        simulated = it.evaluate(car, index, it.ExpectedValue(realisations=16))
+        if not found.status.ok or not simulated.status.ok:
+            continue
+        reach = 0.03 * simulated.value + 4.0 * simulated.standard_error
+        assert abs(found.value - simulated.value) < reach, (index.symbol, found, simulated.value)
+    return trusted
+
+
+@pytest.mark.parametrize(
+    "car", [drawn(4).vehicle, drawn(12).vehicle, half_car(0)], ids=["screw", "locking", "half car"]
+)
+def test_ok_means_within_three_per_cent(car):
+    judged(car)
+
+
+@pytest.mark.parametrize("index", INDICES, ids=["J1", "J3", "J5"])
+def test_between_slip_and_stick_it_is_not_ok_and_at_both_ends_it_is(index):
+    car = drawn(4)
+    forces = np.geomspace(1.0, 1e5, 26)
+    known = [it.evaluate(replace(car, f=float(f)).vehicle, index, METHOD) for f in forces]
+    ok = [found.status.ok for found in known]
+    assert ok[0]
+    assert ok[-1]
+    assert not all(ok)
+    assert np.count_nonzero(np.diff(ok)) == 2
+    told = next(found for found in known if not found.status.ok)
+    assert told.status.kind == "inaccurate"
+    assert "off by more than 3 %" in told.status.message
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("first", range(0, 100, 10))
+def test_ok_means_within_three_per_cent_for_many(first):
+    trusted = [judged(car) for n in range(first, first + 10) for car in (drawn(n).vehicle, half_car(n))]
+    assert np.mean(trusted) > 0.25  # half of these cars have friction for their main damper

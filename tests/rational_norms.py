@@ -1,0 +1,238 @@
+"""Indices of a mechanism in rational and ball arithmetic (python-flint): a second way that shares nothing with ours.
+
+The nodal matrix M s^2 + C s + K is made from the mechanism's definition. Its determinant is the characteristic
+polynomial of a companion matrix, shifted to where the nodal matrix is regular; a transfer function is a difference of
+two such determinants (a change of rank one). Mean squares are residues at certified roots, and peaks are certified
+roots of the slope.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import flint
+
+from inerter import GROUND, Damper, Inerter, Mechanism, Spring
+from inerter.networks.elements import Parallel, Series
+
+_ORDER = {Spring: 0, Damper: 1, Inerter: 2}
+INFINITE = "infinite"
+S = flint.fmpq_poly([0, 1])
+
+
+def rational(x: float) -> flint.fmpq:
+    exact = Fraction(x)
+    return flint.fmpq(exact.numerator, exact.denominator)
+
+
+class RationalMechanism:
+    """Transfer functions of a mechanism without free values."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+        self.names = [c.name for c in mechanism.coordinates]
+        self.roads = [r.name for r in mechanism.roads]
+        self.size = len(self.names)
+        self.branches: list[tuple[flint.fmpq, int, dict, dict]] = []
+        self.carriers = {}
+        for strut in mechanism.struts:
+            self.carriers[strut.name] = self._mount(strut.network, self._end(strut.upper), self._end(strut.lower))
+        for tyre in mechanism.tyres:
+            self.carriers[tyre.name] = self._mount(tyre.network, self._end(tyre.port), self._end({tyre.road: 1.0}))
+        n = self.size
+        parts = [flint.fmpq_mat(n, n) for _ in range(3)]
+        for i, coordinate in enumerate(mechanism.coordinates):
+            parts[2][i, i] += rational(coordinate.inertia)
+        for value, order, nodes, _ in self.branches:
+            for i, a in nodes.items():
+                for j, b in nodes.items():
+                    parts[order][i, j] += value * a * b
+        self.parts = parts
+        self.denominator = self._determinant(None, None)
+        self._known: dict = {}
+
+    def _end(self, port: dict) -> dict:
+        return {name: rational(lever) for name, lever in (port or GROUND).items() if lever}
+
+    def _mount(self, network, upper: dict, lower: dict) -> list[int]:
+        if isinstance(network, Parallel):
+            return [i for part in network.parts for i in self._mount(part, upper, lower)]
+        if isinstance(network, Series):
+            ends = [upper]
+            for _ in network.parts[1:]:
+                ends.append({self.size: flint.fmpq(1)})
+                self.size += 1
+            ends.append(lower)
+            placed = [self._mount(p, a, b) for p, a, b in zip(network.parts, ends[:-1], ends[1:], strict=True)]
+            return placed[0]
+        nodes: dict[int, flint.fmpq] = {}
+        roads: dict[str, flint.fmpq] = {}
+        for end, sign in ((upper, 1), (lower, -1)):
+            for name, lever in end.items():
+                where, key = (roads, name) if name in self.roads else (nodes, self._number(name))
+                where[key] = where.get(key, flint.fmpq(0)) + sign * lever
+        self.branches.append((rational(network.value), _ORDER[type(network)], nodes, roads))
+        return [len(self.branches) - 1]
+
+    def _number(self, name) -> int:
+        return name if isinstance(name, int) else self.names.index(name)
+
+    def _determinant(self, row: dict | None, column: dict | None) -> flint.fmpq_poly:
+        """det(M s^2 + C s + K + column row')."""
+        n, shift = self.size, flint.fmpq(3)
+        K, C, M = (flint.fmpq_mat(part) for part in self.parts)
+        for i, a in (column or {}).items():
+            for j, b in (row or {}).items():
+                K[i, j] += a * b
+        whole = M * shift**2 + C * shift + K
+        scale = whole.det()
+        if scale == 0:
+            shift = flint.fmpq(7, 5)
+            whole = M * shift**2 + C * shift + K
+            scale = whole.det()
+        X, Y = whole.solve(M * (2 * shift) + C), whole.solve(M)
+        L = flint.fmpq_mat(2 * n, 2 * n)
+        for i in range(n):
+            L[n + i, i] = flint.fmpq(1)
+            for j in range(n):
+                L[i, j], L[i, n + j] = -X[i, j], -Y[i, j]
+        coefficients = list(reversed(L.charpoly().coeffs()))
+        return scale * flint.fmpq_poly(coefficients)(S - shift)
+
+    def _solution(self, row: dict, column: dict) -> flint.fmpq_poly:
+        """row' adj(P) column."""
+        key = (
+            tuple(sorted((k, str(v)) for k, v in row.items())),
+            tuple(sorted((k, str(v)) for k, v in column.items())),
+        )
+        if key not in self._known:
+            self._known[key] = self._determinant(row, column) - self.denominator
+        return self._known[key]
+
+    def response(self, output: str, source: str) -> tuple[flint.fmpq_poly, flint.fmpq_poly]:
+        """Numerator and denominator, from a road's velocity or a force."""
+        stem, _, what = output.rpartition("_")
+        loads = []  # (polynomial, constant column)
+        if source in self.roads:
+            for value, order, nodes, roads in self.branches:
+                if roads.get(source):
+                    loads.append((S**order * (-value * roads[source]), nodes))
+        else:
+            force = next(f for f in self.mechanism.forces if f.name == source)
+            loads.append((flint.fmpq_poly([1]), {self._number(k): v for k, v in self._end(force.port).items()}))
+
+        def moved(row: dict) -> flint.fmpq_poly:
+            return sum((factor * self._solution(row, column) for factor, column in loads), flint.fmpq_poly([0]))
+
+        if what in ("displacement", "velocity", "acceleration"):
+            power = {"displacement": 0, "velocity": 1, "acceleration": 2}[what]
+            top = S**power * moved({self.names.index(stem): flint.fmpq(1)})
+        else:
+            assert what in ("force", "load")
+            top = flint.fmpq_poly([0])
+            for i in self.carriers[stem]:
+                value, order, nodes, roads = self.branches[i]
+                stretched = moved(nodes) + self.denominator * roads.get(source, flint.fmpq(0))
+                top += S**order * value * stretched
+        return top, self.denominator * (S if source in self.roads else 1)
+
+
+def mean_square(tops: list, bottom, times: list[float]):
+    """Variance of the response to one white noise that arrives at `times`; INFINITE; or None if a pole is multiple."""
+    common = bottom
+    for top in tops:
+        common = common.gcd(top)
+    tops, bottom = [top // common for top in tops], bottom // common
+    if all(top == 0 for top in tops):
+        return flint.arb(0)
+    if max(top.degree() for top in tops) >= bottom.degree():
+        return INFINITE
+    drifts = bottom[0] == 0
+    if drifts and (bottom[1] == 0 or sum((top[0] for top in tops), flint.fmpq(0)) != 0):
+        return INFINITE
+    rest = bottom // S if drifts else bottom
+    if rest.gcd(rest(-S)).degree() > 0:
+        return INFINITE
+    if rest.gcd(rest.derivative()).degree() > 0:
+        return None
+    for precision in (400, 1600, 6400):
+        flint.ctx.prec = precision
+        moved = rest * (S + flint.fmpq(1, 10**60)) if drifts else bottom  # a drift that dies out after 1e60 s
+        found = _residues(tops, moved, times)
+        if found.rel_accuracy_bits() > 60:
+            return found
+    raise ArithmeticError("more digits are needed")
+
+
+def _residues(tops: list, bottom, times: list[float]):
+    slope, mirrored = bottom.derivative(), bottom(-S)
+    total = flint.acb(0)
+    exact = [flint.arb(flint.fmpq(*time.as_integer_ratio())) for time in times]
+    for pole, _ in bottom.complex_roots():
+        below = _at(slope, pole) * _at(mirrored, pole)
+        values, back = [_at(top, pole) for top in tops], [_at(top, -pole) for top in tops]
+        for i, here in enumerate(exact):
+            for j, there in enumerate(exact):
+                if times[j] >= times[i]:
+                    share = values[i] * back[j] * ((there - here) * pole).exp() / below
+                    total += share if i == j or times[i] == times[j] else 2 * share
+    return total.real
+
+
+def _at(polynomial, x):
+    total = flint.acb(0)
+    for c in reversed(polynomial.coeffs()):
+        total = total * x + flint.arb(c)
+    return total
+
+
+def peak_gain(top, bottom):
+    """The largest gain over all frequencies, or INFINITE."""
+    common = bottom.gcd(top)
+    top, bottom = top // common, bottom // common
+    if top == 0:
+        return flint.arb(0)
+    if bottom[0] == 0 or bottom.gcd(bottom(-S)).degree() > 0:
+        return INFINITE
+    p, q = (_squared(x) for x in (top, bottom))
+    slope = p.derivative() * q - p * q.derivative()
+    for precision in (400, 1600, 6400):
+        flint.ctx.prec = precision
+        places = [flint.arb(0)]
+        if slope != 0:
+            places += [x.real for x, _ in slope.complex_roots() if x.imag.contains(0) and x.real > 0]
+        gains = [_at(p, flint.acb(x)).real / _at(q, flint.acb(x)).real for x in places]
+        if top.degree() == bottom.degree():
+            gains.append(flint.arb(p.leading_coefficient() / q.leading_coefficient()))
+        best = gains[0]
+        for gain in gains[1:]:
+            best = best.max(gain)
+        if best.rel_accuracy_bits() > 60:
+            return best.sqrt()
+    raise ArithmeticError("more digits are needed")
+
+
+def _squared(p):
+    square = (p * p(-S)).coeffs()
+    return flint.fmpq_poly([c if i % 2 == 0 else -c for i, c in enumerate(square[0::2])])
+
+
+def index_value(mechanism: Mechanism, index) -> float | str | None:
+    """J1, J3 or J5 with the exact conventions; INFINITE; or None where a pole is multiple."""
+    question, exact = index.question(mechanism), RationalMechanism(mechanism)
+    if question.road is None:
+        found = peak_gain(*exact.response(question.outputs[0].output, question.inputs[0]))
+        return found if found is INFINITE else abs(question.outputs[0].weight) * float(found)
+    distances = {road.name: road.distance for road in mechanism.roads}
+    times = [distances[name] / question.road.speed for name in question.inputs]
+    total = 0.0
+    for output in question.outputs:
+        pairs = [exact.response(output.output, name) for name in question.inputs]
+        tops, bottom = [top for top, _ in pairs], pairs[0][1]
+        if question.high_pass is not None:
+            tops, bottom = [top * S for top in tops], bottom * (S + rational(question.high_pass))
+        square = mean_square(tops, bottom, times)
+        if square is INFINITE or square is None:
+            return square
+        total += abs(output.weight) * float(square.sqrt())
+    return total * question.road.velocity_intensity

@@ -54,7 +54,7 @@ class Choice:
     name: str
     fits: dict[str, Fit]
     candidates: tuple[Candidate, ...]  # the best first
-    device: Network  # the chosen candidate with its best values, without the mount of rigid ones
+    device: Network  # the chosen candidate with its best values
     status: Status
     notes: tuple[str, ...] = ()
 
@@ -81,7 +81,7 @@ def choose(
     """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
 
     `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
-    chosen one with a damper, with and without friction. Rigid ones get a very stiff mount. What else there is, is as
+    chosen one with a damper, with and without friction. What else there is, is as
     in `identify`.
 
     **The criterion.** Each candidate is fitted with the weights that its own residuals ask for, so its likelihood

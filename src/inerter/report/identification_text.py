@@ -80,7 +80,7 @@ def _warning(found: Identified) -> Iterator[str]:
             f"{sentence}: explains {share}.", WIDTH, initial_indent=f"  {number}. ", subsequent_indent="     "
         )
         for line in (f"With it {values}." if values else "", f"What to do: {remedy}." if remedy else ""):
-            yield from wrap(line, WIDTH, initial_indent="     ", subsequent_indent="       ")
+            yield from wrap(line, WIDTH, initial_indent="     ", subsequent_indent="       ", break_on_hyphens=False)
 
 
 def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
@@ -167,7 +167,7 @@ def _estimates(found: Identified) -> Iterator[str]:
         of = f" of {c.record.source}" if len(found.fit.comparisons) > 1 else ""
         yield from wrap(f"  Offset of the load cell{of}: {single(c.offset, 'N')}", WIDTH, subsequent_indent="    ")
     for remark in remarks(found):
-        yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ")
+        yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)
 
 
 def remarks(found: Identified) -> Iterator[str]:

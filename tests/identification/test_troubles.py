@@ -6,12 +6,12 @@ A sample here; more behind the marker `campaign`, and all in benchmarks/identifi
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from troubled_records import Case, clean, fits_fault, model_of, record_of, troubled
+from troubled_rig import Device, Sensors, Tones, device_force, measured
 
 import inerter as it
 from inerter.identification.experiment import Experiment, experiment_of
@@ -21,11 +21,6 @@ from inerter.identification.judging import mean_square
 from inerter.identification.laws import Chained, stepped
 from inerter.identification.problem import Problem
 from inerter.identification.space import space_of
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
-from troubled_records import Case, clean, fits_fault, model_of, record_of, troubled
-from troubled_rig import Device, Sensors, Tones, device_force, measured
 
 STARTS = 8
 

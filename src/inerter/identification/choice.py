@@ -81,8 +81,8 @@ def choose(
     """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
 
     `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
-    chosen one with a damper, with and without friction. What else there is, is as
-    in `identify`.
+    chosen one with a damper, with and without friction. What else there is, is as in
+    `identify`.
 
     **The criterion.** Each candidate is fitted with the weights that its own residuals ask for, so its likelihood
     compares with no other's. Here all are judged by one yardstick: the last part `check` of each record, which none

@@ -96,7 +96,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             title=found.title,
             model=model_title(found),
             layout=written(found.model, [e.label for e in found.model.elements()]),
-            status="" if fit.status.ok else str(fit.status),
+            status="" if fit.status.ok else as_options(fit.status.message),
             answers=list(_answers(found)),
             rows=list(_rows(found)),
             told=[name for name, told in fit.identifiable.items() if plainly(told)],

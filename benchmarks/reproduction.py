@@ -35,14 +35,14 @@ def main(only: tuple[str, ...]) -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
         with Crew(jobs) as crew:
-            found = paper.reproduce(folder, only=only, jobs=crew, force=True, progress=progress)
+            found = paper.reproduce(folder, only=only, jobs=crew, progress=progress)
             computed = time.perf_counter()
             write_reproduction(found, folder, crew)
         written = time.perf_counter()
         tasks: Counter[str] = Counter()
         for line in (folder / paper.JOURNAL).read_text(encoding="utf-8").splitlines()[1:]:
-            part, _, numbers = json.loads(line)
-            tasks[part] += numbers["seconds"]
+            entry = json.loads(line)
+            tasks[entry["part"]] += entry["numbers"]["seconds"]
     for what, seconds in ((what, ended[what] - begun[what]) for what in begun):
         print(f"{what:14}{seconds:8.1f} s on the clock")
     for part, seconds in tasks.most_common():

@@ -11,6 +11,7 @@ from scipy.signal import welch
 from inerter.records import signs
 from inerter.records.finding import Finding
 from inerter.records.gaps import runs
+from inerter.records.lost import losses
 from inerter.records.record import CHANNELS, UNIFORM, Record
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 
@@ -24,10 +25,10 @@ PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more oft
 def findings(record: Record) -> list[Finding]:
     """What is worth knowing about a record, the gravest first.
 
-    Looks at the sampling, the size, noise, steps, limits, offset and drift of the channels, swapped columns, hum of
-    the mains, the sign of the force and its delay.
+    Looks at the sampling, samples that were lost, the size, noise, steps, limits, offset and drift of the channels,
+    swapped columns, hum of the mains, the sign of the force and its delay.
     """
-    found = [*_count(record), *_sampling(record), *_filled(record), *_constant(record), *_sizes(record)]
+    found = [*_count(record), *_sampling(record), *_lost(record), *_filled(record), *_constant(record), *_sizes(record)]
     if not any(finding.severity == "error" for finding in found):
         found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record)]
         if record.uniform:
@@ -82,6 +83,18 @@ def _sampling(record: Record) -> list[Finding]:
         )
         result.append(Finding("jitter", "warning", said_of_jitter, {**numbers, "jitter": jitter}))
     return result or [Finding("sampling", "info", f"{said}, not quite evenly spaced.", numbers)]
+
+
+def _lost(record: Record) -> list[Finding]:
+    lost = losses(record)
+    if not lost:
+        return []
+    count, at = sum(loss.count for loss in lost), float(record.time[lost[0].after])
+    said = (
+        f"The displacement leaps along itself at {len(lost)} places, the first at {at:.4g} s: about {count} samples "
+        f"are lost while the clock goes on. Read the file with gaps='fill', which puts them in."
+    )
+    return [Finding("lost-samples", "warning", said, {"places": float(len(lost)), "samples": float(count)})]
 
 
 def _filled(record: Record) -> list[Finding]:

@@ -16,6 +16,7 @@ from inerter.errors import RecordError
 from inerter.records import matlab, mdf, tables, tdms
 from inerter.records.channels import Channel, Contents, Progress, Samples, choose
 from inerter.records.gaps import alike, mend, onto_force
+from inerter.records.lost import mended
 from inerter.records.record import Record
 from inerter.records.scales import check_units, fits, scale
 
@@ -66,7 +67,8 @@ def read_record(
     `interval` [s] gives the sampling where the file has no times, or overrules them.
 
     Samples that are missing or no finite numbers are refused; `gaps="fill"` interpolates up to 10 in a row, a number
-    those up to so many seconds, and `gaps="longest"` keeps the longest stretch without any.
+    those up to so many seconds, and `gaps="longest"` keeps the longest stretch without any. The same is done about
+    samples that were lost while the clock went on evenly, as the displacement tells; `gaps="refuse"` leaves those.
     `progress` is called with the fraction read so far.
 
     Raises `RecordError` for a file, channel or unit that cannot be used, in one sentence that says what to try.
@@ -84,7 +86,7 @@ def read_record(
         samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or _silent), strict=True))
     channels = {role: _scaled(source, chosen[role], samples[role], scales[role]) for role in chosen}
     channels, more = _timed(source, chosen, channels, interval, bool(contents.meta.get("cut")))
-    channels, mended, filled = mend(source, channels, gaps)
+    channels, filled_in, filled = mend(source, channels, gaps)
     meta = {
         **contents.meta,
         "channels": {role: channel.name for role, channel in chosen.items()},
@@ -92,14 +94,15 @@ def read_record(
         **({"filled": filled} if filled else {}),
     }
     values: dict[str, Any] = {role: samples.values for role, samples in channels.items()}
-    return Record(
+    record = Record(
         **values,
         source=source,
-        notes=(*contents.notes, *notes, *more, *mended),
+        notes=(*contents.notes, *notes, *more, *filled_in),
         force_range=force_range,
         period=period,
         meta=meta,
     )
+    return mended(record, gaps)
 
 
 def _silent(fraction: float) -> None:

@@ -37,6 +37,9 @@ class Record:
     notes: tuple[str, ...] = ()
     force_range: float | None = None  # [N] the largest force that the load cell can tell, where it is known
     force_bandwidth: float | None = None  # [Hz] of the load cell (second order, Butterworth), where it is known
+    force_noise: float | None = None  # [N] r.m.s. of one sample, with what its steps add, where it is known
+    displacement_noise: float | None = None  # [m] the same of the displacement
+    fixture_mass: float | None = None  # [kg] that moves with the table between load cell and device
     period: float | None = None  # [s] of the excitation, where it is known to repeat
     meta: dict[str, Any] = field(default_factory=dict)  # what else the file said, such as its units
 
@@ -70,7 +73,7 @@ class Record:
                 f"The times of {self.source!r} must increase, but do not at sample {at} (t = {self.time[at]:g} s). "
                 f"Where a file rounds or repeats its times, read it with interval= instead."
             )
-        for name in ("force_range", "force_bandwidth", "period"):
+        for name in ("force_range", "force_bandwidth", "force_noise", "displacement_noise", "fixture_mass", "period"):
             value = getattr(self, name)
             if value is not None and (not is_number(value) or value <= 0.0):
                 raise RecordError(f"The {name} of a record must be a positive number, got {value!r}.")

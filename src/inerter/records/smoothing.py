@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,7 @@ ABOVE = 5.0  # times the noise floor, that a band has to hold to count as motion
 _BLOCK = 1 << 18  # samples of one spline
 _BANDS = 6  # an octave
 _FEWEST = 64  # samples that a spectrum needs to tell noise from motion
+_WIDE = 256  # lines of a spectrum that tell a density to 6 %
 _LEVELS = 1 << 17  # values in which a step is looked for
 _LONGEST = 1 << 20  # samples of one spectrum
 
@@ -40,7 +42,6 @@ class Motion:
     time: Vector  # (n,) [s]
     displacement: Vector  # (n,) [m]
     velocity: Vector  # (n,) [m/s]
-    acceleration: Vector  # (n,) [m/s^2]
     bandwidth: float  # [Hz] where the gain of the filter is 1/2
     highest: float  # [Hz] the highest frequency at which the displacement stands out of its noise
     attenuation: float  # what the filter takes from the amplitude at that frequency, as a fraction
@@ -48,6 +49,16 @@ class Motion:
     velocity_noise: float  # [m/s] r.m.s. of what is left of it in the velocity
     acceleration_noise: float  # [m/s^2] and in the acceleration
     sentence: str = ""
+
+    @cached_property
+    def acceleration(self) -> Vector:
+        """(n,) [m/s^2]"""
+        return _slope(self.time, self.velocity)
+
+    def smoothed(self, displacement: Vector) -> tuple[Vector, Vector]:
+        """Another displacement on the same times, and its velocity, by the same filter."""
+        smooth = low_pass(displacement, float(self.time[-1] - self.time[0]) / (self.time.size - 1), self.bandwidth)
+        return smooth, _slope(self.time, smooth)
 
 
 def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motion:
@@ -72,14 +83,12 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
     chosen = min(MARGIN * noise.highest, limit) if bandwidth is None else float(bandwidth)
     displacement = low_pass(record.displacement, interval, chosen)
     velocity = _slope(record.time, displacement)
-    acceleration = _slope(record.time, velocity)
     attenuation = 1.0 - float(gain(np.array([noise.highest]), interval, chosen)[0])
     noises = _noises(noise.density, interval, chosen)
     return Motion(
         time=record.time,
         displacement=displacement,
         velocity=velocity,
-        acceleration=acceleration,
         bandwidth=chosen,
         highest=noise.highest,
         attenuation=attenuation,
@@ -118,6 +127,23 @@ def noise_of(values: Vector, interval: float) -> Noise:
     highest = min(float(motion[-1]) if motion.size else limit, 0.5 / interval)
     rms = step / math.sqrt(12.0) if steps >= lowest else math.sqrt(0.5 * floor / interval)
     return Noise(floor, rms, highest)
+
+
+def quietest(values: Vector, interval: float) -> float:
+    """The r.m.s. of white noise of the density that the quietest half-octave of a spectrum has, 256 lines at least.
+
+    A wide band, for the lowest of many narrow ones is lower than the noise by chance.
+    """
+    if values.size < _FEWEST or np.ptp(values) == 0.0:
+        return 0.0
+    _, density = _spectrum(values, interval)
+    total = np.concatenate([[0.0], np.cumsum(density)])
+    means, first, last = [], density.size, density.size
+    while first > 1:
+        first = max(min(int(last / math.sqrt(2.0)), last - _WIDE), 1)
+        means.append(float(total[last] - total[first]) / (last - first))
+        last = int(last * 2.0**-0.25)
+    return math.sqrt(0.5 * min(means) / interval)
 
 
 def resolution(values: Vector) -> float:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
 from inerter.cli.main import call
@@ -150,6 +151,46 @@ def test_a_fit_that_is_not_ok_is_written_and_returns_1(
     assert "not to be relied on" in out
     assert {path.name for path in folder.iterdir()} - {".lock"} == FILES
     assert "Not to be relied on" in (folder / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def rattled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Records of an independent rig: a displacement that is 4 ms late, and 6 kg between load cell and device."""
+    folder = tmp_path_factory.mktemp("rattled")
+    (folder / "rig.toml").write_text(CONFIG, encoding="utf-8")
+    device = Device(b=113.0, f=10.0, ks=1e6, cs=3200.0)
+    motion = Tones((2e-3, 4e-4), (1.5, 4.0), (0.0, 1.0))
+    for name, sensors in {"late": Sensors(displacement_late=4e-3), "heavy": Sensors(fixture=6.0)}.items():
+        it.write_record(it.Record(*measured(device, motion, sensors, 2.0, 1)), folder / f"{name}.csv")
+    return folder
+
+
+def test_a_faulty_sensor_is_named_in_the_first_line(rattled: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = rattled / "out"
+    arguments = [str(rattled / "late.csv"), "--config", str(rattled / "rig.toml"), "-o", str(folder)]
+    assert call(["identify", *arguments]) == 1
+    out, err = capsys.readouterr()
+    first = " ".join(out.partition("\n\n")[0].split())
+    assert first.startswith("Not to be relied on: the model leaves ")
+    assert "the displacement is late by 4" in first
+    assert "the displacement is late by 4" in err
+    assert max(map(len, out.splitlines())) <= 80
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert page.index("Not to be relied on:") < page.index("the displacement is late") < page.index("Parameters")
+    data = json.loads((folder / "fit.json").read_text())
+    assert data["status"].startswith("inaccurate")
+    assert "delay" in [e["name"] for e in data["explanations"][:2]]
+    assert data["misfit"]["fitted"] > 1.5
+
+
+def test_a_known_mass_in_front_of_the_cell_is_an_option(rattled: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [str(rattled / "heavy.csv"), "--config", str(rattled / "rig.toml"), "-o", str(rattled / "heavy")]
+    sensors = ["--fixture-mass", "6 kg", "--force-noise", "0.15 N", "--displacement-noise", "0.42 um"]
+    assert call(["identify", *arguments, *sensors, "--json"]) == 0
+    b = json.loads(capsys.readouterr().out)["parameters"]["b"]
+    assert b["interval"][0] <= 113.0 <= b["interval"][1]
+    assert call(["identify", *arguments, "--fixture-mass", "6 N", "--force"]) == 2
+    assert "--fixture-mass" in capsys.readouterr().err
 
 
 def test_a_folder_is_replaced_on_demand_only(fitted: Path, capsys: pytest.CaptureFixture[str]) -> None:

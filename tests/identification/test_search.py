@@ -11,8 +11,9 @@ from inerter.identification.experiment import experiment_of
 from inerter.identification.intervals import optimum_of
 from inerter.identification.noise import plain
 from inerter.identification.problem import Problem
-from inerter.identification.redrawing import redrawn, repeated, unavoidable
+from inerter.identification.redrawing import redrawn
 from inerter.identification.search import starts, wander
+from inerter.identification.sensors import repeated, unavoidable
 from inerter.identification.space import space_of
 
 RATTLING = {"b": 53.0, "f": 82.0, "ks": 4.7e5, "cs": 7900.0, "gap": 1.1e-4}
@@ -31,7 +32,7 @@ def rattle(seed: int = 0) -> it.Record:
 def problem_of(record: it.Record, model: it.Network) -> Problem:
     """The whole record with the errors that the virtual rig has."""
     rig, experiment = it.Rig(model), experiment_of(record)
-    return Problem(rig, space_of(rig, gain=False, delay=0.0), [experiment], [plain(experiment.kept, 0.12)])
+    return Problem(rig, space_of(rig), [experiment], [plain(experiment.kept, 0.12)])
 
 
 def test_the_right_valley_of_a_rattling_device() -> None:

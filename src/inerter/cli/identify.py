@@ -21,7 +21,16 @@ from inerter.study.identification_schema import channel_units, gap_treatment
 from inerter.study.run import REPORT, claimed
 from inerter.units import parse_quantity
 
-_QUANTITIES = {"interval": "s", "resample": "s", "period": "s", "force_range": "N", "force_bandwidth": "Hz"}
+_QUANTITIES = {
+    "interval": "s",
+    "resample": "s",
+    "period": "s",
+    "force_range": "N",
+    "force_bandwidth": "Hz",
+    "force_noise": "N",
+    "displacement_noise": "m",
+    "fixture_mass": "kg",
+}
 
 
 def identify(

@@ -176,6 +176,15 @@ def identify(
     period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None,
     force_range: Annotated[str | None, Parameter(help='What the load cell can tell: "981 N".')] = None,
     force_bandwidth: Annotated[str | None, Parameter(help='Of the load cell and its amplifier: "300 Hz".')] = None,
+    force_noise: Annotated[
+        str | None, Parameter(help='Of the load cell, r.m.s.: "0.5 N"; else from the quietest half-octave.')
+    ] = None,
+    displacement_noise: Annotated[
+        str | None, Parameter(help='Of the displacement, r.m.s.: "1 um"; else as it stands out of its motion.')
+    ] = None,
+    fixture_mass: Annotated[
+        str | None, Parameter(help='What moves with the table between load cell and device: "2 kg".')
+    ] = None,
     seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None,
     starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None,
     output: Output = None,
@@ -197,7 +206,8 @@ def identify(
     options = {
         "displacement": displacement, "force": force_channel, "time": time, "unit": unit, "interval": interval,
         "gaps": gaps, "trim": trim, "resample": resample, "period": period, "force_range": force_range,
-        "force_bandwidth": force_bandwidth,
+        "force_bandwidth": force_bandwidth, "force_noise": force_noise, "displacement_noise": displacement_noise,
+        "fixture_mass": fixture_mass,
     }  # fmt: skip
     settings = {"seed": seed, "starts": starts}
     return command(records, model, config, output, options, settings, force=force, as_json=json)

@@ -11,18 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError, Status, StatusKind
+from inerter.identification.concluding import fit_of
 from inerter.identification.fit import Fit
-from inerter.identification.identify import identify
-from inerter.identification.models import MODELS, VISCOUS, mounted
-from inerter.identification.noise import Whitening, whitening_of
+from inerter.identification.identify import solution_of
+from inerter.identification.models import MODELS, VISCOUS
+from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.search import POINTS
+from inerter.identification.solving import Request, Solution
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.record import Record
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
-LEAST, MOST = 0.01, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
+LEAST, MOST = 0.02, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
 _ROBUST = 3.0  # whitened residuals beyond this count less than their square
 _BLOCKS = 20
 _RANGE = 4.0  # about known values, in which a fit is tried anew
@@ -32,7 +34,10 @@ _PAIRS = (("ideal", "friction"), ("elastic", "elastic-friction"), ("backlash", "
 
 @dataclass(frozen=True)
 class Candidate:
-    """How one candidate predicts the check part. A loss is a mean square of whitened residuals, about 1 at best."""
+    """How one candidate predicts the check part.
+
+    A loss is a mean square of whitened residuals, about 1 for a right model.
+    """
 
     name: str
     unknowns: int
@@ -49,7 +54,7 @@ class Choice:
     name: str
     fits: dict[str, Fit]
     candidates: tuple[Candidate, ...]  # the best first
-    device: Network  # the chosen candidate with its best values, without the mount of rigid ones
+    device: Network  # the chosen candidate with its best values
     status: Status
     notes: tuple[str, ...] = ()
 
@@ -76,17 +81,17 @@ def choose(
     """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
 
     `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
-    chosen one with a damper, with and without friction. Rigid ones get a very stiff mount. What else there is, is as
-    in `identify`.
+    chosen one with a damper, with and without friction. What else there is, is as in
+    `identify`.
 
     **The criterion.** Each candidate is fitted with the weights that its own residuals ask for, so its likelihood
-    compares with no other's. Here all are judged by one yardstick: the last part `check` of each record, which none was
-    fitted to, with the weights and the whitening of the candidate that leaves the least there. Its loss is the mean
-    square of the whitened residuals (those beyond 3 count less). A candidate is as good as the best if its loss is
-    larger by no more than the standard error of the difference, from 20 blocks of time; that counts as 1 % of the
-    best loss at least, for what changes less is not worth an element, and as 10 % at most, for an element may show in
-    few blocks only (the rule of one standard error, Breiman et al. 1984). Of those as good, the one with the fewest
-    unknowns is chosen.
+    compares with no other's. Here all are judged by one yardstick: the last part `check` of each record, which none
+    was fitted to, whitened by what the errors of the sensors leave there of the candidate that leaves the least.
+    Its loss is the mean square of the whitened residuals (those beyond 3 count less), so about 1 for a right model.
+    A candidate is as good as the best if its loss is larger by no more than the standard error of the difference,
+    from 20 blocks of time; that counts as 2 % of the best loss at least, for what changes less is not worth an
+    element, and as 10 % at most, for an element may show in few blocks only (the rule of one standard error,
+    Breiman et al. 1984). Of those as good, the one with the fewest unknowns is chosen.
 
     Raises `IdentificationError` if no candidate can be fitted or nothing is kept for the check; a candidate that
     fails among others is told in `notes`.
@@ -94,22 +99,19 @@ def choose(
     given = _named(models)
     if not 0.0 < check <= 0.6:
         raise IdentificationError(f"Candidates are compared on the part kept for the check, 0 to 0.6, got {check!r}.")
+    asked = Request(offset, gain, delay, check, bandwidth, lead, starts, seed)
+    solutions: dict[str, Solution] = {}
     fits: dict[str, Fit] = {}
     failed: list[str] = []
     expected = len(given) + (2 if models is None else 0)
-
-    def fitted(model: Network, part: Callable[[float], None] | None = None) -> Fit:
-        return identify(
-            records, mounted(model), seed=seed, offset=offset, gain=gain, delay=delay, check=check,
-            bandwidth=bandwidth, lead=lead, starts=starts, progress=part,
-        )  # fmt: skip
 
     def fit_all(candidates: Mapping[str, Network]) -> None:
         for name, model in candidates.items():
             done = len(fits) + len(failed)
             part = None if progress is None else _part(progress, done / expected, (done + 1) / expected)
             try:
-                fits[name] = fitted(model, part)
+                solutions[name] = solution_of(records, model, asked, part)
+                fits[name] = fit_of(solutions[name], explain=False)
             except InerterError as error:
                 failed.append(f"{name}: cannot be fitted. {error}")
 
@@ -118,9 +120,11 @@ def choose(
         ranked = compare(fits)
         for name, relative in _stuck(ranked, fits):
             with suppress(InerterError):
-                anew = fitted(_near(candidates[name], fits[relative]))
+                near = solution_of(records, _near(candidates[name], fits[relative]), asked, None)
+                anew = fit_of(near, explain=False)
                 losses = {c.name: c.loss for c in compare({relative: fits[relative], name: fits[name], _ANEW: anew})}
-                fits[name] = anew if losses[_ANEW] < losses[name] else fits[name]
+                if losses[_ANEW] < losses[name]:
+                    solutions[name], fits[name] = near, anew
 
     fit_all(given)
     if not fits:
@@ -135,7 +139,7 @@ def choose(
         again(given)
     ranked = compare(fits)
     name = _chosen(ranked)
-    fit = fits[name]
+    fit = fits[name] = fit_of(solutions[name])
     values = {n: p.best for n, p in fit.parameters.items()}
     return Choice(
         name=name,
@@ -166,8 +170,8 @@ def compare(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
     if sum(int(mask.sum()) for mask in masks) < 2 * _BLOCKS:
         raise IdentificationError("Too few samples are kept for the check to compare candidates on; raise `check`.")
     left = {name: _spread(fit, masks) for name, fit in fits.items()}
-    yardstick = _whitenings(fits[min(left, key=lambda name: left[name])], masks)
-    losses = {name: _losses(fit, yardstick) for name, fit in fits.items()}
+    whitenings = _whitenings(fits[min(left, key=lambda name: left[name])], masks)
+    losses = {name: _losses(fit, whitenings) for name, fit in fits.items()}
     mean = {name: float(loss.mean()) for name, loss in losses.items()}
     best = min(mean, key=lambda name: mean[name])
     result = []
@@ -212,15 +216,15 @@ def _spread(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> float:
 
 def _whitenings(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> list[Whitening]:
     return [
-        whitening_of(c.residual, c.model, mask, c.experiment.noise / 3.0)
+        yardstick(c.draws, c.experiment.noise, mask)
         for c, mask in zip(fit.comparisons, masks, strict=True)
         if mask.any()
     ]
 
 
-def _losses(fit: Fit, yardstick: Sequence[Whitening]) -> Matrix:
+def _losses(fit: Fit, whitenings: Sequence[Whitening]) -> Matrix:
     parts = []
-    for c, whitening in zip((c for c in fit.comparisons if c.checked.any()), yardstick, strict=True):
+    for c, whitening in zip((c for c in fit.comparisons if c.checked.any()), whitenings, strict=True):
         white = whitening(c.residual)[whitening.weight > 0.0]
         parts.append(2.0 * _ROBUST**2 * (np.sqrt(1.0 + (white / _ROBUST) ** 2) - 1.0))
     return np.concatenate(parts)

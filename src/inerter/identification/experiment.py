@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import IdentificationError, InerterError
 from inerter.networks.elements import Damper, Friction, Gap, Spring
 from inerter.records.record import Record
-from inerter.records.smoothing import Motion, noise_of, resolution, smooth_displacement
+from inerter.records.smoothing import Motion, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import InputTable, tabulate
@@ -27,54 +28,80 @@ _MAD = 1.4826  # standard deviations in a median absolute deviation
 _AT_REST = 0.02  # of the largest velocity
 
 
+class Tally:
+    """How often a record was simulated, by all that share it, in whichever thread."""
+
+    def __init__(self) -> None:
+        self.total = 0
+        self._lock = Lock()
+
+    def add(self) -> None:
+        """One more."""
+        with self._lock:
+            self.total += 1
+
+
 @dataclass(frozen=True, eq=False)
 class Experiment:
     """One record with its smoothed motion. Samples that are not `kept` are simulated but not compared.
 
-    Times are counted from the first sample.
+    Times are counted from the first sample. Experiments that are made of one another share its `tally`.
     """
 
     record: Record
     motion: Motion
     kept: NDArray[np.bool_]
-    table: InputTable  # of the motion, without delay
+    table: InputTable  # of the motion
     noise: float  # [N] r.m.s. of the noise of the force
     told: Matrix  # (samples,) how much of the squared force of all samples kept lies up to each
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
+    tally: Tally = field(default_factory=Tally)
 
     @property
     def size(self) -> int:
         return int(self.record.time.size)
 
-    def moved(self, parts: int, delay: float) -> InputTable:
-        """The motion in `parts` steps an interval, and `delay` [s] later: what a force that is late answers to."""
-        if parts > 1 and parts not in self.finer:
+    def table_in(self, parts: int) -> InputTable:
+        """The motion in `parts` steps an interval."""
+        if parts == 1:
+            return self.table
+        if parts not in self.finer:
             self.finer[parts] = _table(self.motion, parts)
-        table = self.table if parts == 1 else self.finer[parts]
-        if delay == 0.0:
-            return table
-        time = np.clip(table.time - delay, 0.0, table.time[-1])
-        value, slope = (column[:, None] for column in _signal(self.motion).sample(time))
-        slope[table.time < delay] = 0.0
-        return replace(table, value=value, slope=slope, value_before=value, slope_before=slope)
+        return self.finer[parts]
 
-    def force(self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None) -> Matrix | None:
+    def moved(self, displacement: Matrix, velocity: Matrix) -> Experiment:
+        """The same record, had the table moved so."""
+        motion = replace(self.motion, displacement=displacement, velocity=velocity)
+        value, slope = (displacement - displacement[0])[:, None], velocity[:, None]
+        table = replace(self.table, value=value, slope=slope, value_before=value, slope_before=slope)
+        return replace(self, motion=motion, table=table, finer={})
+
+    def late(self, delay: float) -> Experiment:
+        """The same record, had the table moved `delay` [s] later: what a force that is late answers to.
+
+        Before its first sample and after its last the table is taken to stand still.
+        """
+        time = self.motion.time - self.motion.time[0] - delay
+        within = np.clip(time, 0.0, self.motion.time[-1] - self.motion.time[0])
+        height, velocity = _signal(self.motion).sample(within)
+        return self.moved(height, np.where(time == within, velocity, 0.0))
+
+    def force(self, system: PiecewiseSystem, samples: int | None = None) -> Matrix | None:
         """The force that the load cell would read of this device at the first `samples` samples; None if it fails."""
-        run = self.run(system, delay, samples)
+        run = self.run(system, samples)
         return None if run is None else run[reading_of(self.record)]
 
-    def run(
-        self, system: PiecewiseSystem, delay: float = 0.0, samples: int | None = None, moving: bool = False
-    ) -> Trajectory | None:
+    def run(self, system: PiecewiseSystem, samples: int | None = None, moving: bool = False) -> Trajectory | None:
         """The motion of the device, from rest or (`moving`) carried along with the table; None if it fails."""
+        self.tally.add()
         state = initial_state(system, self.table.value[0], "rest")
         if moving:
             state = _carried(system, state, self.table.slope[0])
         count = self.size if samples is None else min(samples, self.size)
-        integration = event_driven.start(system, _shortened(self.moved(1, delay), count - 1), state)
+        integration = event_driven.start(system, _shortened(self.table, count - 1), state)
         parts = parts_for(integration)
         if parts > 1:
-            integration = event_driven.start(system, _shortened(self.moved(parts, delay), (count - 1) * parts), state)
+            integration = event_driven.start(system, _shortened(self.table_in(parts), (count - 1) * parts), state)
         integration.advance(integration.table.time.size - 1)
         if not integration.status.ok:
             return None
@@ -122,13 +149,16 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
 
 
 def _noise(record: Record) -> float:
-    """R.m.s. of the noise of the force [N]: as its spectrum tells, or less where impacts now and then are all of that.
+    """R.m.s. of the noise of the force [N]: as it is known, or as the quietest half-octave of its spectrum tells.
 
-    Sixth differences leave little of any force, and their median little of what is not there most of the time.
+    Less where impacts now and then are all of that: sixth differences leave little of any force, and their median
+    little of what is not there most of the time.
     """
+    if record.force_noise is not None:
+        return record.force_noise
     sixth = _MAD * float(np.median(np.abs(np.diff(record.force, 6)))) / math.sqrt(math.comb(12, 6))
     intermittent = max(sixth, resolution(record.force) / math.sqrt(12.0))
-    return max(min(noise_of(record.force, record.interval).rms, intermittent), 1e-9)
+    return max(min(quietest(record.force, record.interval), intermittent), 1e-9)
 
 
 def _told(force: Matrix, kept: NDArray[np.bool_]) -> Matrix:
@@ -144,10 +174,7 @@ def reading_of(record: Record) -> str:
 
 def disturbed(experiment: Experiment, noise: Matrix) -> Experiment:
     """The same experiment had the encoder's noise been larger by `noise` (samples,) [m]."""
-    record = replace(experiment.record, displacement=experiment.record.displacement + noise)
-    motion = smooth_displacement(record, experiment.motion.bandwidth)
-    table = _table(motion)
-    return replace(experiment, motion=motion, table=table, finer={})
+    return experiment.moved(*experiment.motion.smoothed(experiment.record.displacement + noise))
 
 
 def saturated(record: Record) -> NDArray[np.bool_]:

@@ -44,6 +44,43 @@ class Parameter:
     profile: tuple[tuple[float, float], ...] = ()  # (value, rise of the cost over its threshold)
 
 
+@dataclass(frozen=True)
+class Misfit:
+    """The r.m.s. of what a fit leaves, whitened, over that of what errors like those of the sensors leave."""
+
+    fitted: float
+    checked: float  # of the part that was not fitted; nan if there is none
+    limits: tuple[float, float]  # what both may be where nothing is wrong
+
+    @property
+    def worst(self) -> float:
+        """The larger one."""
+        return float(np.nanmax([self.fitted, self.checked]))
+
+    @property
+    def excess(self) -> float:
+        """The larger one over what it may be."""
+        return float(np.nanmax([self.fitted / self.limits[0], self.checked / self.limits[1]]))
+
+    @property
+    def sound(self) -> bool:
+        """Whether the errors of the sensors may be all that is left."""
+        return self.excess <= 1.0
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A hypothesis about the device or its sensors, and what it explains of a misfit."""
+
+    name: str
+    sentence: str
+    explained: float  # part of the misfit, squared, beyond what the sensors leave; of the check part if it shows there
+    misfit: Misfit  # that it leaves
+    values: dict[str, float]  # of the unknowns of the hypothesis
+    estimates: dict[str, tuple[float, float]]  # of the device's under the hypothesis, and their standard errors
+    remedy: str = ""  # what would put it right
+
+
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """One record as used, what the model answers to it, and the tests of what is left."""
@@ -53,9 +90,10 @@ class Comparison:
     offset: float  # [N] of the load cell
     fitted: NDArray[np.bool_]  # samples that were fitted
     checked: NDArray[np.bool_]  # samples that were kept for the check
+    draws: Matrix  # (draws, samples) [N] residuals such as errors of the sensors alone would leave
     whitened: Matrix  # residuals after weighting and whitening, of the fitted samples
     lead: float  # [s] at the start that were left out
-    whiteness: float  # p-value of Ljung and Box's test
+    whiteness: float  # p-value of residuals that hang together no more than errors of the sensors do
     openings: Mapping[str, int]  # how often each gap opened in the model
 
     @property
@@ -71,6 +109,11 @@ class Comparison:
         """R.m.s. of the residual over the fitted, or the checked, samples [N]; nan if there are none."""
         mask = self.checked if check else self.fitted
         return float(np.sqrt(np.mean(self.residual[mask] ** 2))) if mask.any() else float("nan")
+
+    def sound(self, check: bool = False) -> float:
+        """R.m.s. of what errors of the sensors alone would leave of them [N]."""
+        mask = self.checked if check else self.fitted
+        return float(np.sqrt(np.mean(self.draws[:, mask] ** 2))) if mask.any() else float("nan")
 
     def explained(self, check: bool = False) -> float:
         """Part of the variance of the force that the model explains."""
@@ -95,6 +138,8 @@ class Fit:
     costs: tuple[float, ...]  # of the different fits to half of the records that the best starts came to, sorted
     simulations: int
     predicted: float  # part of the variance of the force that errors as small as those of the encoder leave as it is
+    misfit: Misfit
+    explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the likeliest first
     status: Status = OK
     notes: tuple[str, ...] = ()
     next_experiment: tuple[str, ...] = ()

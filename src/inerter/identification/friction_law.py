@@ -14,6 +14,8 @@ from scipy.stats import t as student
 
 from inerter.errors import IdentificationError
 from inerter.identification.fit import Fit
+from inerter.identification.guess import chain_of
+from inerter.networks.elements import Free, Network
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 
@@ -67,7 +69,8 @@ def friction_law(source: Record | Fit, inertance: float = 0.0) -> FrictionLaw:
         parts = [(c.experiment.motion, c.residual, c.fitted | c.checked, c.record) for c in source.comparisons]
         slowest = min(parts, key=lambda part: float(np.abs(part[0].velocity).max()))
         motion, force, kept, record = slowest
-        return _law(motion, force, _turned(motion) & kept, record, 0.0)
+        wound = _beyond(motion, _WOUND * _winding(source.device))
+        return _law(motion, force, _turned(motion) & wound & kept, record, 0.0)
     if not isinstance(source, Record):
         raise IdentificationError(f"A friction law is of a record or a fit, got {type(source).__name__}.")
     motion = smooth_displacement(source)
@@ -197,15 +200,36 @@ def _turned(motion: Motion) -> NDArray[np.bool_]:
 def _wound(motion: Motion, force: Matrix, level: float) -> NDArray[np.bool_]:
     """Samples at which the shaft is wound up: in each stroke, beyond the travel that brings the force to its level."""
     direction = np.sign(motion.velocity)
-    edges = [0, *(np.flatnonzero(np.diff(direction)) + 1).tolist(), direction.size]
     travels = []
-    for start, stop in pairwise(edges):
+    for start, stop in pairwise(_strokes(motion)):
         travel = np.abs(motion.displacement[start:stop] - motion.displacement[start])
         reached = np.flatnonzero(direction[start:stop] * force[start:stop] >= _REACHED * level)
         if reached.size and stop - start > 8:
             travels.append(float(travel[reached[0]]))
-    needed = _WOUND * float(np.median(travels)) if travels else math.inf
-    use = np.zeros(direction.size, dtype=bool)
+    return _beyond(motion, _WOUND * float(np.median(travels)) if travels else math.inf)
+
+
+def _winding(device: Network) -> float:
+    """The travel [m] that turns the friction of a chain from one direction to the other, through its shaft."""
+    chain = chain_of(device)
+    if chain is None or chain.friction is None or chain.spring is None:
+        return 0.0
+    friction, spring = chain.friction.value, chain.spring.value
+    assert not isinstance(friction, Free)
+    assert not isinstance(spring, Free)
+    return 2.0 * friction / spring
+
+
+def _beyond(motion: Motion, travel: float) -> NDArray[np.bool_]:
+    """Samples that are further than this [m] from where their stroke began."""
+    edges = _strokes(motion)
+    use = np.zeros(motion.velocity.size, dtype=bool)
     for start, stop in pairwise(edges):
-        use[start:stop] = np.abs(motion.displacement[start:stop] - motion.displacement[start]) > needed
+        use[start:stop] = np.abs(motion.displacement[start:stop] - motion.displacement[start]) > travel
     return use
+
+
+def _strokes(motion: Motion) -> list[int]:
+    """Where strokes begin, and the end."""
+    direction = np.sign(motion.velocity)
+    return [0, *(np.flatnonzero(np.diff(direction)) + 1).tolist(), direction.size]

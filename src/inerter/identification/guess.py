@@ -10,6 +10,8 @@ c/k and the signs are given. A filter s^2 / (s + w)^4 takes the derivatives, so 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import reduce
+from operator import or_, sub
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +26,7 @@ Matrix = NDArray[np.float64]
 _ROUNDS = 4
 _TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 31)])  # [s] of c/k
 _FORCE_BAND = 200.0  # [Hz] in which contact is looked for
+_SLIGHT = 0.3  # share of the power in the apparent one, with less of which its sign tells nothing
 _WELL, _POORLY = 0.04, 0.6  # relative half-widths of the ranges to look in
 
 
@@ -37,6 +40,12 @@ class Chain:
     inerter: Element
     friction: Element | None
     drag: Element | None  # a damper beside the inerter
+
+    def network(self) -> Network:
+        """The chain as a device."""
+        shaft, turning = (self.spring, self.damper), (self.inerter, self.friction, self.drag)
+        beside = [[e for e in part if e is not None] for part in (shaft, (self.gap,), turning)]
+        return reduce(sub, (reduce(or_, elements) for elements in beside if elements))
 
 
 def chain_of(device: Network) -> Chain | None:
@@ -76,7 +85,7 @@ def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[flo
     """Values of free elements, all but the gap, by name, each with the half-width of the range to look in."""
     best: dict[str, tuple[float, float]] = {}
     for experiment in experiments:
-        for element, value, width in _solved(chain, experiment):
+        for element, value, width in _solved(chain, experiment)[1]:
             if element is None or not isinstance(element.value, Free) or element.value.name is None:
                 continue
             name = element.value.name
@@ -88,37 +97,40 @@ def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[flo
 def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, list[str]]:
     """The experiment with the force counted as tension, and what was done to that end.
 
-    A device takes energy from the table, whatever it is made of; where it takes hardly any, that of a chain has to
-    follow the acceleration.
+    A device takes energy from the table, whatever it is made of; where it takes hardly any, a chain has to explain the
+    displacement with parts of positive size.
     """
     force = experiment.record.force - np.median(experiment.record.force)
     velocity, use = experiment.motion.velocity, experiment.kept
     power = force[use] * velocity[use]
     share = float(np.mean(power)) / max(float(np.std(force[use]) * np.std(velocity[use])), 1e-300)
-    follows = 0.0
-    if chain is not None:
-        acceleration = experiment.motion.acceleration[use]
-        follows = float(np.corrcoef(force[use], acceleration)[0, 1]) if np.ptp(acceleration) > 0.0 else 0.0
-    if (share + follows if abs(share) < 0.3 else share) >= 0.0:
+    record = experiment.record.noted("Force reversed: tension is positive.", force=-experiment.record.force)
+    turned = replace(experiment, record=record)
+    if chain is not None and abs(share) < _SLIGHT:
+        right = _solved(chain, experiment)[0] <= _solved(chain, turned)[0]
+    else:
+        right = share >= 0.0
+    if right:
         return experiment, []
     note = f"{experiment.record.source}: the force counted compression as positive; it was reversed."
-    record = experiment.record.noted("Force reversed: tension is positive.", force=-experiment.record.force)
-    return replace(experiment, record=record), [note]
+    return turned, [note]
 
 
-def _solved(chain: Chain, experiment: Experiment) -> list[tuple[Element | None, float, float]]:
+def _solved(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[Element | None, float, float]]]:
+    """What the regression leaves of the displacement, and the elements' values with the widths to look in."""
     h, motion = experiment.record.interval, experiment.motion
-    z, v, F = motion.displacement, motion.velocity, experiment.record.force
+    z, v = motion.displacement, motion.velocity
+    F = experiment.record.force - (experiment.record.fixture_mass or 0.0) * motion.acceleration
     w = 2.0 * max(float(np.std(motion.acceleration)) / max(float(np.std(v)), 1e-30), 1.2)
     first = min(int(6.0 / (w * h)) + 1, z.size // 2)
     use = experiment.kept.copy()
     use[:first] = False
 
+    denominator = np.poly([-w] * 4)
+    filters = [bilinear([w**4] + [0.0] * order, denominator, 1.0 / h) for order in range(3)]
+
     def filtered(x: Matrix, derivatives: int) -> Matrix:
-        numerator = np.zeros(derivatives + 1)
-        numerator[0] = w**4
-        b, a = bilinear(numerator, np.poly([-w] * 4), 1.0 / h)
-        return np.asarray(lfilter(b, a, x - x[0] if derivatives else x))[use]
+        return np.asarray(lfilter(*filters[derivatives], x - x[0] if derivatives else x))[use]
 
     left = filtered(z, 2)
     contact = _contact(F, h, experiment.noise)
@@ -152,11 +164,12 @@ def _solved(chain: Chain, experiment: Experiment) -> list[tuple[Element | None, 
     if chain.gap is not None:
         rest.pop(0)  # serves the others; as an estimate of its own it may be wrong by a factor
     k = 1.0 / max(rest.pop(0), 1e-15) if chain.spring is not None else np.inf
-    return [
+    values: list[tuple[Element | None, float, float]] = [
         (chain.inerter, b, _WELL * b),
         (chain.friction, f, _WELL * f + 3.0 * experiment.noise),
         (chain.drag, drag, _POORLY * drag),
-    ] + ([(chain.spring, k, _POORLY * k)] if chain.gap is None else [])
+    ]
+    return solution[0], values + ([(chain.spring, k, _POORLY * k)] if chain.gap is None else [])
 
 
 def _contact(force: Matrix, h: float, noise: float) -> Matrix:
@@ -171,8 +184,9 @@ def _relaxed(force: Matrix, tau: float, h: float) -> Matrix:
     """Elongation of a spring of 1 N/m beside a damper of `tau` N s/m."""
     if tau == 0.0:
         return force
-    b, a = bilinear([1.0], [tau, 1.0], 1.0 / h)
-    return np.asarray(lfilter(b, a, force))
+    ratio = 2.0 * tau / h  # of the bilinear transform
+    gain, pole = 1.0 / (1.0 + ratio), (1.0 - ratio) / (1.0 + ratio)
+    return np.asarray(lfilter([gain, gain], [1.0, pole], force))
 
 
 def _direction(

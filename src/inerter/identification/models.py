@@ -10,6 +10,7 @@ from types import MappingProxyType
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Series, Spring, free
 from inerter.networks.parser import network
 from inerter.networks.transform import map_elements
+from inerter.vehicle.cars import Rig
 
 VISCOUS = "-viscous"
 _ELEMENTS: dict[str, Network] = {
@@ -51,25 +52,42 @@ MODELS: Mapping[str, Network] = MappingProxyType(
 [m] to each side, inertance `b` [kg], friction `f` [N]; each also `-viscous`, with a damper `c` [N s/m] beside the
 inerter. Shorter chains are parts of longer ones, so that a fit can be compared with those of its parts."""
 MOUNT = Spring(2e8, name="mount_k") | Damper(2e4, name="mount_c")  # gives way by 1 um under 200 N
+_STANDING = 300.0  # [Hz] of the load cell that a rigid device stands on where none is known; its force is the same
+
+
+def standing(model: Network, cell_bandwidth: float | None) -> Rig:
+    """`model` on a rig with a load cell of this bandwidth [Hz].
+
+    The force of dry friction that sticks on a table is determined only if something gives way: for a device in which
+    nothing does, that is a load cell of 1e13 N/m, whether its bandwidth is known or not.
+
+    >>> standing(Inerter(113.0), None).cell_bandwidth, standing(Spring(1e4), None).cell_bandwidth
+    (300.0, None)
+    """
+    return Rig(model, _STANDING if cell_bandwidth is None and rigid(model) else cell_bandwidth)
 
 
 def mounted(model: Network) -> Network:
-    """`model` as it can stand on a motion table: if nothing in it gives way, with a very stiff mount in series.
+    """`model` as it can be simulated: with a very stiff mount in series if its gaps would strike between inertias.
 
-    The force of a rigid device would be that of the acceleration of the measured displacement, which no encoder
-    tells, and the force of dry friction that sticks on a table would not be determined.
-
-    >>> mounted(Inerter(113.0)) == MOUNT - Inerter(113.0), mounted(MOUNT - Inerter(113.0)) == MOUNT - Inerter(113.0)
-    (True, True)
+    >>> mounted(Gap(1e-4) - Inerter(113.0)) == MOUNT - Gap(1e-4) - Inerter(113.0)
+    True
+    >>> mounted(Inerter(113.0)) == Inerter(113.0)
+    True
     """
-    low, high = (complex(abs(map_elements(model, _midway).admittance(1j * omega))) for omega in _FAST)
-    return MOUNT - model if abs(high) > _RISES * abs(low) or not abs(high) < float("inf") else model
+    return MOUNT - model if rigid(model) and any(isinstance(e, Gap) for e in model.elements()) else model
 
 
 def unmounted(model: Network) -> Network:
     """The device without the mount that `mounted` gave it."""
     parts = model.parts if isinstance(model, Series) else ()
     return reduce(sub, parts[1:]) if len(parts) > 1 and parts[0] == MOUNT else model
+
+
+def rigid(model: Network) -> bool:
+    """Whether nothing in a device gives way, so that its admittance grows without end."""
+    low, high = (complex(abs(map_elements(model, _midway).admittance(1j * omega))) for omega in _FAST)
+    return abs(high) > _RISES * abs(low) or not abs(high) < float("inf")
 
 
 _FAST, _RISES = (1e9, 1e10), 3.0  # [rad/s]; an admittance that still grows there is that of an inerter without a spring

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,9 @@ from scipy.fft import next_fast_len
 
 Matrix = NDArray[np.float64]
 _MAD = 1.4826  # standard deviations in a median absolute deviation
+_LEAST = 1.0 / 3.0  # of the level, what errors are at least
 _BANDS, _LINES = 6, 20  # of the spectrum of residuals: in an octave, and the fewest lines in each
+_NEAR = 2  # samples before and after, whose errors count as alike
 OPTIMISM = (1.0 + 1.0 / _LINES) ** 2  # by which weights from the residuals themselves make variances too small
 
 
@@ -18,9 +20,9 @@ OPTIMISM = (1.0 + 1.0 / _LINES) ** 2  # by which weights from the residuals them
 class Whitening:
     """Makes residuals of a record independent and of size one, as far as the record tells.
 
-    An instant at which the model's force jumps is known only as well as the displacement: there the residual of a
-    sample is `timing` times the change of the force between samples, on top of `level` [N]. What is left has a
-    spectrum of its own, because the smoothed noise of the encoder passes through the device; it is divided away.
+    An instant at which the force jumps is known only as well as the displacement: samples there count less. What is
+    left has a spectrum of its own, because the smoothed noise of the encoder passes through the device; it is divided
+    away.
     """
 
     weight: Matrix  # (samples,) 1/N, zero where samples are not compared
@@ -53,24 +55,31 @@ def plain(kept: NDArray[np.bool_], level: float) -> Whitening:
     return Whitening(kept / level, np.zeros(0), np.zeros(0))
 
 
-def whitening_of(residual: Matrix, force: Matrix, kept: NDArray[np.bool_], floor: float) -> Whitening:
-    """The whitening that the residuals of a model with this `force` ask for; `floor` [N] is the least error."""
-    change = np.abs(np.diff(force, prepend=force[0], append=force[-1]))
-    change = np.maximum(change[1:], change[:-1])
-    middle = float(np.median(residual[kept]))
-    r, d = np.abs(residual[kept] - middle), change[kept]
-    level = max(_MAD * float(np.median(r[d <= np.median(d)])), floor)
-    steep = d >= np.quantile(d, 0.95)
-    excess = (_MAD * float(np.median(r[steep]))) ** 2 - level**2
-    timing = max(excess, 0.0) / max(float(np.median(d[steep])) ** 2, 1e-300)
-    weight = np.where(kept, 1.0 / np.sqrt(level**2 + timing * change**2), 0.0)
-    scaled = np.clip(weight * (residual - middle), -5.0, 5.0)
-    return Whitening(weight, *_spectrum(scaled, float(np.mean(kept))))
+def whitening_of(residual: Matrix, by: Whitening) -> Whitening:
+    """A whitening as coarse as residuals ask for: by the spectrum of others, but their own size."""
+    white = by(residual)[by.weight > 0.0]
+    size = _MAD * float(np.median(np.abs(white - np.median(white))))
+    return replace(by, weight=by.weight / max(size, _LEAST), offsets={})
+
+
+def yardstick(draws: Matrix, noise: float, compared: NDArray[np.bool_]) -> Whitening:
+    """The whitening of residuals (draws, samples) [N] that sound sensors leave, on the samples that are compared.
+
+    `noise` [N] is the load cell's own; what else there is comes from the encoder, at some instants more than at others.
+    """
+    of_encoder = np.maximum(np.mean(draws**2, axis=0) - noise**2, 0.0)
+    window = np.ones(2 * _NEAR + 1)
+    near = np.convolve(of_encoder, window, "same") / np.convolve(np.ones(of_encoder.size), window, "same")
+    weight = np.where(compared, 1.0 / np.sqrt(noise**2 + near), 0.0)
+    return Whitening(weight, *_spectrum(np.clip(weight * draws, -5.0, 5.0), float(np.mean(compared))))
 
 
 def _spectrum(values: Matrix, share: float) -> tuple[Matrix, Matrix]:
-    """Frequencies and densities of bands, each with enough lines to be told; `share` of the values are not zero."""
-    density = np.abs(np.fft.rfft(values)) ** 2 / (share * values.size)
+    """Frequencies and densities of bands, each with enough lines to be told; `share` of the values are not zero.
+
+    Of several rows, the mean.
+    """
+    density = np.mean(np.abs(np.fft.rfft(np.atleast_2d(values))) ** 2, axis=0) / (share * values.shape[-1])
     edges = [1]
     while edges[-1] < density.size:
         edges.append(max(edges[-1] + _LINES, int(edges[-1] * 2.0 ** (1.0 / _BANDS))))
@@ -79,5 +88,5 @@ def _spectrum(values: Matrix, share: float) -> tuple[Matrix, Matrix]:
         return np.zeros(0), np.zeros(0)
     lines = np.diff([*edges, density.size])
     means = np.add.reduceat(density, edges) / lines
-    centre = (np.array(edges) + 0.5 * lines) / values.size
+    centre = (np.array(edges) + 0.5 * lines) / values.shape[-1]
     return centre, np.maximum(means, 1e-4 * float(means.max()))

@@ -5,18 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError
-from inerter.identification.experiment import Experiment
+from inerter.identification.experiment import Experiment, reading_of
+from inerter.identification.hypotheses import Hypothesis, through_cell
+from inerter.identification.models import standing
 from inerter.identification.noise import Whitening
-from inerter.identification.space import DELAY, GAIN, Space
+from inerter.identification.space import Space
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.records.record import Record
+from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
 from inerter.vehicle.cars import Rig
 
@@ -27,27 +30,28 @@ FAILED = 1e3  # whitened residual of a simulation that cannot go on
 
 @dataclass(eq=False)
 class Problem:
-    """A rig with unknowns and the records that they should explain. Counts how often it simulates."""
+    """A rig with unknowns and the records that they should explain."""
 
     rig: Rig
     space: Space
     experiments: Sequence[Experiment]
     whitenings: Sequence[Whitening]
     offset: bool = True  # whether the load cell may have one, its own in each record
+    assumed: tuple[Hypothesis, ...] = ()
     horizon: float = 1.0  # part of each record that is compared, as its force counts
-    simulations: int = 0
     systems: dict[tuple[object, ...], PiecewiseSystem] = field(default_factory=dict)  # by load cell and zeros
     pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(os.cpu_count() or 1))
 
     def system(self, coordinates: Matrix, record: Record) -> PiecewiseSystem | None:
         """The rig with these values and a record's load cell; None where such a device cannot be simulated."""
-        values = {n: v for n, v in self.space.named(coordinates).items() if n not in (GAIN, DELAY)}
+        kinds = dict(zip(self.space.names, self.space.kinds, strict=True))
+        values = {n: v for n, v in self.space.named(coordinates).items() if kinds[n] is not None}
         layout = (record.force_bandwidth, *(value == 0.0 for value in values.values()))
         try:
             known = self.systems.get(layout)
             if known is not None:
                 return revalued(known, {n: v for n, v in values.items() if v != 0.0})
-            system = piecewise(replace(_labelled(self.rig), cell_bandwidth=record.force_bandwidth).with_values(values))
+            system = piecewise(standing(_labelled(self.rig), record.force_bandwidth).with_values(values))
         except InerterError:
             return None
         if set(values) <= {b.label for b in system.graph.branches} and not system.kinematics.weighs:
@@ -55,16 +59,24 @@ class Problem:
         return system
 
     def forces(self, coordinates: Matrix) -> list[Matrix | None]:
-        """What the load cells would read, for each record as far as the horizon."""
-        self.simulations += len(self.experiments)
-        values = self.space.named(coordinates)
-        gain, delay = values.get(GAIN, 1.0), values.get(DELAY, 0.0)
-        result = []
-        for e in self.experiments:
-            system = self.system(coordinates, e.record)
-            force = None if system is None else e.force(system, delay, self.samples(e))
-            result.append(None if force is None else gain * force)
-        return result
+        """What the load cells would read, for each record as far as the horizon; None where the device fails."""
+        answers = (self.answer(e, coordinates) for e in self.experiments)
+        return [None if answer is None else answer[0] for answer in answers]
+
+    def answer(self, experiment: Experiment, coordinates: Matrix) -> tuple[Matrix, Trajectory] | None:
+        """What the load cell would read in one record, and the motion of the device."""
+        system, values, e = self.system(coordinates, experiment.record), self.space.named(coordinates), experiment
+        for hypothesis in self.assumed:
+            e = hypothesis.moved(e, values)
+        run = None if system is None else e.run(system, None if self.horizon == 1.0 else self.samples(experiment))
+        if run is None:
+            return None
+        force = run[reading_of(e.record)]
+        if e.record.fixture_mass is not None:
+            force = force + e.record.fixture_mass * through_cell(e.motion.acceleration[: force.size], e)
+        for hypothesis in self.assumed:
+            force = hypothesis.read(force, e, values)
+        return force, run
 
     def samples(self, experiment: Experiment) -> int:
         """How many samples of a record hold this part of all that its force tells."""
@@ -122,11 +134,11 @@ class Problem:
         return result
 
 
-def _labelled(rig: Rig) -> Rig:
-    """The same rig with every free element named as its value is."""
+def _labelled(rig: Rig) -> Network:
+    """The device of a rig with every free element named as its value is."""
 
     def label(element: Element) -> Network:
         value = element.value
         return type(element)(value, value.name) if isinstance(value, Free) else element  # type: ignore[call-arg]
 
-    return Rig(map_elements(rig.device, label))
+    return map_elements(rig.device, label)

@@ -43,16 +43,14 @@ def search(
     candidates = starts(problem, guess, seed, points)
     first = replace(problem, horizon=stages[0][0])
     costs = [soft(r) for r in first.residuals(candidates)]
-    problem.simulations += first.simulations
     halfway: list[float] = []
     for stage, (horizon, kept, evaluations) in enumerate(stages):
-        part = replace(problem, horizon=horizon, simulations=0)
+        part = replace(problem, horizon=horizon)
         accuracy = 1e-9 if horizon == 1.0 else _ROUGH
         candidates = _distinct(candidates, costs)[:kept]
         found = [improve(part, candidate, evaluations, accuracy=accuracy) for candidate in candidates]
         candidates, costs = [f[0] for f in found], [f[1] for f in found]
         halfway = sorted(costs) if horizon < 1.0 else halfway
-        problem.simulations += part.simulations
         if progress is not None:
             progress((stage + 1) / len(stages))
     return candidates[int(np.argmin(costs))], halfway
@@ -77,7 +75,8 @@ def starts(problem: Problem, guess: Mapping[str, tuple[float, float]], seed: int
     draws = qmc.Sobol(len(space.names), seed=seed).random(1 << (count - 1).bit_length())[:count]
     result = []
     for n, draw in enumerate(draws):
-        point = lower + np.where(space.lower == 0.0, draw**3, draw) * (upper - lower)
+        point = np.where(space.lower < 0.0, upper * (2.0 * draw - 1.0) ** 3, lower + (upper - lower) * draw)
+        point = np.where(space.lower == 0.0, upper * draw**3, point)
         if guess and n % 4 != 3:
             for i, name in enumerate(space.names):
                 if name in guess:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.identification.hypotheses import Hypothesis
 from inerter.networks.elements import Element, Free, Friction, Gap
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
-GAIN, DELAY = "sensor gain", "sensor delay"
-GAINS = (0.5, 2.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +27,7 @@ class Space:
     units: tuple[str, ...]
     lower: Matrix
     upper: Matrix
-    kinds: tuple[type[Element] | None, ...]  # of the element; None for sensors
+    kinds: tuple[type[Element] | None, ...]  # of the element; None for what hypotheses add
 
     @property
     def logarithmic(self) -> NDArray[np.bool_]:
@@ -71,8 +70,8 @@ class Space:
         return np.where(self.logarithmic, self.to_values(coordinates), self.upper)
 
 
-def space_of(rig: Rig, gain: bool, delay: float) -> Space:
-    """The free values of a device and, if wanted, the gain and the delay (up to `delay` [s]) of its sensors."""
+def space_of(rig: Rig, assumed: Sequence[Hypothesis] = ()) -> Space:
+    """The free values of a device, then those of the hypotheses that are assumed."""
     elements: dict[str, Element] = {}
     for element in rig.device.elements():
         if isinstance(element.value, Free) and element.value.name is not None:
@@ -80,9 +79,7 @@ def space_of(rig: Rig, gain: bool, delay: float) -> Space:
     rows: list[tuple[str, str, float, float, type[Element] | None]] = []
     for name, free in rig.free_values().items():
         rows.append((name, elements[name].unit, free.lower, free.upper, type(elements[name])))
-    if gain:
-        rows.append((GAIN, "", *GAINS, None))
-    if delay > 0.0:
-        rows.append((DELAY, "s", 0.0, delay, None))
+    for hypothesis in assumed:
+        rows += [(u.name, u.unit, u.lower, u.upper, None) for u in hypothesis.unknowns]
     names, units, lower, upper, kinds = zip(*rows, strict=True) if rows else ((), (), (), (), ())
     return Space(tuple(names), tuple(units), np.array(lower), np.array(upper), tuple(kinds))

@@ -23,14 +23,11 @@ def told(
     index: int,
     comparisons: Sequence[Comparison],
     values: Mapping[str, float],
-    explains: bool,
 ) -> Told:
     """Whether a parameter is told by the records, and why not."""
     name, unit = parameter.name, parameter.unit
     low, high = (format_quantity(v, unit) if unit else f"{v:.4g}" for v in parameter.interval)
     least = format_quantity(float(space.lower[index]), unit) if unit else f"{space.lower[index]:g}"
-    if not explains:
-        return Told(False, f"{name}: cannot be told: the model does not explain the force, or nobody can predict it.")
     below, above = profile.lower.told, profile.upper.told
     if below and above:
         wide = parameter.interval[1] > _WIDE * parameter.interval[0]

@@ -29,10 +29,10 @@ class VirtualRig:
     """A rig whose device is known, so that what is identified from its records can be compared with the truth.
 
     The command goes through a motion table of second order, which follows up to `table_bandwidth` [Hz] and does not
-    yield to the device; a device in which nothing gives way stands on a very stiff mount (`models.MOUNT`). The encoder
-    and the load cell are sampled `sampling` times a second; both have normal noise (r.m.s.) before they are rounded to
-    their resolution. The load cell has a bandwidth (Butterworth, second order), a range beyond which it saturates, an
-    offset, a gain and a delay; it counts tension as positive unless `reversed`.
+    yield to the device. The encoder and the load cell are sampled `sampling` times a second; both have normal noise
+    (r.m.s.) before they are rounded to their resolution. The load cell has a bandwidth (Butterworth, second order),
+    a range beyond which it saturates, an offset, a gain and a delay; it counts tension as positive unless
+    `reversed`.
 
     The defaults are those of the rig of Wang and Su (2008), section 4: a load cell of 100 kg with a resolution of
     0.02 kg, an encoder of 1 um; what the paper does not print is an assumption.

@@ -11,8 +11,27 @@ from inerter.figures.identification import draw
 from inerter.networks.parser import written
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
-from inerter.report.identification_text import about, as_options, behind, done, plainly, share, whiteness
-from inerter.report.identified_values import UNTOLD, elements_block, plain, scale_of, single, value_and_interval
+from inerter.report.identification_text import (
+    about,
+    as_options,
+    behind,
+    done,
+    explained,
+    misfit,
+    plainly,
+    remarks,
+    share,
+    whiteness,
+)
+from inerter.report.identified_values import (
+    UNTOLD,
+    WITHHELD,
+    elements_block,
+    plain,
+    scale_of,
+    single,
+    value_and_interval,
+)
 from inerter.report.page import PageFigure, environment, inline
 from inerter.study.identification_run import FIT, RESIDUALS, Identified, model_title, responses
 from inerter.study.run import FIGURES, REPORT, versions, write_text
@@ -77,7 +96,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             title=found.title,
             model=model_title(found),
             layout=written(found.model, [e.label for e in found.model.elements()]),
-            status="" if fit.status.ok else str(fit.status),
+            status="" if fit.status.ok else as_options(fit.status.message),
             answers=list(_answers(found)),
             rows=list(_rows(found)),
             told=[name for name, told in fit.identifiable.items() if plainly(told)],
@@ -89,6 +108,9 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             records=list(_records(found)),
             goodness=list(_goodness(found)),
             whiteness=[(c.record.source, whiteness(c)) for c in fit.comparisons],
+            misfit=misfit(found),
+            remarks=list(remarks(found)),
+            explanations=list(explained(found)),
             candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), c.status) for c in found.candidates],
             choice=found.choice,
             chosen=found.name,
@@ -103,8 +125,8 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
 def _answers(found: Identified) -> Iterator[str]:
     for name in found.fit.parameters if found.explains else ():
         value, interval = value_and_interval(found, name)
-        if value == UNTOLD:
-            yield f"{name} {UNTOLD}: {interval}."
+        if value in (UNTOLD, WITHHELD):
+            yield f"{name} {value}: {interval}".rstrip(": ") + "."
         else:
             yield f"{name} = {value}, with 95 % confidence {interval}."
     parts = [c.explained(bool(c.checked.any())) for c in found.fit.comparisons]
@@ -142,7 +164,8 @@ def _goodness(found: Identified) -> Iterator[tuple[str, ...]]:
         for part, mask in (("fitted", c.fitted), ("check", c.checked)):
             if mask.any():
                 check = part == "check"
-                numbers = (str(int(mask.sum())), share(c.explained(check)), single(c.rms(check), "N"))
+                left = single(c.rms(check), "N"), single(c.sound(check), "N")
+                numbers = (str(int(mask.sum())), share(c.explained(check)), *left)
                 yield (c.record.source, part, *numbers, "" if check else single(c.offset, "N"))
 
 

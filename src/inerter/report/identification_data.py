@@ -49,6 +49,8 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "costs": fit.costs,
         "simulations": fit.simulations,
         "predicted": fit.predicted,
+        "misfit": vars(fit.misfit),
+        "explanations": [{**vars(e), "misfit": vars(e.misfit)} for e in fit.explanations],
         "candidates": [vars(candidate) for candidate in found.candidates],
         "choice": found.choice,
         "settings": {**found.settings, **fit.settings},
@@ -96,11 +98,13 @@ def _record(reading: Reading, comparison: Comparison) -> dict[str, Any]:
         "fitted": {
             "samples": int(comparison.fitted.sum()),
             "rms": comparison.rms(),
+            "sound": comparison.sound(),
             "explained": comparison.explained(),
         },
         "checked": {
             "samples": int(comparison.checked.sum()),
             "rms": comparison.rms(True),
+            "sound": comparison.sound(True),
             "explained": comparison.explained(True),
         },
         "whiteness": comparison.whiteness,

@@ -20,7 +20,7 @@ from inerter.figures.identification import (
     time_figure,
 )
 from inerter.identification.fit import Comparison
-from inerter.report.identified_values import UNTOLD, scale_of, value_and_interval
+from inerter.report.identified_values import UNTOLD, WITHHELD, scale_of, value_and_interval
 from inerter.study.identification_run import Identified, Responses
 
 Matrix = NDArray[np.float64]
@@ -126,13 +126,14 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
     ends = (points[0, 0], points[-1, 0])
     own = scale_of(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
     value, _ = value_and_interval(found, name)
+    low, high = (parameter.best,) * 2 if value == WITHHELD else parameter.interval
     return ProfileCurve(
         label=name,
         values=points[:, 0] * own.factor,
         rises=points[:, 1],
-        interval=(parameter.interval[0] * own.factor, parameter.interval[1] * own.factor),
+        interval=(low * own.factor, high * own.factor),
         unit=own.unit,
-        remark=UNTOLD if value == UNTOLD else "",
+        remark=value if value in (UNTOLD, WITHHELD) else "",
     )
 
 

@@ -14,6 +14,7 @@ from inerter.report.text import WIDTH
 from inerter.study.identification_run import Candidate, Identified, Reading, model_title
 
 INDEPENDENT = 1e-3  # a p-value above tells residuals without pattern
+LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not told, nor are more
 # What the library calls by the names of Python's arguments, in the words of the command line.
 _AS_OPTIONS = (
     (r"units=\{'(\w+)': '([^']+)'\}", r'--unit "\1=\2"'),
@@ -22,6 +23,9 @@ _AS_OPTIONS = (
     (r"\binterval=1e-3(?: in s)?", '--interval "1 ms"'),
     (r"\binterval=([\d.e-]+)", r'--interval "\1 s"'),
     (r"\binterval=", "--interval"),
+    (r"\b(delay|offset)=True", r"\1 = true in [fit] of a --config"),
+    (r"\bforce_bandwidth=", "--force-bandwidth"),
+    (r"\bfixture_mass=", "--fixture-mass"),
     (r"\b(time|displacement)=(?=['\d])", r"--\1 "),
     (r"resample\(record\)", '--resample, such as --resample "1 ms"'),
     (r"remove_offset\(record\)|detrend\(record\)", "detrend = true in [record] of a --config"),
@@ -43,8 +47,12 @@ def as_options(sentence: str) -> str:
 
 
 def identification_text(found: Identified) -> str:
-    """Records, estimates, what cannot be told, goodness, the next experiment and the elements: ASCII, 80 columns."""
+    """Whether it can be relied on, records, estimates, what cannot be told, goodness, the next experiment, elements.
+
+    ASCII, 80 columns.
+    """
     blocks = (
+        _warning(found),
         _records(found),
         _candidates(found),
         _estimates(found),
@@ -56,6 +64,43 @@ def identification_text(found: Identified) -> str:
     )
     text = "\n\n".join("\n".join(block) for block in map(list, blocks) if block)
     return text.encode("ascii", "replace").decode()
+
+
+def _warning(found: Identified) -> Iterator[str]:
+    """A wrong model or sensor, before anything else, and what explains it."""
+    if found.fit.status.ok:
+        return
+    yield from wrap(f"Not to be relied on: {as_options(found.fit.status.message)}.", WIDTH)
+    said = list(explained(found))
+    if said:
+        yield ""
+        yield "what may be wrong, the likeliest first"
+    for number, (sentence, share, values, remedy) in enumerate(said, 1):
+        yield from wrap(
+            f"{sentence}: explains {share}.", WIDTH, initial_indent=f"  {number}. ", subsequent_indent="     "
+        )
+        for line in (f"With it {values}." if values else "", f"What to do: {remedy}." if remedy else ""):
+            yield from wrap(line, WIDTH, initial_indent="     ", subsequent_indent="       ", break_on_hyphens=False)
+
+
+def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
+    """What may be wrong: a sentence, how much of the misfit it explains, the values with it, and what to do."""
+    likely = [e for e in found.fit.explanations if e.explained >= LITTLE]
+    for e in likely[:MOST_EXPLANATIONS]:
+        units = {name: p.unit for name, p in found.fit.parameters.items()}
+        values = ", ".join(
+            f"{name} {single(value, units[name], 4)} +- {single(error, units[name], 2)}"
+            for name, (value, error) in e.estimates.items()
+            if name in units and e.misfit.sound
+        )
+        yield e.sentence, f"{100.0 * e.explained:.0f} %", values, as_options(e.remedy)
+
+
+def misfit(found: Identified) -> str:
+    """What a fit leaves by the measure of the sensors' errors."""
+    m = found.fit.misfit
+    parts = [f"{m.fitted:.2f} (fitted)"] + ([f"{m.checked:.2f} (checked)"] if m.checked == m.checked else [])
+    return f"What is left is {' and '.join(parts)} times what the errors of the sensors leave (r.m.s., whitened)."
 
 
 def about(reading: Reading) -> str:
@@ -121,6 +166,15 @@ def _estimates(found: Identified) -> Iterator[str]:
     for c in found.fit.comparisons:
         of = f" of {c.record.source}" if len(found.fit.comparisons) > 1 else ""
         yield from wrap(f"  Offset of the load cell{of}: {single(c.offset, 'N')}", WIDTH, subsequent_indent="    ")
+    for remark in remarks(found):
+        yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)
+
+
+def remarks(found: Identified) -> Iterator[str]:
+    """What has to be known about the estimates."""
+    if found.fit.explanations and any(map(plainly, found.fit.identifiable.values())):
+        yield "Intervals hold what the explanations make of the values too."
+    yield from map(as_options, found.fit.notes)
 
 
 def _untold(found: Identified) -> Iterator[str]:
@@ -133,18 +187,18 @@ def _untold(found: Identified) -> Iterator[str]:
 
 def plainly(told: Told) -> bool:
     """Whether a parameter is told, and nothing needs saying about it."""
-    return bool(told) and told.sentence.endswith(": told.")
+    return bool(told) and ": told." in told.sentence
 
 
 def _goodness(found: Identified) -> Iterator[str]:
     yield "goodness"
     for c in found.fit.comparisons:
         yield f"  {c.record.source}"
-        yield f"    fitted   {share(c.explained())} explained, residual {single(c.rms(), 'N')} r.m.s."
-        if c.checked.any():
-            explained = f"{share(c.explained(True))} explained"
-            yield f"    checked  {explained}, residual {single(c.rms(True), 'N')} r.m.s."
+        for part, check in (("fitted ", False), ("checked", True))[: 1 + c.checked.any()]:
+            left = f"{single(c.rms(check), 'N')} r.m.s. left, by the sensors {single(c.sound(check), 'N')}"
+            yield f"    {part}  {share(c.explained(check))} explained, {left}"
         yield from wrap(whiteness(c), WIDTH, initial_indent="    ", subsequent_indent="    ")
+    yield from wrap(misfit(found), WIDTH, initial_indent="  ", subsequent_indent="  ")
 
 
 def share(explained: float) -> str:
@@ -161,11 +215,12 @@ def share(explained: float) -> str:
 def whiteness(comparison: Comparison) -> str:
     """What the test of the residuals says."""
     p = comparison.whiteness
+    size = f"p = {p:.1g}" if p > 1e-16 else "p < 1e-16"
     if p >= INDEPENDENT:
-        return f"What is left has no pattern in time once whitened (p = {p:.2g})."
+        return f"What is left has no pattern in time that the sensors would not leave (p = {p:.2g})."
     return (
-        f"What is left hangs together in time even when whitened (p = {p:.1g}): the model lacks something, or an error "
-        f"of the sensors. Intervals are widened for it."
+        f"What is left hangs together in time more than what the sensors leave ({size}): a part of it is no "
+        f"noise. Intervals are widened for it."
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import floor, log10
+from math import floor, isnan, log10
 
 from inerter.figures.labels import Scale, scale
 from inerter.networks.elements import Element, Free
@@ -11,7 +11,7 @@ from inerter.networks.parser import written
 from inerter.study.identification_run import Identified
 from inerter.units import format_quantity
 
-UNTOLD = "cannot be told"
+UNTOLD, WITHHELD = "cannot be told", "withheld"
 _FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
 _MOST_DIGITS = 6
 _SMALL: dict[str, Scale] = {"m": Scale(1e6, "um"), "s": Scale(1e3, "ms")}
@@ -29,9 +29,9 @@ def scale_of(value: float, unit: str) -> Scale:
 def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     """The value of a parameter, or that it cannot be told, and its interval of 95 %, empty if there is none."""
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
-    if not found.explains:
-        return UNTOLD, ""
     low, high = parameter.interval
+    if isnan(low) or not found.explains:
+        return WITHHELD if isnan(low) else UNTOLD, ""
     own = scale_of(parameter.best or high, parameter.unit)
     decimals = _decimals(low * own.factor, high * own.factor)
     if parameter.value == parameter.value:
@@ -126,4 +126,4 @@ def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
         return value, "as given"
     name = str(free.value.name)
     told, interval = value_and_interval(found, name)
-    return value, f"{UNTOLD}: {interval}".rstrip(": ") if told == UNTOLD else f"95 %: {interval}"
+    return value, f"{told}: {interval}".rstrip(": ") if told in (UNTOLD, WITHHELD) else f"95 %: {interval}"

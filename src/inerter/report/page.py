@@ -92,7 +92,8 @@ def environment() -> Environment:
 
 def printed_sentence(sentence: str) -> str:
     """A sentence with a minus where there is one, and per cent on the line of their number."""
-    return sentence.replace(" +- ", " ± ").replace(" -", " −").replace(" %", "\N{NO-BREAK SPACE}%")
+    text = sentence.replace(" +- ", " ± ").replace(" %", "\N{NO-BREAK SPACE}%")
+    return re.sub(r" -(?=[\d.]|inf\b)", " −", text)
 
 
 def _drawings(results: xr.Dataset, folder: Path) -> Iterator[PageFigure]:

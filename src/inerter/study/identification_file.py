@@ -34,6 +34,9 @@ class RecordRequest:
     gaps: str | float = "refuse"
     force_range: float | None = None  # [N]
     force_bandwidth: float | None = None  # [Hz]
+    force_noise: float | None = None  # [N] r.m.s.
+    displacement_noise: float | None = None  # [m] r.m.s.
+    fixture_mass: float | None = None  # [kg]
     period: float | None = None  # [s]
     start: float | None = None  # [s]
     stop: float | None = None  # [s]

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError, RecordError, StudyError
+from inerter.errors import InerterError, RecordError
+from inerter.identification.choice import choose
 from inerter.identification.fit import Comparison, Fit
+from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
 from inerter.identification.models import VISCOUS, mounted
 from inerter.identification.response import linear_response, model_response
-from inerter.identification.space import DELAY, GAIN
 from inerter.networks.elements import Free, Network
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
@@ -31,8 +30,8 @@ from inerter.vehicle.cars import Rig
 
 Progress = Callable[[float], None]
 FIT, RESIDUALS = "fit.json", "residuals.csv"
-_CHOICE = "inerter.identification.choice"
 _LINEAR_POINTS = 300
+_OF_SENSORS = ("force_bandwidth", "force_noise", "displacement_noise", "fixture_mass")
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +107,7 @@ def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> 
         period=asked.period,
         progress=progress,
     )
-    if asked.force_bandwidth is not None:
-        received = received.noted(force_bandwidth=asked.force_bandwidth)
+    received = received.noted(**{name: getattr(asked, name) for name in _OF_SENSORS})
     used = received
     if asked.start is not None or asked.stop is not None:
         used = used.trim(asked.start, asked.stop)
@@ -148,10 +146,7 @@ def _chosen(
     settings: dict[str, Any],
     progress: Progress | None,
 ) -> Identified:
-    if find_spec(_CHOICE) is None:
-        raise StudyError("This version cannot choose between models. Name one with --model.")
     models = request.models()
-    choose = import_module(_CHOICE).choose
     given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
     choice = choose([r.used for r in readings], models=given, **settings, progress=progress)
     candidates = tuple(
@@ -198,5 +193,6 @@ def model_title(found: Identified) -> str:
 
 
 def _corrected(comparison: Comparison, gain: float, delay: float) -> Record:
-    record = comparison.record.noted(force=(comparison.record.force - comparison.offset) / gain)
+    moved = (comparison.record.fixture_mass or 0.0) * comparison.experiment.motion.acceleration
+    record = comparison.record.noted(force=(comparison.record.force - comparison.offset) / gain - moved)
     return shift_force(record, delay) if delay else record

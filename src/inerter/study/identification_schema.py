@@ -82,6 +82,9 @@ class RecordShape(Shape):
     gaps: Annotated[str | float, PlainValidator(gap_treatment)] = "refuse"
     force_range: Annotated[float | None, positive("N")] = None
     force_bandwidth: Annotated[float | None, positive("Hz")] = None
+    force_noise: Annotated[float | None, positive("N")] = None
+    displacement_noise: Annotated[float | None, positive("m")] = None
+    fixture_mass: Annotated[float | None, positive("kg")] = None
     period: Annotated[float | None, positive("s")] = None
     start: Annotated[float | None, PlainValidator(lambda value: parse_quantity(value, "s"))] = None
     stop: Annotated[float | None, PlainValidator(lambda value: parse_quantity(value, "s"))] = None

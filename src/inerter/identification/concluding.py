@@ -1,0 +1,213 @@
+"""From the best fit to what can be said of it: whether it explains the records, what else would, and intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import OK, Status, StatusKind
+from inerter.identification.experiment import saturated
+from inerter.identification.explaining import explanations
+from inerter.identification.fit import Comparison, Explanation, Fit, Parameter, Told
+from inerter.identification.intervals import Optimum, Profile
+from inerter.identification.models import unmounted
+from inerter.identification.problem import Problem
+from inerter.identification.solving import Solution
+from inerter.identification.space import Space
+from inerter.identification.telling import suggestions, told
+from inerter.networks.elements import Element, Free, Friction, Gap, Inerter
+from inerter.networks.transform import with_values
+from inerter.units import format_quantity
+
+Matrix = NDArray[np.float64]
+ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
+_SATURATED = 0.2  # of the samples, from which on a record tells little
+_ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
+_FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
+_WIDER = "holds what the explanations make of it too."
+_NOTICED = 0.05  # of the friction: an offset that may be one of the friction
+_MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
+
+
+def fit_of(solution: Solution, explain: bool = True) -> Fit:
+    """What a solution tells. Where it leaves more than the sensors would, hypotheses are tried if `explain`."""
+    problem, optimum, found = solution.problem, solution.optimum, solution.profiles
+    space = problem.space
+    comparisons = _comparisons(solution)
+    values = space.named(optimum.point)
+    slopes = space.slopes(optimum.point)
+    likely = explanations(problem, optimum, solution.judge, solution.misfit) if explain else []
+    notes = (*solution.notes, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
+    draft = Fit(
+        parameters={}, identifiable={}, correlation=_correlation(optimum.covariance),
+        covariance=optimum.covariance * np.outer(slopes, slopes),
+        device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
+        criterion=_criterion(problem, optimum), costs=solution.costs,
+        simulations=sum(e.tally.total for e in problem.experiments), predicted=solution.predicted,
+        misfit=solution.misfit, explanations=tuple(likely), notes=notes, settings={"seed": solution.seed},
+    )  # fmt: skip
+    status = status_of(draft)
+    parameters, identifiable = {}, {}
+    for i, name in enumerate(space.names):
+        p = _parameter(space, i, optimum, found[i], values[name])
+        said = told(space.kinds[i], p, found[i], space, i, comparisons, values)
+        p, said = _restated(p, said, draft)
+        parameters[name], identifiable[name] = (p if said else replace(p, value=float("nan"))), said
+    return replace(
+        draft,
+        parameters=parameters,
+        identifiable=identifiable,
+        status=status,
+        next_experiment=tuple(suggestions(space, parameters, identifiable, comparisons)),
+    )
+
+
+def status_of(fit: Fit) -> Status:
+    """Whether the model explains the records, and what is the likeliest reason if it does not."""
+    lost = sum(float(saturated(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
+    best = _likeliest(fit)
+    if fit.predicted < ENOUGH and best is None:
+        changed = 100.0 * min(1.0 - fit.predicted, 1.0)
+        return Status(
+            StatusKind.INACCURATE,
+            f"errors as small as those of the encoder change {changed:.1f} % of the force of this device, so none of "
+            f"its parameters can be told; try a record in which it rattles less",
+        )
+    if fit.misfit.sound and best is not None:
+        return Status(StatusKind.INACCURATE, best.sentence)
+    if not fit.misfit.sound or fit.explained < ENOUGH:
+        return Status(StatusKind.INACCURATE, _misfit(fit, best))
+    if lost > _SATURATED:
+        return Status(StatusKind.INACCURATE, f"the load cell was saturated in {100.0 * lost:.0f} % of the samples")
+    return OK
+
+
+def _likeliest(fit: Fit) -> Explanation | None:
+    """The best explanation, if it explains most."""
+    best = fit.explanations[0] if fit.explanations else None
+    return best if best is not None and best.explained >= _MOST else None
+
+
+def _misfit(fit: Fit, best: Explanation | None) -> str:
+    """A wrong model or sensor, in a sentence."""
+    times = f"the model leaves {fit.misfit.worst:.2g} times what the errors of the sensors leave"
+    explained = 100.0 * max(fit.explained, 0.0)
+    share = f", and explains {explained:.1f} % of the force only" if fit.explained < ENOUGH else ""
+    if best is None:
+        return f"{times}{share}; nothing that was tried explains it"
+    second = next((e for e in fit.explanations[1:2] if e.misfit.sound), None)
+    other = "" if second is None else f", or {second.sentence}, which explains it too"
+    return f"{times}{share}; likeliest: {best.sentence}{other}"
+
+
+def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[Comparison]) -> Iterator[str]:
+    """What an offset of the load cell may be instead."""
+    kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
+    friction = sum(value for name, value in values.items() if kinds[name] is Friction)
+    for c in comparisons:
+        if abs(c.offset) > _NOTICED * friction > 0.0:
+            size = format_quantity(c.offset, "N", 3)
+            yield (
+                f"{c.record.source}: the offset of {size} may be one of the load cell or asymmetric friction, larger "
+                f"in one direction, of which the friction told is the mean."
+            )
+
+
+def _of_masses(problem: Problem) -> Iterator[str]:
+    """What an inertance may be besides."""
+    names = zip(problem.space.names, problem.space.kinds, strict=True)
+    free = [name for name, kind in names if kind is Inerter]
+    if free and any(e.record.fixture_mass is None for e in problem.experiments):
+        yield (
+            f"{', '.join(free)}: holds what moves with the table between load cell and device, which the records do "
+            f"not tell from an inertance; weigh it, and give it, fixture_mass=."
+        )
+
+
+def _restated(p: Parameter, said: Told, fit: Fit) -> tuple[Parameter, Told]:
+    """An interval is one of a right model: else it is widened to what the likely explanations say, or withheld."""
+    if fit.predicted < ENOUGH:
+        return _withheld(p, "cannot be told: nobody can predict the force of this device")
+    if not fit.explanations and fit.misfit.sound:
+        return p, said
+    right = [e for e in fit.explanations if e.misfit.excess <= _FAIRLY]
+    if not right or any(p.name not in e.estimates for e in right):
+        return _withheld(p, "withheld, for the model leaves more than the errors of the sensors")
+    ends = [end for e in right for end in _ends(*e.estimates[p.name])]
+    interval = min(p.interval[0], *ends), max(p.interval[1], *ends)
+    return replace(p, interval=interval), Told(bool(said), f"{said.sentence} Its interval {_WIDER}")
+
+
+def _withheld(p: Parameter, why: str) -> tuple[Parameter, Told]:
+    return replace(p, interval=(math.nan, math.nan)), Told(False, f"{p.name}: {why}.")
+
+
+def _ends(value: float, error: float) -> tuple[float, float]:
+    return value - _ERRORS * error, value + _ERRORS * error
+
+
+def _parameter(space: Space, i: int, optimum: Optimum, profile: Profile, best: float) -> Parameter:
+    def value(coordinate: float) -> float:
+        point = optimum.point.copy()
+        point[i] = coordinate
+        return float(space.to_values(point)[i])
+
+    return Parameter(
+        name=space.names[i],
+        unit=space.units[i],
+        value=best,
+        interval=(value(profile.lower.end), value(profile.upper.end)),
+        best=best,
+        standard_error=float(optimum.errors[i] * space.slopes(optimum.point)[i]),
+        profile=tuple((value(x), rise) for x, rise in profile.points),
+    )
+
+
+def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
+    problem, optimum = solution.problem, solution.optimum
+    result, first = [], 0
+    residuals, offsets = problem.residual(optimum.point), problem.offsets(optimum.point)
+    for n, (e, checked) in enumerate(zip(problem.experiments, solution.checked, strict=True)):
+        answer = problem.answer(e, optimum.point)
+        assert answer is not None
+        force, run = answer
+        white = residuals[first : first + e.size][problem.whitenings[n].weight > 0.0]
+        first += e.size
+        gaps = {_name_of(b) for b in problem.rig.device.elements() if isinstance(b, Gap)}
+        openings = {g: sum(event.element == g and event.after == "open" for event in run.events) for g in gaps}
+        result.append(
+            Comparison(
+                experiment=e,
+                model=force + offsets[n],
+                offset=offsets[n],
+                fitted=e.kept,
+                checked=checked,
+                draws=solution.judge.draws[n],
+                whitened=white,
+                lead=solution.leads[n],
+                whiteness=solution.judge.pattern(n, e.record.force - force),
+                openings=openings,
+            )
+        )
+    return tuple(result)
+
+
+def _name_of(element: Element) -> str:
+    """As it is called in simulations of the problem."""
+    return str(element.value.name) if isinstance(element.value, Free) else element.label
+
+
+def _criterion(problem: Problem, optimum: Optimum) -> float:
+    """Schwarz's criterion: -2 log likelihood of the whitened residuals, plus log(samples) for each unknown."""
+    n = optimum.samples
+    logs = sum(float(np.sum(np.log(w.weight[w.weight > 0.0]))) for w in problem.whitenings)
+    return n * math.log(max(optimum.variance, 1e-300)) - 2.0 * logs + math.log(n) * optimum.point.size
+
+
+def _correlation(covariance: Matrix) -> Matrix:
+    size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    return np.asarray(np.clip(covariance / np.outer(size, size), -1.0, 1.0))

@@ -1,0 +1,140 @@
+"""What may be wrong with a model or the sensors where a fit leaves more than sound sensors would.
+
+Each hypothesis is fitted anew from the best fit, device and all, to the part that was fitted, and judged by how much of
+what was left on the check part it explains.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identification.experiment import Experiment, experiment_of
+from inerter.identification.fit import Explanation, Misfit
+from inerter.identification.guess import chain_of
+from inerter.identification.hypotheses import Hypothesis, Values, sensors
+from inerter.identification.intervals import Optimum, optimum_of, steps_of
+from inerter.identification.judging import Judge
+from inerter.identification.laws import laws
+from inerter.identification.problem import Problem
+from inerter.identification.space import Space, space_of
+from inerter.records.lost import losses, restored
+from inerter.vehicle.cars import Rig
+
+Matrix = NDArray[np.float64]
+_EVALUATIONS, _ACCURACY = 25, 1e-5
+_FILL = "read the file with gaps='fill', which puts them in"
+_BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
+_LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
+_STEP = 0.02  # of what a hypothesis would be seen at, for differences
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """The best fit of a hypothesis."""
+
+    hypothesis: Hypothesis
+    problem: Problem
+    optimum: Optimum
+
+
+def explanations(problem: Problem, optimum: Optimum, by: Judge, before: Misfit) -> list[Explanation]:
+    """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway."""
+    found: dict[str, Explanation] = {}
+    lost = lost_samples(problem.experiments)
+    known = [] if lost is None else [lost]
+    for hypothesis in known if before.sound else [*known, *hypotheses(problem)]:
+        e = _explanation(_tried(problem, optimum, hypothesis, by), by, before)
+        if e.name not in found or e.explained > found[e.name].explained:
+            found[e.name] = e
+    return sorted(found.values(), key=lambda e: (-e.explained, len(e.values)))
+
+
+def hypotheses(problem: Problem) -> list[Hypothesis]:
+    """All that are not assumed already, and that these records could show."""
+    chain = chain_of(problem.rig.device)
+    fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
+    stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
+    found = sensors(problem.offset)
+    found += [] if chain is None else laws(chain, fastest, stroke)
+    taken = {h.name for h in problem.assumed}
+    return [h for h in found if h.name not in taken]
+
+
+def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
+    """Samples that the displacement shows to be lost, put in again; None if there are none."""
+    whole: dict[int, tuple[Experiment, NDArray[np.bool_]]] = {}
+    said = []
+    for e in experiments:
+        lost = losses(e.record)
+        if lost:
+            record, measured = restored(e.record, lost)
+            whole[id(e.record)] = (replace(experiment_of(record), tally=e.tally), measured)
+            at = ", ".join(f"{loss.count} at {e.record.time[loss.after]:.4g} s" for loss in lost[:4])
+            said.append(at + (", ..." if len(lost) > 4 else ""))
+    if not whole:
+        return None
+
+    def moved(e: Experiment, values: Values) -> Experiment:
+        return whole[id(e.record)][0] if id(e.record) in whole else e
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        for other, measured in whole.values():
+            if other.record is e.record:
+                doubtful = np.convolve(~measured, np.ones(2 * _BESIDE + 1), "same") > 0.0
+                return np.where(doubtful, other.record.force, force)[measured]
+        return force
+
+    sentence = f"samples are lost while the clock goes on ({'; '.join(said)})"
+    return Hypothesis("lost samples", moved=moved, read=read, said=lambda values: sentence, remedy=_FILL)
+
+
+def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge) -> Trial:
+    """A hypothesis after some steps from the best fit."""
+    assumed = (*problem.assumed, hypothesis)
+    rig = problem.rig if hypothesis.device is None else Rig(hypothesis.device)
+    space = space_of(rig, assumed)
+    anew = replace(problem, rig=rig, space=space, assumed=assumed, whitenings=by.fitted, horizon=1.0, systems={})
+    known = problem.space.named(optimum.point)
+    widths = dict(zip(problem.space.names, steps_of(optimum), strict=True))
+    sizes = {u.name: u.size for u in hypothesis.unknowns}
+    zero = {u.name: _LITTLE * u.size if u.lower >= 0.0 else 0.0 for u in hypothesis.unknowns}
+    trials = []
+    for start in hypothesis.starts:
+        point = space.placed({**known, **zero, **start})
+        seen = {**sizes, **start}
+        steps = np.array([widths.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)])
+        trials.append(Trial(hypothesis, anew, optimum_of(anew, point, steps, _EVALUATIONS, _ACCURACY)))
+    return min(trials, key=lambda t: t.optimum.cost)
+
+
+def _step(space: Space, i: int, size: float) -> float:
+    """Of a coordinate that would be seen at this size, for differences."""
+    return _STEP if space.lower[i] > 0.0 else _STEP * abs(size) / float(space.upper[i])
+
+
+def _explanation(trial: Trial, by: Judge, before: Misfit) -> Explanation:
+    space, hypothesis = trial.problem.space, trial.hypothesis
+    point = trial.optimum.point
+    after = by.misfit(trial.problem, point, hypothesis.slow)
+    values = space.named(point)
+    errors = trial.optimum.errors * space.slopes(point)
+    own = {u.name for u in hypothesis.unknowns}
+    parts = zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True)
+    return Explanation(
+        name=hypothesis.name,
+        sentence=hypothesis.said(values),
+        remedy=hypothesis.remedy,
+        explained=min((_explained(now, then) for now, then, limit in parts if then > limit), default=1.0),
+        misfit=after,
+        values={name: values[name] for name in own},
+        estimates={n: (values[n], float(e)) for n, e in zip(space.names, errors, strict=True) if n not in own},
+    )
+
+
+def _explained(now: float, then: float) -> float:
+    """Part of a misfit that is gone."""
+    return 1.0 - max(now**2 - 1.0, 0.0) / (then**2 - 1.0)

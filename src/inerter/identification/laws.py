@@ -1,0 +1,226 @@
+"""Parts that a chain of a shaft, a gap and an inertance may have or lack beyond its model, and laws of its friction.
+
+The event-driven integrator knows Coulomb's law alone. So under another law a chain is stepped twice in time here,
+with it and without, and the difference joins the exact force: what the stepping is off by cancels. Steps are those of
+the midpoint rule, with the impulse of friction at the end of each (Moreau 1988), so that it sticks truly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identification.experiment import Experiment
+from inerter.identification.guess import Chain
+from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, free
+from inerter.networks.parser import written
+from inerter.units import format_quantity
+
+Matrix = NDArray[np.float64]
+_LAW = "models have no such friction; the values under this hypothesis stand above"
+_STEPS = 30.0  # in a period of the shaft's resonance, at least
+_MOST_PARTS = 64  # of a sampling interval
+_FINEST = 1.25e-4  # [s] of a step, at most
+
+
+@dataclass(frozen=True)
+class Chained:
+    """A chain in numbers. A shaft of no softness is rigid: `ks` is infinite."""
+
+    ks: float = math.inf
+    cs: float = 0.0
+    gap: float = 0.0
+    b: float = 0.0
+    f: float = 0.0  # friction at high speed
+    c: float = 0.0
+    rise: float = 0.0  # [N] of the friction towards rest (Stribeck) ...
+    speed: float = 1.0  # [m/s] ... below about this speed
+    tilt: float = 0.0  # [N/m] of the friction over the position
+    bend: float = 0.0  # [N/m^2]
+    bias: float = 0.0  # [N] more when it slides up, less when down
+
+
+def laws(chain: Chain, fastest: float, stroke: float) -> Iterator[Hypothesis]:
+    """What a chain may do beyond its model, in motions of this largest speed [m/s] and stroke [m]."""
+    yield from _parts(chain)
+    if chain.friction is not None:
+        yield _stribeck(chain, fastest)
+        yield _place(chain, stroke)
+        yield _direction(chain)
+
+
+def _parts(chain: Chain) -> Iterator[Hypothesis]:
+    """The chain with a part more or less."""
+    if chain.friction is None:
+        friction = Friction(free(0.0, 500.0, name="dry_friction"))
+        said = "the device has dry friction"
+        yield _other(
+            "dry friction", replace(chain, friction=friction), said, "one with friction", {"dry_friction": 1.0}
+        )
+    if chain.drag is None:
+        drag = Damper(free(1e-3, 1e5, name="viscous"))
+        said = "friction grows with speed"
+        yield _other("viscous friction", replace(chain, drag=drag), said, "one with a damper", {"viscous": 10.0})
+    if chain.spring is None:
+        spring, damper = Spring(free(1e4, 1e9, name="shaft")), Damper(free(1.0, 1e6, name="shaft_damping"))
+        starts = ({"shaft": k, "shaft_damping": 3e-3 * k} for k in (2e5, 1e6, 5e6))
+        elastic = replace(chain, spring=spring, damper=damper)
+        yield _other("elastic device", elastic, "the device gives way", "elastic or elastic-friction", *starts)
+        return
+    rigid = replace(chain, spring=None, damper=None, gap=None)
+    yield _other("rigid device", rigid, "nothing in the device gives way", "ideal or friction")
+    if chain.gap is None:
+        play = replace(chain, gap=Gap(free(0.0, 2e-3, name="play")))
+        said = "the device has backlash"
+        yield _other("backlash", play, said, "backlash or ball-screw", {"play": 1e-5}, {"play": 1e-4})
+
+
+def _other(name: str, chain: Chain, sentence: str, kind: str, *starts: Values) -> Hypothesis:
+    device = chain.network()
+    layout = written(device, [e.label for e in device.elements()])
+    remedy = f"take a model such as {layout} ({kind})"
+    return Hypothesis(name, device=device, starts=starts or ({},), said=lambda values: sentence, remedy=remedy)
+
+
+def _stribeck(chain: Chain, fastest: float) -> Hypothesis:
+    rise = Unknown("rise of the friction", "N", 0.0, 1e3, 1.0)
+    speed = Unknown("Stribeck speed", "m/s", 1e-3 * fastest, fastest, 0.1 * fastest)
+
+    def said(values: Values) -> str:
+        low = _value(chain.friction, values)
+        return (
+            f"friction falls with speed (Stribeck), from {format_quantity(low + values[rise.name], 'N', 3)} at rest to "
+            f"{format_quantity(low, 'N', 3)} beyond {format_quantity(2.0 * values[speed.name], 'm/s', 2)}"
+        )
+
+    starts = tuple({speed.name: share * fastest} for share in (0.05, 0.2))
+    return _changed(chain, "Stribeck friction", {"rise": rise, "speed": speed}, said, starts)
+
+
+def _place(chain: Chain, stroke: float) -> Hypothesis:
+    tilt = Unknown("tilt of the friction", "N/m", -1e3 / stroke, 1e3 / stroke, 1.0 / stroke)
+    bend = Unknown("bend of the friction", "N/m^2", -1e3 / stroke**2, 1e3 / stroke**2, 1.0 / stroke**2)
+
+    def said(values: Values) -> str:
+        x = np.linspace(-stroke, stroke, 101)
+        over = values[tilt.name] * x + values[bend.name] * x**2
+        return f"friction depends on the position, by {format_quantity(float(np.ptp(over)), 'N', 3)} over the stroke"
+
+    return _changed(chain, "friction by position", {"tilt": tilt, "bend": bend}, said, ({},))
+
+
+def _direction(chain: Chain) -> Hypothesis:
+    bias = Unknown("bias of the friction", "N", -1e3, 1e3, 1.0)
+
+    def said(values: Values) -> str:
+        mean, half = _value(chain.friction, values), values[bias.name]
+        up, down = (format_quantity(size, "N", 3) for size in (mean + half, mean - half))
+        return f"friction is {up} in one direction and {down} in the other"
+
+    return _changed(chain, "asymmetric friction", {"bias": bias}, said, ({},))
+
+
+def _changed(
+    chain: Chain,
+    name: str,
+    unknowns: dict[str, Unknown],
+    said: Callable[[Values], str],
+    starts: tuple[Values, ...],
+) -> Hypothesis:
+    """A hypothesis that changes some of the numbers of a chain."""
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        plain = _numbers(chain, values)
+        other = replace(plain, **{what: values[unknown.name] for what, unknown in unknowns.items()})
+        return np.asarray(force + through_cell(stepped(other, e, force.size) - stepped(plain, e, force.size), e))
+
+    return Hypothesis(name, tuple(unknowns.values()), read=read, said=said, starts=starts, remedy=_LAW)
+
+
+def _numbers(chain: Chain, values: Values) -> Chained:
+    parts = {"ks": chain.spring, "cs": chain.damper, "gap": chain.gap, "b": chain.inerter, "f": chain.friction}
+    parts["c"] = chain.drag
+    known = {what: _value(part, values) for what, part in parts.items() if part is not None}
+    return Chained(**known)
+
+
+def _value(element: Element | None, values: Values) -> float:
+    assert element is not None
+    value = element.value
+    return values[str(value.name)] if isinstance(value, Free) else value
+
+
+def stepped(chain: Chained, experiment: Experiment, samples: int) -> Matrix:
+    """The force of a chain [N] at the first samples of a record, from rest."""
+    motion, interval = experiment.motion, experiment.record.interval
+    z, v = motion.displacement[:samples] - motion.displacement[0], motion.velocity[:samples]
+    if math.isinf(chain.ks):
+        level = np.maximum(_level(chain, z, v), 0.0)
+        return np.asarray(chain.b * motion.acceleration[:samples] + chain.c * v + level * np.sign(v) + chain.bias)
+    omega = math.sqrt(chain.ks / chain.b)
+    parts = math.ceil(max(interval / _FINEST, _STEPS * omega * interval / (2.0 * math.pi)))
+    numbers = np.array([getattr(chain, field.name) for field in fields(chain)])
+    return np.asarray(_march(z, v, interval, min(parts, _MOST_PARTS), numbers))
+
+
+def _level(chain: Chained, z: Matrix, v: Matrix) -> Matrix:
+    return np.asarray(
+        chain.f + chain.rise * np.exp(-((v / chain.speed) ** 2)) + chain.tilt * z + chain.bend * z**2, dtype=float
+    )
+
+
+@numba.njit(cache=True)
+def _march(z, v, interval, parts, numbers):  # type: ignore[no-untyped-def]
+    ks, cs, gap, b, f, c, rise, speed, tilt, bend, bias = numbers
+    h = interval / parts
+    force = np.zeros(z.size)
+    y, w, shaft, side = 0.0, 0.0, 0.0, 0
+    stiff = b / h + 0.25 * ks * h + 0.5 * (cs + c)
+    loose = b / h + 0.5 * c
+    for n in range(1, z.size):
+        before, slope = z[n - 1], v[n - 1]
+        for i in range(1, parts + 1):
+            s = i / parts  # the cubic through both samples with their slopes
+            p, q = s * s * (3.0 - 2.0 * s), s * (1.0 - s)
+            after = z[n - 1] + p * (z[n] - z[n - 1]) + interval * q * ((1.0 - s) * v[n - 1] - s * v[n])
+            rate = 6.0 * q * (z[n] - z[n - 1]) / interval
+            rate += (1.0 - s) * (1.0 - 3.0 * s) * v[n - 1] + s * (3.0 * s - 2.0) * v[n]
+            middle, mean = 0.5 * (before + after), 0.5 * (slope + rate)
+            level = f + rise * math.exp(-((w / speed) ** 2)) + tilt * y + bend * y * y
+            touching = gap == 0.0 or side != 0
+            if not touching and abs(after - y - h * w - shaft) >= gap:
+                side = 1 if after - y - h * w - shaft > 0.0 else -1
+                touching = True
+            before_w = w
+            if touching:
+                spring = ks * (middle - side * gap - y - 0.25 * h * w)
+                w = _slid(b * w / h + spring + cs * (mean - 0.5 * w) - 0.5 * c * w - bias, level, stiff)
+                y += 0.5 * h * (before_w + w)
+                shaft = after - y - side * gap
+                pull = ks * shaft + cs * (rate - w)
+                if gap > 0.0 and side * pull < 0.0:
+                    side, pull = 0, 0.0
+            else:
+                w = _slid(b * w / h - 0.5 * c * w - bias, level, loose)
+                y += 0.5 * h * (before_w + w)
+                shaft *= math.exp(-h * ks / cs) if cs > 0.0 else 0.0
+                pull = 0.0
+            before, slope = after, rate
+        force[n] = pull
+    return force
+
+
+@numba.njit(cache=True)
+def _slid(push, level, inertia):  # type: ignore[no-untyped-def]
+    """The velocity to which a push leads against friction of this level; zero where it holds."""
+    if push > level:
+        return (push - max(level, 0.0)) / inertia
+    if push < -level:
+        return (push + max(level, 0.0)) / inertia
+    return 0.0

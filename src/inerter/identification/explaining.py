@@ -16,11 +16,10 @@ from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
-from inerter.identification.intervals import ROBUST, Optimum, steps_of
+from inerter.identification.intervals import Optimum, optimum_of, steps_of
 from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
 from inerter.identification.problem import Problem
-from inerter.identification.search import improve
 from inerter.identification.space import Space, space_of
 from inerter.records.lost import losses, restored
 from inerter.vehicle.cars import Rig
@@ -39,9 +38,7 @@ class Trial:
 
     hypothesis: Hypothesis
     problem: Problem
-    point: Matrix
-    cost: float
-    jacobian: Matrix
+    optimum: Optimum
 
 
 def explanations(problem: Problem, optimum: Optimum, by: Judge, before: Misfit) -> list[Explanation]:
@@ -110,9 +107,8 @@ def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge
         point = space.placed({**known, **zero, **start})
         seen = {**sizes, **start}
         steps = np.array([widths.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)])
-        found, cost, _, jacobian = improve(anew, point, _EVALUATIONS, steps, ROBUST, _ACCURACY)
-        trials.append(Trial(hypothesis, anew, found, cost, jacobian))
-    return min(trials, key=lambda t: t.cost)
+        trials.append(Trial(hypothesis, anew, optimum_of(anew, point, steps, _EVALUATIONS, _ACCURACY)))
+    return min(trials, key=lambda t: t.optimum.cost)
 
 
 def _step(space: Space, i: int, size: float) -> float:
@@ -122,11 +118,10 @@ def _step(space: Space, i: int, size: float) -> float:
 
 def _explanation(trial: Trial, by: Judge, before: Misfit) -> Explanation:
     space, hypothesis = trial.problem.space, trial.hypothesis
-    after = by.misfit(trial.problem, trial.point, hypothesis.slow)
-    values = space.named(trial.point)
-    J = trial.jacobian
-    covariance = np.linalg.pinv(J.T @ J, rcond=1e-14, hermitian=True) * max(after.fitted, 1.0) ** 2
-    errors = np.sqrt(np.maximum(np.diag(covariance), 0.0)) * space.slopes(trial.point)
+    point = trial.optimum.point
+    after = by.misfit(trial.problem, point, hypothesis.slow)
+    values = space.named(point)
+    errors = trial.optimum.errors * space.slopes(point)
     own = {u.name for u in hypothesis.unknowns}
     parts = zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True)
     return Explanation(

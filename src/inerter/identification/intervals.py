@@ -45,9 +45,15 @@ class Optimum:
         return 0.5 * quantile**2 * self.variance * self.widening
 
 
-def optimum_of(problem: Problem, start: Matrix, steps: Matrix | None = None, evaluations: int = 20) -> Optimum:
+def optimum_of(
+    problem: Problem,
+    start: Matrix,
+    steps: Matrix | None = None,
+    evaluations: int = 20,
+    accuracy: float = 1e-9,
+) -> Optimum:
     """The best fit near `start`, with differences as wide as the coordinates are uncertain."""
-    point, cost, residual, jacobian = improve(problem, start, evaluations, steps, ROBUST)
+    point, cost, residual, jacobian = improve(problem, start, evaluations, steps, ROBUST, accuracy)
     samples = sum(int((w.weight > 0.0).sum()) for w in problem.whitenings)
     variance = OPTIMISM * 2.0 * cost / max(samples - point.size, 1)
     information = jacobian.T @ jacobian

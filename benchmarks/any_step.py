@@ -85,7 +85,7 @@ def main(number: int) -> None:
     for part in (
         lambda: steps(number),
         lambda: cuts(number, joined, 1e-9),
-        lambda: cuts(number // 5, stepped, 1e-8),
+        lambda: cuts(number, stepped, 1e-7),
         lambda: extremes(number),
     ):
         start = time.perf_counter()

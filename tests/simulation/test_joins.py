@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ from strategies import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.errors import MechanismError
+from inerter.systems.piecewise import piecewise
 
 CLOSE = 1e-9  # of the largest value of its unit
 SECONDS = 0.8
@@ -39,14 +41,16 @@ def cut_anywhere(chosen: Member, rng: np.random.Generator, **request: Any) -> Cu
     return Cut(whole, begin, it.simulate(chosen.vehicle, duration=(steps - at) * step, initial=begin, **request))
 
 
-def apart(cut: Cut, skipped: int = 0) -> float:
-    """The largest difference of any output, over the largest of its unit."""
-    largest: dict[str, float] = {}
+def apart(cut: Cut, skipped: int = 0, without: Sequence[str] = ()) -> float:
+    """The largest difference of any output, over the largest of its unit (or 1 mN, where nothing but rounding acts)."""
+    largest: dict[str, float] = {"N": 1e-3}
     for name in cut.whole.outputs:
         unit = cut.whole.unit(name)
         largest[unit] = max(largest.get(unit, 1e-9), float(np.abs(cut.whole[name]).max()))
     join, worst = cut.begin.time.size - 1, 0.0
     for name in cut.whole.outputs:
+        if name in without:
+            continue
         both = np.concatenate([cut.begin[name][:-1], cut.rest[name]])
         error = np.abs(both - cut.whole[name])
         error[join : join + skipped] = 0.0
@@ -98,26 +102,32 @@ def test_two_parts_are_the_whole_in_many_members(chunk: int) -> None:
 
 
 def stepped(seed: int) -> float | None:
-    """The same by time stepping, of which a sample is the mean of both sides, but for the first and the last."""
+    """The same by time stepping, of which a sample is the mean of both sides, but for the first and the last.
+
+    What frictions and contacts share among them while they hold is not determined, and rounding decides it. Rounding
+    of time grows at contacts.
+    """
     rng = np.random.default_rng([seed, 98])
     try:
         cut = cut_anywhere(member(seed), rng, integrator="time-stepping")
     except MechanismError:
         return None
     assert cut.whole.status.ok
-    return apart(cut, skipped=1)
+    system = piecewise(member(seed).vehicle)
+    shared = [f"{system.graph.branches[i].label}_force" for group in system.nonlinear for i in group]
+    return apart(cut, skipped=1, without=shared)
 
 
 def test_time_stepping_goes_on_as_well() -> None:
     found = {seed: stepped(seed) for seed in (0, 2, 3, 5, 6, 8)}
-    assert max(f for f in found.values() if f is not None) < 1e-8, found
+    assert max(f for f in found.values() if f is not None) < 1e-7, found
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("chunk", range(5))
 def test_time_stepping_goes_on_in_many_members(chunk: int) -> None:
     found = {seed: stepped(seed) for seed in range(1000 * chunk, 1000 * chunk + 10)}
-    assert max(f for f in found.values() if f is not None) < 1e-8, found
+    assert max(f for f in found.values() if f is not None) < 1e-7, found
 
 
 @pytest.mark.parametrize("integrator", ["event-driven", "time-stepping"])

@@ -47,8 +47,9 @@ def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial, rat
 
 
 def ending_of(initial: Initial) -> Ending | None:
-    """How the run ended that this one goes on from, if there is one and it tells."""
-    return initial._ending if isinstance(initial, Trajectory) else None
+    """How the event-driven run ended that this one goes on from, if there is one and it tells."""
+    ending = initial._ending if isinstance(initial, Trajectory) else None
+    return ending if isinstance(ending, Ending) else None
 
 
 def _set_off(system: PiecewiseSystem, rates: Matrix) -> Matrix:

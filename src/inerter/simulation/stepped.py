@@ -6,6 +6,7 @@ States (a, g) are those of `systems.piecewise`, so that either integrator goes o
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -14,12 +15,21 @@ from numpy.typing import NDArray
 from inerter.signals.signal import Signal
 from inerter.simulation.inputs import check_steps, just_before, whole_steps
 from inerter.simulation.start import Initial, initial_state
-from inerter.simulation.time_stepping import Histories, Start, StepTable, step_through
+from inerter.simulation.time_stepping import Histories, Start, StepTable, Stop, step_through
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem
+from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Stepped:
+    """How a run by time stepping ended, for another one of the same mechanism."""
+
+    mechanism: Mechanism
+    stop: Stop
 
 
 def run(
@@ -40,7 +50,12 @@ def run(
     first = np.array([np.concatenate([of_roads[:, 0], of_forces[:, 0]]) for of_roads, of_forces in _pairs(table)])
     state = initial_state(system, first[0], initial, first[1])
     before = just_before(signals, delays, begin, step) if isinstance(initial, Trajectory) else first
-    start = _start(system, table, state, before[0][:roads])
+    ending = initial._ending if isinstance(initial, Trajectory) else None
+    start = (
+        ending.stop
+        if isinstance(ending, Stepped) and ending.mechanism == system.mechanism
+        else _start(system, table, state, before[0][:roads])
+    )
     history = step_through(system.mechanism, system.graph, table, start, every)
     reached = int(
         np.sum(np.all(np.isfinite(history.displacement), axis=1) & np.all(np.isfinite(history.forces), axis=1))
@@ -55,6 +70,7 @@ def run(
         final_state=_state_at(system, history, given, reached - 1),
         end=end,
         label="; ".join(dict.fromkeys(s.label for s in signals if s is not None)),
+        _ending=Stepped(system.mechanism, history.stop) if history.status.ok else None,
         _evaluate=partial(_evaluate, given, roads, history),
     )
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, SimulationError, Status, StatusKind
-from inerter.kernels.stepping import DONE, INFINITE, STUCK, march
+from inerter.kernels.stepping import DONE, INFINITE, SIDE, SPEED, STUCK, march
 from inerter.simulation.parts import SAME, Parts, check_gaps, parts_of, range_and_null, unit_rows
 from inerter.simulation.scheme import Scheme, scheme_of
 from inerter.systems.graph import Graph
@@ -66,6 +66,19 @@ class Start:
 
 
 @dataclass(frozen=True, eq=False)
+class Stop:
+    """Where a march ended, as the next one takes it: more than motions of nodes tell.
+
+    Displacements of massless nodes, momenta, elongations where all displacements are zero, and what reactions did.
+    """
+
+    displacement: Matrix
+    momentum: Matrix
+    offsets: Matrix
+    law: Matrix
+
+
+@dataclass(frozen=True, eq=False)
 class Histories:
     """Motions of the nodes, (samples, nodes), and forces of the branches [N], (samples, branches).
 
@@ -78,12 +91,16 @@ class Histories:
     acceleration: Matrix
     forces: Matrix
     status: Status
+    stop: Stop
 
 
-def step_through(mechanism: Mechanism, graph: Graph, table: StepTable, start: Start, every: int = 1) -> Histories:
+def step_through(
+    mechanism: Mechanism, graph: Graph, table: StepTable, start: Start | Stop, every: int = 1
+) -> Histories:
     """Integrate with one step for each interval of `table`, and keep every `every`-th instant, the first one included.
 
-    `graph` is `full_graph(mechanism)`. Second order in the step while nothing slides or touches, first order else.
+    It goes on where another march over the same mechanism ended, if that is the start. `graph` is
+    `full_graph(mechanism)`. Second order in the step while nothing slides or touches, first order else.
 
     Raises `SimulationError` if the table is not usable, if a road that jumps moves an inerter, if a gap starts beyond
     its ends or can stop inertia with nothing in between that gives way.
@@ -91,11 +108,14 @@ def step_through(mechanism: Mechanism, graph: Graph, table: StepTable, start: St
     h = _check_table(table, every)
     parts = parts_of(mechanism, graph)
     check_gaps(parts)
-    offsets = _offsets(parts, table, start)
+    offsets = start.offsets if isinstance(start, Stop) else _offsets(parts, table, start)
     scheme = scheme_of(parts, table.road_hold, offsets, h)
-    known = _initial(parts, scheme, table, start, offsets)
-    samples, ended, reached = _march(scheme, table, known, every)
-    return _histories(parts, table, samples, ended, reached, every)
+    known, law = _initial(parts, scheme, table, start, offsets), scheme.law.copy()
+    if isinstance(start, Stop):
+        law[[SIDE, SPEED]] = start.law[[SIDE, SPEED]]
+    samples, ended, reached = _march(scheme, table, known, law, every)
+    stop = Stop(known[scheme.at.d].copy(), known[scheme.at.p].copy(), offsets, law)
+    return _histories(parts, table, samples, ended, reached, every, stop)
 
 
 def _check_table(table: StepTable, every: int) -> float:
@@ -131,14 +151,17 @@ def _offsets(parts: Parts, table: StepTable, start: Start) -> Matrix:
     return np.asarray(start.elongations - parts.E @ start.displacement - parts.R @ table.road[:, 0])
 
 
-def _initial(parts: Parts, scheme: Scheme, table: StepTable, start: Start, offsets: Matrix) -> Matrix:
+def _initial(parts: Parts, scheme: Scheme, table: StepTable, start: Start | Stop, offsets: Matrix) -> Matrix:
     """What the first step knows: displacements, momenta and inputs, and a one."""
     at, inertia = scheme.at, parts.inertia
     known = np.zeros(at.total)
     known[at.inputs] = _inputs(table, 0, 1)[0]
-    known[at.d] = _settled(parts, table, start, offsets)
-    known[at.p] = inertia.M @ start.velocity + inertia.B @ known[at.rate0]
     known[at.one] = 1.0
+    if isinstance(start, Stop):
+        known[at.d], known[at.p] = start.displacement, start.momentum
+    else:
+        known[at.d] = _settled(parts, table, start, offsets)
+        known[at.p] = inertia.M @ start.velocity + inertia.B @ known[at.rate0]
     return known
 
 
@@ -195,11 +218,10 @@ def _inputs(table: StepTable, first: int, last: int) -> Matrix:
     return np.ascontiguousarray(np.vstack(columns).T)
 
 
-def _march(scheme: Scheme, table: StepTable, known: Matrix, every: int) -> tuple[Matrix, int, int]:
-    """All samples, how the march ended, and the step that it reached."""
+def _march(scheme: Scheme, table: StepTable, known: Matrix, law: Matrix, every: int) -> tuple[Matrix, int, int]:
+    """All samples, how the march ended, and the step that it reached; `known` and `law` are then those of the end."""
     steps, count, shared = table.time.size - 1, scheme.G.shape[0], sum(scheme.Z.shape)
     samples = np.zeros((steps // every + 1, scheme.starts.shape[0]))
-    law = scheme.law.copy()
     scratch = (
         *(np.zeros(scheme.predict.shape[0]), np.zeros(count), np.zeros((count, count)), np.zeros(count, np.int64)),
         *(np.zeros(scheme.Z.shape[1]), np.zeros(shared), np.zeros((shared, shared)), np.zeros(shared, np.int64)),
@@ -217,7 +239,9 @@ def _march(scheme: Scheme, table: StepTable, known: Matrix, every: int) -> tuple
     return samples, ended, reached
 
 
-def _histories(parts: Parts, table: StepTable, samples: Matrix, ended: int, reached: int, every: int) -> Histories:
+def _histories(
+    parts: Parts, table: StepTable, samples: Matrix, ended: int, reached: int, every: int, stop: Stop
+) -> Histories:
     """The columns of `samples`, which hold nothing of value from the step `reached` on if the march ended early."""
     n, status = parts.nodes, OK
     if ended != DONE:
@@ -234,4 +258,5 @@ def _histories(parts: Parts, table: StepTable, samples: Matrix, ended: int, reac
         np.ascontiguousarray(acceleration),
         np.ascontiguousarray(samples[:, 3 * n :]),
         status,
+        stop,
     )

@@ -93,7 +93,7 @@ class Trajectory:
     final_state: Matrix = field(default_factory=lambda: np.zeros(0))  # to go on from: simulate(..., initial=...)
     end: float = 0.0  # [s] when that is
     label: str = ""  # of the signals
-    _ending: Ending | None = field(repr=False, default=None)
+    _ending: object = field(repr=False, default=None)  # what the integrator that made it needs to go on from here
     _evaluate: Callable[[Output], Matrix] = field(repr=False, default=lambda output: np.zeros(0))
     _list_events: Callable[[], tuple[Event, ...]] = field(repr=False, default=tuple)
     _known: dict[str, Any] = field(repr=False, default_factory=dict)

@@ -21,6 +21,7 @@ from inerter import (
     Inerter,
     Mechanism,
     Norm,
+    QuarterCar,
     RideComfort,
     Road,
     Spring,
@@ -334,3 +335,16 @@ def test_wrong_numbers_are_one_clear_error(case):
 def test_free_values_are_refused():
     with pytest.raises(DesignError, match="free values: f"):
         it.evaluate(paper_quarter_car(k | Friction(it.free(1.0, 2.0, "f"))), J1, TWO)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_fast_wheel_is_not_smoothed_by_the_knots_of_the_road(seed):
+    """With a friction that does next to nothing the value is the norm, whatever the wheel's frequency."""
+    rng = np.random.default_rng([4, seed])
+    car = QuarterCar(
+        180.0, float(np.exp(rng.uniform(-1.0, 3.0))), float(np.exp(rng.uniform(14.0, 16.5))), k | Damper(3e3)
+    )
+    slipping = replace(car, strut=car.strut | Friction(1e-6))
+    for index in (J1, J3):
+        found = it.evaluate(slipping, index, TWO)
+        assert found.value == pytest.approx(it.evaluate(car, index, Norm()).value, rel=1e-6)

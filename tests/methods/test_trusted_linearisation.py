@@ -47,6 +47,26 @@ def test_ok_means_within_three_per_cent(car):
     judged(car)
 
 
+@pytest.mark.parametrize(
+    "strut",
+    [
+        Spring(120e3) | Friction(3000.0),
+        Spring(120e3) | Damper(800.0) | Inerter(266.0) - Friction(400.0),
+        Spring(120e3) | Damper(800.0) | Inerter(209.77) - Friction(400.0),
+    ],
+    ids=["friction alone", "alike for J1", "alike for J3"],
+)
+def test_alike_without_friction_and_with_a_rigid_link_is_not_alike_between(strut):
+    judged(it.QuarterCar(181.75, 25.0, 120e3, strut))
+
+
+def test_many_at_once_have_no_value_that_one_would_not_trust():
+    c = Damper(it.free(1e-8, 1.0, name="c"))
+    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(120e3) | c | Inerter(1e-6) - Friction(30.0))
+    assert it.evaluate(car.with_values({"c": 1e-6}), INDICES[2], METHOD).status.kind == "marginal"
+    assert np.isnan(it.evaluate_many(car, INDICES[2], {"c": [1e-6]}, METHOD)).all()
+
+
 @pytest.mark.parametrize("index", INDICES, ids=["J1", "J3", "J5"])
 def test_between_slip_and_stick_it_is_not_ok_and_at_both_ends_it_is(index):
     car = drawn(4)

@@ -58,6 +58,10 @@ class Comparison:
         return self.first.status if not self.first.status.ok else self.second.status
 
     def __str__(self) -> str:
+        if not np.isfinite(self.percent):
+            return (
+                f"{self.first.value:.4g} and {self.second.value:.4g} {self.first.unit}: their difference is no number"
+            )
         word = "better" if self.difference.value < 0.0 else "worse"
         return f"the first is {abs(self.percent):.2g} % ± {self.percent_error:.1g} % {word} than the second"
 

@@ -89,7 +89,7 @@ class HarmonicBalance:
         result = np.full(points.shape[0], np.nan)
         for i, (omegas, gains, fine, _) in enumerate(self._gains(points)):
             if fine and gains.size and (not trusted or self._trusted(points[i], omegas, gains)):
-                result[i] = self.weight * gains.max()
+                result[i] = self.weight * gains.max() if np.isfinite(gains.max()) or not trusted else np.nan
         return result
 
     def _trusted(self, point: Array, omegas: Array, gains: Array) -> bool:

@@ -31,6 +31,7 @@ _LOCKED = 0.02  # d log(force) / d log(damper) below which a friction whose forc
 _RIGID = 1e-5  # the same for a damper that stands for a rigid link
 _LINEAR = 0.7  # the same from which on friction is weak enough for the velocity across it to be Gaussian
 _HELD = 0.4  # force through a rigid link over that of friction up to which friction holds all the time
+_BETWEEN = 13  # dampers that stand for all that a friction may become
 _MATTERS = 0.03  # relative change of the index by a friction, whatever becomes of it, that is of no account
 _FIRM = 1e4  # times a typical damper is as good as a rigid link for that
 
@@ -251,7 +252,8 @@ class GaussianClosure:
         """Which of these designs the closure is right for.
 
         Those without doubtful frictions, and those whose doubtful frictions do not matter: the index is the same
-        without the friction and with a rigid link in its place.
+        without the friction, with a rigid link in its place, and with any damper between. (The ends alone do not tell:
+        the index may have a minimum between two that are alike.)
         """
         free, designs = self.free, solved.designs
         damping = np.full((designs.size, len(free.parts.dampers)), _FIRM * free.parts.scale)
@@ -259,12 +261,12 @@ class GaussianClosure:
         sure = np.ones(designs.size, dtype=bool)
         for i in np.flatnonzero(solved.doubtful.any(axis=0)):
             here = np.flatnonzero(solved.doubtful[:, i])
-            ends = []
-            for end in (free.parts.scale / _FIRM, _FIRM * free.parts.scale):
+            found = []
+            for damper in free.parts.scale * np.geomspace(1.0 / _FIRM, _FIRM, _BETWEEN):
                 damping_there = damping[here].copy()
-                damping_there[:, i] = end
-                ends.append(free.index.known(free.rows(points[designs[here]], damping_there)))
-            sure[here] &= np.abs(ends[1] - ends[0]) <= _MATTERS * np.minimum(*ends)
+                damping_there[:, i] = damper
+                found.append(free.index.known(free.rows(points[designs[here]], damping_there)))
+            sure[here] &= np.ptp(found, axis=0) <= _MATTERS * np.min(found, axis=0)
         return sure
 
     def values(self, points: Array) -> Array:

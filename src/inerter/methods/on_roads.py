@@ -16,9 +16,10 @@ from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
 from inerter.methods.linear import Conventions
 from inerter.methods.method import Estimate
-from inerter.methods.realisations import Drive, Ran, check_drive, drive, realisation_seeds, run, worst
+from inerter.methods.realisations import STEP, Drive, Ran, check_drive, drive, realisation_seeds, run, worst
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
+from inerter.systems.linear import LinearSystem
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -29,6 +30,9 @@ _FIRST = 2  # roads that decide how long the others must be
 _MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside the band
 _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
+_IMAGES = 4  # of each line, on either side, that samples cannot tell from it
+_SMOOTH = 500  # lines whose images are computed
+_COARSE = 1e-2  # how well what knots of the road take from a mean square is known
 _UNLIKE = "no linear design resembles the motion with play: nothing is added for the road outside 0.1 to 1000 Hz"
 _FEW = 3  # periods after which a motion with play must repeat, or the period is too short to stand for a long road
 
@@ -133,9 +137,10 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
         return Rest(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
     lines = way.signal(0)
     omega = 2.0 * np.pi * lines.frequencies
-    gains = np.abs(modal_response(system, omega, pade_order)[:, :, 0]) ** 2
-    inside = 0.5 * (omega * lines.amplitudes) ** 2 @ gains
-    added = (way.road.velocity_intensity * whole.outputs) ** 2 - inside
+    gains, sampled = _squared_gains(system, omega, pade_order)
+    of_lines = 0.5 * (omega * lines.amplitudes) ** 2
+    inside, seen = of_lines @ gains, of_lines @ sampled
+    added = (way.road.velocity_intensity * whole.outputs) ** 2 - seen
     (left, pole), (at_last, _) = (memory(system, whole.outputs, time) for time in (way.period, design.longest))
     unseen, within_reach = 2.0 * left, True
     if unseen > _UNSEEN:  # by as much as the counterpart may be another once the lines tell more
@@ -147,7 +152,32 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     if unseen > _LOST:
         return Rest(np.full(count, np.nan), unseen, within_reach, _undamped(pole, design.longest))
     share = float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left
+    unseen += _COARSE * float(np.max(np.abs(1.0 - seen / np.maximum(inside, 1e-300))))
     return Rest(added, unseen, within_reach, OK if share <= _MOST_BEYOND else _mostly_beyond(share))
+
+
+def _squared_gains(system: LinearSystem, omega: Array, pade_order: int | None) -> tuple[Array, Array]:
+    """Squared gains (lines, outputs), and those of a simulation's samples, whose road is cubic between knots.
+
+    A line of angle a between knots becomes lines of angles a + 2 pi m, a series that falls with the fourth power: the
+    transform of the cubics through values and slopes. Samples see all of them as one.
+    """
+    here = modal_response(system, omega, pade_order)[:, :, 0]
+    some = omega[np.linspace(0, omega.size - 1, min(omega.size, _SMOOTH)).astype(int)]
+    images = np.zeros((some.size, len(system.outputs)), dtype=complex)  # of which little depends, and smoothly
+    for m in (*range(-_IMAGES, 0), *range(1, _IMAGES + 1)):
+        there = some + 2.0 * np.pi * m / STEP
+        share = _cubic(some * STEP, there * STEP) * there / some
+        images += modal_response(system, there, pade_order)[:, :, 0] * share[:, None]
+    between = np.column_stack([np.interp(omega, some, column) for column in images.T])
+    return np.abs(here) ** 2, np.abs(here * _cubic(omega * STEP, omega * STEP)[:, None] + between) ** 2
+
+
+def _cubic(angle: Array, there: Array) -> Array:
+    values = -6.0 * np.sin(there) / there**3 - 12.0 * (np.cos(there) - 1.0) / there**4
+    slopes = (2.0 * np.cos(there) + 4.0) / there**3 - 6.0 * np.sin(there) / there**4
+    near = np.abs(there) < 0.1  # where these two would cancel
+    return np.where(near, 1.0 - there**4 / 720.0 + there**6 / 25200.0, 2.0 * values + 2.0 * angle * slopes)
 
 
 def _undamped(pole: complex, longest: float) -> Status:

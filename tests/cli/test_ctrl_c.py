@@ -145,7 +145,7 @@ def test_an_interrupt_is_one_sentence_and_leaves_nothing(name: str, home: Path) 
     assert list(trouble(name, after, home, 6.0)) == []  # a machine may be busy
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(7200)
 def test_many_interrupts(home: Path) -> None:
     """Each command is interrupted forty times."""

@@ -56,7 +56,7 @@ def study(draw: random.Random, count: int) -> str:
     return STUDY.format(k=2e4, c=1e3, b=30.0, **parts)
 
 
-@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(n, marks=pytest.mark.campaign) for n in range(10, 60))])
+@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(n, marks=pytest.mark.marathon) for n in range(10, 60))])
 def test_thousands_of_mistakes_are_told_in_a_page(
     seed: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -94,7 +94,7 @@ def test_values_beyond_reason_are_numbers_or_say_why_not(tmp_path: Path, capsys:
         beyond_reason(seed, tmp_path, capsys)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.parametrize("seed", range(3, 46))
 def test_many_values_beyond_reason_are_numbers_or_say_why_not(
     seed: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]

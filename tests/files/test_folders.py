@@ -342,7 +342,7 @@ def chosen(count: int, every: bool) -> list[int]:
     return steps if every else sorted(random.Random(count).sample(steps, min(count, 4)))
 
 
-LONG = [pytest.mark.campaign, pytest.mark.timeout(7200)]
+LONG = [pytest.mark.marathon, pytest.mark.timeout(7200)]
 EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=LONG)], ids=["some", "every"])
 
 

@@ -163,7 +163,7 @@ def test_an_altered_line_is_told_by_its_number(tmp_path: Path) -> None:
     assert list(believed(300, 0, tmp_path)) == []
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_no_altered_journal_is_believed(tmp_path: Path) -> None:
     assert list(believed(20_000, 1, tmp_path)) == []
 

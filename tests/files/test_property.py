@@ -240,7 +240,7 @@ def test_what_is_a_users_stays(
     assert courses(range(6), 16, tmp_path, monkeypatch, capsys, identified) == []
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("part", range(10))
 def test_what_is_a_users_stays_in_many_courses(

@@ -53,6 +53,6 @@ def test_odd_cells_are_a_record_or_a_sentence(tmp_path: Path) -> None:
     assert what_goes_wrong(range(60), tmp_path) == []
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_many_odd_cells_are_a_record_or_a_sentence(tmp_path: Path) -> None:
     assert what_goes_wrong(range(1000, 4000), tmp_path) == []

@@ -93,11 +93,12 @@ def lyapunov_factors(A: Array, drifts: Array, lyapunov: Array) -> bool:
             for k in range(n):
                 K[row, place[k, j]] += scaled[i, k]
                 K[row, place[i, k]] += scaled[j, k]
-    for i in drifts:
-        for j in drifts:
+    for i in range(drifts.size):
+        for j in range(drifts.size):
+            known = place[drifts[i], drifts[j]]
             for row in range(K.shape[0]):
-                K[row, place[i, j]] = 0.0
-            K[place[i, j], place[i, j]] = 1.0
+                K[row, known] = 0.0
+            K[known, known] = 1.0
     return factor(K, pivots)
 
 
@@ -281,7 +282,8 @@ def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arriva
         for i in range(n):
             met[0, c, i] *= scale[i]
             met[1, c, i] *= scale[i]
-        for w in drifts:  # they keep what they have
+        for i in range(drifts.size):  # they keep what they have
+            w = drifts[i]
             met[0, c, w], met[1, c, w] = met[0, c - 1, w] + B[w, c - 1], 0.0
 
 
@@ -365,10 +367,10 @@ def unsure_of_drifts(A: Array, B: Array, met: Array, known: Array, Q: Array) -> 
             for k in range(n):
                 total += 2.0 * size * abs(Q[k, drifts[j]] * A[k, drifts[i]])
             Q[drifts[i], drifts[j]] = 0.0
-    for w in drifts:
         for k in range(n):
             for c in range(m):
-                total += 2.0 * abs(Q[k, w] * B[w, c]) * (abs(B[k, c]) + abs(met[0, c, k]))
+                size = abs(B[drifts[i], c]) * (abs(B[k, c]) + abs(met[0, c, k]))
+                total += 2.0 * size * abs(Q[k, drifts[i]])
     return total
 
 
@@ -396,9 +398,9 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
     solve_symmetric(lyapunov, W, False, P)
     if not leave((lost_A, lost_B), A, B, met, W, P, rest):
         return False
-    for i in drifts:
-        for j in drifts:
-            rest[i, j] = 0.0
+    for i in range(drifts.size):
+        for j in range(drifts.size):
+            rest[drifts[i], drifts[j]] = 0.0
     solve_symmetric(lyapunov, rest, False, lacks)  # what P lacks
     for i in range(n):
         if not abs(lacks[i, i]) <= _DAMPED * P[i, i]:

@@ -3,6 +3,9 @@
 The covariance solves A P + P A' + W = 0 as one linear system for its n (n + 1) / 2 entries. The adjoint equation
 A' Q + Q A + C' C = 0 has the transpose of the same matrix, up to the double count of off-diagonal entries, so both
 share one factorisation.
+
+A state that only the road moves has a row of zeros in A and a covariance that is known beforehand (see `Coordinates`).
+That takes the place of its equation, which says nothing, and the others follow it.
 """
 
 from __future__ import annotations
@@ -22,6 +25,7 @@ _SMALL = 1e-7  # relative size of the terms of a correction at first order up to
 _DAMPED = 1e-6  # relative correction of a variance from which on its motion may be damped by rounding
 _SOLVED = 1e-3  # share of the noise that enters a state that the solution may leave over
 _EPS = 2.2e-16
+_ENTERED = 8.0 * _EPS  # relative error of what the road puts into a state that only it moves, and of its covariance
 
 
 @part()
@@ -45,8 +49,8 @@ def balance(A: Array, scale: Array, inverse: Array) -> None:
                 if j != i:
                     row += abs(A[i, j]) * scale[j]
                     column += abs(A[j, i]) * inverse[j]
-            if row > 0.0 and column > 0.0:
-                scale[i] = np.sqrt(row / column)
+            if column > 0.0:
+                scale[i] = np.sqrt(row / column) if row > 0.0 else 1.0 / column
                 inverse[i] = 1.0 / scale[i]
 
 
@@ -71,8 +75,11 @@ def lyapunov_space(n: int) -> Any:
 
 
 @part(borrowing=True)
-def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
-    """Factors of P -> A P + P A' over symmetric P, in balanced units; False if singular."""
+def lyapunov_factors(A: Array, drifts: Array, lyapunov: Array) -> bool:
+    """Factors of P -> A P + P A' over symmetric P, in balanced units; False if singular.
+
+    An entry of P between two of the states `drifts` is the negative of its right-hand side, and in no other equation.
+    """
     K, pivots, place, (scale, inverse), _, scaled = lyapunov
     n = A.shape[0]
     balance(A, scale, inverse)
@@ -86,6 +93,12 @@ def lyapunov_factors(A: Array, lyapunov: Array) -> bool:
             for k in range(n):
                 K[row, place[k, j]] += scaled[i, k]
                 K[row, place[i, k]] += scaled[j, k]
+    for i in range(drifts.size):
+        for j in range(drifts.size):
+            known = place[drifts[i], drifts[j]]
+            for row in range(K.shape[0]):
+                K[row, known] = 0.0
+            K[known, known] = 1.0
     return factor(K, pivots)
 
 
@@ -127,8 +140,9 @@ def propagated(
                 for j in range(n):
                     error[i] += 0.5 * abs(powers[step, i, j]) * change[j]
         return
+    power = np.zeros((n, n))
     for i in range(n):
-        out[i], error[i] = direct * u[i], abs(direct) * unsure[i]
+        out[i], error[i], power[i, i] = direct * u[i], 0.0, direct
     M, pivots, z = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
     size, change = np.empty((n, n)), np.empty(n)
     for k in range(poles.size):
@@ -143,7 +157,7 @@ def propagated(
         solve(M, pivots, z)
         for i in range(n):
             out[i] -= (residues[k] * z[i]).real
-            change[i] = unsure[i]
+            change[i] = 0.0
             for j in range(n):
                 change[i] += size[i, j] * abs(z[j])
         for j in range(n):
@@ -153,6 +167,10 @@ def propagated(
             solve(M, pivots, z)
             for i in range(n):
                 error[i] += abs(residues[k]) * abs(z[i]) * change[j]
+                power[i, j] -= (residues[k] * z[i]).real
+    for i in range(n):
+        for j in range(n):
+            error[i] += abs(power[i, j]) * unsure[j]
 
 
 @part()
@@ -249,7 +267,7 @@ def norms_space(descriptor: Array, corner: float) -> Any:
 @part()
 def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arrivals: Array) -> None:
     """Fill `met` with what each arrival meets of those before it, and with bounds of its error."""
-    gaps, poles, residues, direct = arrivals
+    gaps, (poles, residues, direct), (drifts, _) = arrivals
     _, _, _, (scale, _), _, scaled = lyapunov
     n, m = B.shape
     E_scaled, u, unsure = np.empty((n, n)), np.empty(n), np.empty(n)
@@ -264,6 +282,9 @@ def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arriva
         for i in range(n):
             met[0, c, i] *= scale[i]
             met[1, c, i] *= scale[i]
+        for i in range(drifts.size):  # they keep what they have
+            w = drifts[i]
+            met[0, c, w], met[1, c, w] = met[0, c - 1, w] + B[w, c - 1], 0.0
 
 
 @part(borrowing=True)
@@ -321,17 +342,43 @@ def norms_in(
     if corner > 0.0:
         A, B, C = high_passed(A, B, C, closing[0][3], corner)
         lost_A, lost_B, lost_C = high_passed(lost_A, lost_B, lost_C, lost_D, 0.0)
-    if not lyapunov_factors(A, lyapunov):
+    drifts, walks = arrivals[2]
+    if not lyapunov_factors(A, drifts, lyapunov):
         return False
     if B.shape[1] > 1:
         excite(lost_A, B, lost_B, lyapunov, met, arrivals)
-    return judge((A, B, C), (lost_A, lost_B, lost_C), lyapunov, met, (W, P, Q, rest, lacks, CP), result)
+    matrices, lost = (A, B, C, met), (lost_A, lost_B, lost_C)
+    return judge(matrices, lost, lyapunov, (drifts, walks), (W, P, Q, rest, lacks, CP), result)
 
 
 @part(borrowing=True)
-def judge(matrices: Array, lost: Array, lyapunov: Array, met: Array, room: Array, result: Array) -> bool:
+def unsure_of_drifts(A: Array, B: Array, met: Array, known: Array, Q: Array) -> float:
+    """What the error of what enters the states that drift, and of their covariance, changes: as many times that error.
+
+    Q becomes zero between these states: nothing else enters there.
+    """
+    drifts, walks = known
+    n, m = B.shape
+    total = 0.0
+    for i in range(drifts.size):
+        for j in range(drifts.size):
+            size = abs(walks[i, j])
+            total += size * abs(Q[drifts[i], drifts[j]])
+            for k in range(n):
+                total += 2.0 * size * abs(Q[k, drifts[j]] * A[k, drifts[i]])
+            Q[drifts[i], drifts[j]] = 0.0
+        for k in range(n):
+            for c in range(m):
+                size = abs(B[drifts[i], c]) * (abs(B[k, c]) + abs(met[0, c, k]))
+                total += 2.0 * size * abs(Q[k, drifts[i]])
+    return total
+
+
+@part(borrowing=True)
+def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Array, result: Array) -> bool:
     """Fill `result` once A, B and C, the factors and `met` are there. See `norms_in`."""
-    A, B, C = matrices
+    A, B, C, met = matrices
+    drifts, walks = known
     lost_A, lost_B, lost_C = lost
     W, P, Q, rest, lacks, CP = room
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
@@ -340,9 +387,20 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, met: Array, room: Array
             W[i, j] = 0.0
             for c in range(m):
                 W[i, j] += B[i, c] * B[j, c] + met[0, c, i] * B[j, c] + B[i, c] * met[0, c, j]
+    for i in range(drifts.size):
+        for j in range(drifts.size):
+            for k in range(n):
+                W[k, drifts[j]] += A[k, drifts[i]] * walks[i, j]
+                W[drifts[j], k] += A[k, drifts[i]] * walks[i, j]
+    for i in range(drifts.size):
+        for j in range(drifts.size):
+            W[drifts[i], drifts[j]] = -walks[i, j]
     solve_symmetric(lyapunov, W, False, P)
     if not leave((lost_A, lost_B), A, B, met, W, P, rest):
         return False
+    for i in range(drifts.size):
+        for j in range(drifts.size):
+            rest[drifts[i], drifts[j]] = 0.0
     solve_symmetric(lyapunov, rest, False, lacks)  # what P lacks
     for i in range(n):
         if not abs(lacks[i, i]) <= _DAMPED * P[i, i]:
@@ -371,6 +429,8 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, met: Array, room: Array
             for j in range(n):
                 Q[i, j] += C[k, i] * C[k, j] / total
     solve_symmetric(lyapunov, Q, True, Q)
+    if drifts.size > 0:
+        unsure += _ENTERED * unsure_of_drifts(A, B, met, known, Q)
     for i in range(n):
         for j in range(n):
             terms += abs(Q[i, j] * rest[i, j])
@@ -386,7 +446,7 @@ def gradient_in(
     """Gradient over p of the weighted sum of the norms that `norms_in` has filled `result` with."""
     (closing, _, _, _, _, _), lyapunov, met, (CC, P, Q, _, _), CP = space
     A0, B0, C0, D0, T, factors, _, _ = closing
-    gaps, poles, residues, direct = arrivals
+    gaps, (poles, residues, direct), _ = arrivals
     o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
     A, B, C = A0, B0, C0
     if corner > 0.0:
@@ -434,8 +494,9 @@ def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, cor
     """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each is right.
 
     The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. `twofold` as
-    in `close_twofold`. `arrivals` = (gaps, poles, residues, direct): times between one arrival of the road and the
-    next, and the Pade approximant (no poles: exact). `corner` > 0 puts a high-pass filter on every output.
+    in `close_twofold`. `arrivals` = (gaps, (poles, residues, direct), (drifts, walks)): times between an arrival of the
+    road and the next, the Pade approximant (no poles: exact), and the states that only the road moves, if there are
+    any, with their covariance. `corner` > 0 puts a high-pass filter on every output.
     """
     space = norms_space(descriptor, corner)
     count = points.shape[0]

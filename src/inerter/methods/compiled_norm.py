@@ -22,7 +22,7 @@ from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.methods.method import Estimate
 from inerter.norms.delay import pade
 from inerter.norms.exact import h2_exactly
-from inerter.norms.h2 import h2
+from inerter.norms.h2 import drift_covariance, h2
 from inerter.systems.descriptor import Descriptor, close
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
@@ -57,15 +57,26 @@ class CompiledQuestion:
         return rounded, lost if lost.any() else np.zeros((0, 0))
 
     @cached_property
-    def arrivals(self) -> tuple[Array, NDArray[np.complex128], NDArray[np.complex128], float]:
-        """Times between arrivals of the road, and the Pade approximant (no poles where the delay is exact)."""
+    def arrivals(self) -> tuple[Array, tuple[Any, Any, float], tuple[NDArray[np.int64], Array]]:
+        """Times between arrivals of the road, the Pade approximant (no poles where the delay is exact), and the states
+        that only the road moves, with their covariance.
+        """
         order = self.problem.pade_order
         none = np.zeros(0, dtype=complex)
         gaps = np.diff(self.problem.delays)
         if order is None:
-            return gaps, none, none, 0.0
+            return gaps, (none, none, 0.0), self._drifts
         approximant = pade(order)
-        return gaps, approximant.poles, approximant.residues, approximant.direct
+        return gaps, (approximant.poles, approximant.residues, approximant.direct), self._drifts
+
+    @property
+    def _drifts(self) -> tuple[NDArray[np.int64], Array]:
+        """States that only the road moves, and their covariance; none where that is infinite."""
+        d = self.problem.descriptor
+        moves = np.any(d.X_eta, axis=1) | np.any(d.X_x, axis=1)
+        drifts = np.flatnonzero(~moves)
+        walks = drift_covariance(d.X_u[drifts], self.problem.delays, ("road",) * len(d.inputs))
+        return (drifts, walks) if walks is not None else (drifts[:0], np.zeros((0, 0)))
 
     @property
     def corner(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -114,13 +115,18 @@ def _per_source(system: LinearSystem, B: Matrix) -> Matrix:
     return np.asarray(B @ same)
 
 
-def _drift_covariance(system: LinearSystem, B: Matrix) -> Matrix:
-    """Covariance of sums of one random walk at different times whose weights add up to zero."""
-    result = np.zeros((B.shape[0], B.shape[0]))
-    for i, source in enumerate(system.sources):
-        for j, other in enumerate(system.sources):
-            if source == other:
-                result -= 0.5 * abs(system.delays[i] - system.delays[j]) * np.outer(B[:, i], B[:, j])
+def drift_covariance(B: Matrix, delays: Matrix, sources: Sequence[str]) -> Matrix | None:
+    """Covariance of states that only the inputs move, B w: sums of random walks at different times.
+
+    None unless the weights of each source add up to zero, so that the sums stay where they are.
+    """
+    result = np.zeros((B.shape[0], B.shape[0]), B.dtype)
+    for source in dict.fromkeys(sources):
+        arrivals = [j for j in np.argsort(delays, kind="stable") if sources[j] == source]
+        so_far = np.cumsum(B[:, arrivals], axis=1)
+        if np.any(np.abs(so_far[:, -1]) > 4.0 * _EPS * np.sum(np.abs(B[:, arrivals]), axis=1)):
+            return None
+        result += (so_far[:, :-1] * np.diff(delays[arrivals])) @ so_far[:, :-1].T
     return result
 
 
@@ -138,15 +144,14 @@ def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> Matrix
     fine_A, fine_B, fine_C = fine.matrices[0] / row * scale, fine.matrices[1] / row, fine.matrices[2] * scale
     EA, EB, EC = fine.errors[0] / row * scale, fine.errors[1] / row, fine.errors[2] * scale
     drift = _drifting(EA + np.abs(A))
-    if np.any(drift):
-        walks = system.B[drift]
-        if np.any(np.abs(_per_source(system, walks)) > 4.0 * _EPS * _per_source(system, np.abs(walks))):
-            return None
+    walks = drift_covariance(fine_B[drift], system.delays, system.sources)
+    if walks is None:
+        return None
     moved = EA + np.abs(fine_A - A).astype(float)
     W, EW = _excitation(system, (A, moved), (fine_B, EB), pade_order)
     try:
         solver = _Lyapunov(A[np.ix_(~drift, ~drift)])
-        P, rest, solved = _covariance(system, solver, A, (fine_A, fine_B, W), drift)
+        P, rest, solved = _covariance(solver, A, (fine_A, W), (drift, walks.astype(float)))
         size, C = np.abs(P), fine_C.astype(float)
         seen = np.abs(C) @ size
         squares = np.einsum("ij,jk,ik->i", fine_C, P, fine_C)
@@ -166,18 +171,17 @@ def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> Matrix
 
 
 def _covariance(
-    system: LinearSystem, solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix, Matrix], drift: NDArray[np.bool_]
+    solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix], known: tuple[NDArray[np.bool_], Matrix]
 ) -> tuple[Matrix, Matrix, bool]:
     """P, what it leaves of its equation, and whether that is little of the noise that enters each state.
 
     Of states that only drift the covariance is known, and the others follow them.
     """
-    fine_A, fine_B, W = fine
+    (fine_A, W), (drift, walks) = fine, known
     P = np.zeros_like(A)
     decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     follow, noise = A[dw], W.astype(float)
-    walks = _drift_covariance(system, fine_B[w]).astype(float)
     P[np.ix_(w, w)] = walks
     P[dw] = _once(A[d], -(follow @ walks + noise[dw]))
     P[np.ix_(w, decays)] = P[dw].T

@@ -116,11 +116,13 @@ def write_netcdf(path: Path, data: xarray.Dataset) -> None:
 
 
 @contextmanager
-def export(path: str | os.PathLike[str], kind: type[InerterError]) -> Iterator[Path]:
-    """`whole` for a caller who asks for one file.
+def export(path: str | os.PathLike[str], kind: type[InerterError], *, overwrite: bool = False) -> Iterator[Path]:
+    """`whole` for a caller who asks for one file; one that is there is replaced with `overwrite` only.
 
-    Raises `kind` if it cannot be written, or `WorkError` if the disk is full.
+    Raises `kind` if there is a file already or it cannot be written, or `WorkError` if the disk is full.
     """
+    if not overwrite and os.path.isfile(path):
+        raise kind(f"{os.fsdecode(path)!r} exists: name another file, or replace it with overwrite=True.")
     try:
         with whole(path) as draft:
             yield draft

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import re
 import resource
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import inerter
+import inerter as it
 from inerter.cli.main import call
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -47,6 +50,53 @@ def fails(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
 )
 def test_wrong_requests(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert words in fails(arguments, capsys)
+
+
+@pytest.mark.parametrize("command", ["", "run", "check", "simulate", "rig", "identify", "reproduce"])
+def test_the_help_that_is_proposed_is_that_of_the_command(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [*command.split(), "--nope"]
+    proposed = re.search(r"^Try: inerter (.*)$", fails(arguments, capsys), re.MULTILINE)
+    assert proposed is not None
+    assert proposed[1].split() == [*command.split(), "--help"]
+    assert call(proposed[1].split()) == 0
+    assert f"inerter {command}".strip() in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ["plain", "Rallye für 2"])
+def test_what_continues_an_interrupted_command_is_a_whole_command(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The words of the shell that the hint becomes ask for the same work, and --resume."""
+
+    def interrupt(*arguments: object, **settings: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("inerter.cli.commands.run_study", interrupt)
+    monkeypatch.setattr("inerter.papers.wang_su_2008.reproduce.reproduce", interrupt)
+    study, folder = tmp_path / f"{name}.toml", tmp_path / name
+    study.write_bytes((EXAMPLES / "quarter-car.toml").read_bytes())
+    for asked in (
+        ["run", str(study), "-o", str(folder)],
+        ["run", str(study), "-o", str(folder), "-j", "2", "--json"],
+        ["reproduce", "wang-su-2008", "--only", "linear", "--only", "rig", "-o", str(folder)],
+    ):
+        assert call(asked) == 130
+        said = capsys.readouterr().err.splitlines()[-1]
+        words = said.removeprefix("inerter: interrupted; what was computed is kept. Continue with: inerter ")
+        assert sorted(shlex.split(words)) == sorted([*asked, "--resume"])
+
+
+def test_an_identification_that_is_interrupted_early_says_so_in_one_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*arguments: object, **settings: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("inerter.cli.identify.run_identification", interrupt)
+    time = np.arange(200) / 200.0
+    it.write_record(it.Record(time, 1e-3 * np.cos(9.0 * time), np.cos(9.0 * time)), tmp_path / "a.csv")
+    assert call(["identify", str(tmp_path / "a.csv"), "--model", "ideal", "-o", str(tmp_path / "out")]) == 130
+    assert capsys.readouterr().err.splitlines()[-1] == "inerter: interrupted before there was a fit."
 
 
 @pytest.mark.parametrize(

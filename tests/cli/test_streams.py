@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shlex
 import subprocess
@@ -9,6 +10,8 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from inerter.cli.main import call
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COMMAND = f"{shlex.quote(sys.executable)} -c 'from inerter.cli.start import main; main()'"
@@ -110,9 +113,19 @@ def test_a_disk_that_takes_no_more_output_is_told_and_loses_no_results(home: Pat
         pytest.skip("this system has no device that is full")
     code, _, err = shell("inerter run study.toml -j 1 -o out > /dev/full", home)
     assert code == 1
-    assert "inerter: standard output: No space left on device" in err
+    assert "inerter: standard output: No space left on device. The results are written all the same." in err
     assert "Traceback" not in err
     assert (home / "out" / "report.html").exists()
+
+
+def test_results_are_written_where_a_command_writes_any(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    monkeypatch.setattr("inerter.cli.main.problem", lambda: full)
+    for arguments in (["check", str(EXAMPLES / "quarter-car.toml")], ["--help"], ["run", "--help"], ["--version"]):
+        assert call(arguments) == 1
+        assert capsys.readouterr().err == "inerter: standard output: No space left on device.\n"
 
 
 def test_a_name_that_is_no_text(home: Path) -> None:

@@ -118,11 +118,11 @@ def run() -> it.Trajectory:
 
 
 EXPORTS: dict[str, Callable[[Path], object]] = {
-    **{f"record{suffix}": lambda path: it.write_record(record(), path) for suffix in WRITERS},
-    "trajectory.csv": lambda path: run().to_csv(path),
-    "events.csv": lambda path: run().events_to_csv(path),
-    "trajectory.mat": lambda path: run().to_mat(path),
-    "response.csv": lambda path: it.frequency_response(record()).to_csv(path),
+    **{f"record{suffix}": lambda path: it.write_record(record(), path, overwrite=True) for suffix in WRITERS},
+    "trajectory.csv": lambda path: run().to_csv(path, overwrite=True),
+    "events.csv": lambda path: run().events_to_csv(path, overwrite=True),
+    "trajectory.mat": lambda path: run().to_mat(path, overwrite=True),
+    "response.csv": lambda path: it.frequency_response(record()).to_csv(path, overwrite=True),
     "trajectory.nc": lambda path: write_netcdf(path, run().to_xarray()),
     "figure.svg": lambda path: save(new_figure(height=2.0)[0], path.parent, "figure", png=False),
     "figure.png": lambda path: save(new_figure(height=2.0)[0], path.parent, "figure"),
@@ -146,6 +146,43 @@ def test_an_export_from_python_on_a_full_disk_leaves_the_old_file(name: str, tmp
         EXPORTS[name](path)
     assert path.read_bytes() != b"old"
     assert not list(tmp_path.glob(".inerter-*"))
+
+
+CAREFUL: dict[str, Callable[[Path], object]] = {
+    **{f"record{suffix}": lambda path: it.write_record(record(), path) for suffix in WRITERS},
+    "trajectory.csv": lambda path: run().to_csv(path),
+    "events.csv": lambda path: run().events_to_csv(path),
+    "trajectory.mat": lambda path: run().to_mat(path),
+    "response.csv": lambda path: it.frequency_response(record()).to_csv(path),
+}
+
+
+@pytest.mark.parametrize("name", CAREFUL)
+def test_an_export_from_python_replaces_nothing_unless_it_is_told_to(name: str, tmp_path: Path) -> None:
+    path, link = tmp_path / name, tmp_path / f"link{Path(name).suffix}"
+    CAREFUL[name](path)
+    path.write_bytes(b"old")
+    link.symlink_to(path)
+    for place in (path, link):
+        with pytest.raises((RecordError, SimulationError), match=rf"{place.name}' exists: .* overwrite=True\.$"):
+            CAREFUL[name](place)
+    assert path.read_bytes() == b"old"
+    EXPORTS[name](path)
+    assert path.read_bytes() != b"old"
+
+
+def test_a_record_does_not_replace_the_file_that_it_was_read_from(tmp_path: Path) -> None:
+    path = tmp_path / "bench.csv"
+    it.write_record(record(), path)
+    before, read = path.read_bytes(), it.read_record(path)
+    with pytest.raises(RecordError, match="exists"):
+        it.write_record(read.trim(0.0, 1.0), path)
+    assert path.read_bytes() == before
+
+
+def test_what_is_no_file_is_not_in_the_way() -> None:
+    with export(os.devnull, RecordError) as draft:
+        draft.write_text("nobody reads this")
 
 
 def test_a_folder_that_is_not_there_is_a_wrong_request(tmp_path: Path) -> None:

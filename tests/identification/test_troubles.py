@@ -134,7 +134,7 @@ def test_simulations_are_counted_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_friction_laws_are_stepped_as_the_rig_does(seed: int) -> None:
-    """Two explicit steppings that share no code, with Stribeck friction, a place, a bias and a gap."""
+    """Two explicit steppings that share no code, with Stribeck friction, a skew and a gap."""
     random = np.random.default_rng([5, seed])
     ks, b, f = 10 ** random.uniform(5.3, 6.3), random.uniform(20.0, 200.0), random.uniform(5.0, 30.0)
     cs, gap = 0.01 * ks / 2.0, (0.0, 5e-5)[seed % 2]
@@ -148,7 +148,7 @@ def test_friction_laws_are_stepped_as_the_rig_does(seed: int) -> None:
     time, z, force = measured(device, motion, quiet, 2.0, 0)
     record = it.Record(time, z, force)
     experiment = experiment_of(record, bandwidth=150.0)
-    chain = Chained(ks, cs, gap, b, f, 10.0, rise * f * changed, speed, bias=0.2 * f * (not changed))
+    chain = Chained(ks, cs, gap, b, f, 10.0, rise * f * changed, speed, skew=0.2 * (not changed))
     fine = np.arange(round(2.0 / 2e-6) + 1) * 2e-6
     exact = device_force(device, *motion.at(fine))[::500]
     found = stepped(chain, experiment, time.size)

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import json
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
 import inerter as it
 from inerter.errors import Status, StatusKind
-from inerter.identification.fit import Told
+from inerter.identification.fit import Explanation, Misfit, Told
+from inerter.identification.guess import chain_of
+from inerter.identification.laws import laws
 from inerter.networks.parser import written
 from inerter.records.finding import Finding
-from inerter.report.identification import write_fit, write_identification
+from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_figures import window
-from inerter.report.identification_text import identification_text, share
+from inerter.report.identification_text import as_options, identification_text, share
 from inerter.report.identified_values import elements_block, single, value_and_interval
 from inerter.study.identification_run import Candidate, Identified, Reading, responses
 
@@ -177,3 +183,55 @@ def test_the_response_is_of_the_force_without_its_offset(found: Identified) -> N
     assert answered.measured is not None
     assert answered.model is not None
     assert abs(answered.model.value / answered.measured.value - 1.0).max() < 0.05
+
+
+@pytest.mark.parametrize("sound", [True, False])
+def test_nothing_is_said_of_values_that_are_not_there(found: Identified, sound: bool) -> None:
+    """Whatever law explains a misfit, "what to do" holds whether its values are shown or not."""
+    chain = chain_of(MODEL)
+    assert chain is not None
+    left = Misfit(1.0 if sound else 3.0, 1.0 if sound else 3.0, (1.2, 1.2))
+    proposed = [
+        Explanation(h.name, "friction is odd", 0.9, left, {}, {"b": (113.0, 0.1), "f": (10.0, 0.1)}, h.remedy)
+        for h in laws(chain, 0.02, 1e-3)
+        if h.device is None
+    ]
+    status = Status(StatusKind.INACCURATE, "the model leaves 3 times what the errors of the sensors would leave")
+    for one in proposed:
+        doubted = replace(found, fit=replace(found.fit, status=status, explanations=(one,)))
+        for text in (identification_text(doubted), Page(identification_page(doubted, {})).text):
+            told = " ".join(text.split())
+            assert ("113 kg" in told.partition("estimates")[0].partition("Parameters")[0]) == sound
+            assert "the values with it, where there are any," in told
+            assert "above" not in told.partition("records")[0]
+    assert len(proposed) == 3
+
+
+def test_all_is_found_only_in_a_fit_that_can_be_relied_on(found: Identified) -> None:
+    status = Status(StatusKind.INACCURATE, "the model leaves 3 times what the errors of the sensors would leave")
+    doubted = replace(found, fit=replace(found.fit, status=status))
+    good, poor = (Page(identification_page(each, {})).text for each in (found, doubted))
+    assert good.count("Told: b, f. That is all there was to find.") == 1
+    assert poor.count("Told: b, f.") == 1
+    assert "That is all" not in poor
+
+
+def sentences(tree: ast.Module) -> Iterator[str]:
+    """The texts of a module without its docstrings, with something in the place of what is filled in."""
+    inner = {id(n.value) for n in ast.walk(tree) if isinstance(n, ast.Expr)}
+    for node in (n for n in ast.walk(tree) if isinstance(n, ast.JoinedStr)):
+        inner |= {id(part) for part in node.values}
+        parts = (
+            p.value if isinstance(p, ast.Constant) else "'1'" if p.conversion == ord("r") else "1" for p in node.values
+        )  # type: ignore[attr-defined]
+        yield "".join(map(str, parts))
+    yield from (str(n.value) for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in inner)
+
+
+def test_no_sentence_of_the_library_reaches_a_terminal_with_the_words_of_python() -> None:
+    """Every message on records names options of the command line, never arguments of a call."""
+    words = rf"\b({'|'.join(inspect.signature(it.read_record).parameters)})=\S*"
+    folder = Path(inspect.getfile(it.Record)).parent
+    told = [text for path in folder.glob("*.py") for text in sentences(ast.parse(path.read_text(encoding="utf-8")))]
+    assert sum(re.search(words, text) is not None for text in told) > 8
+    assert [said[0] for text in told if (said := re.search(words, as_options(text)))] == []

@@ -16,7 +16,7 @@ from inerter.networks.elements import Free
 from inerter.optimisation.budget import budget
 from inerter.optimisation.optimise import optimise
 from inerter.study import registry
-from inerter.study.budgets import BudgetOutcome, budget_cases
+from inerter.study.budgets import BudgetOutcome, budget_cases, budgets_csv
 from inerter.study.cases import Case, Outcome, run_case
 from inerter.study.file import load_study
 from inerter.study.registry import INDEX, METHOD
@@ -110,6 +110,24 @@ def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyR
     assert (found.value, found.standard_error, found.status) == (expected.value, expected.standard_error, "ok")
     (row,) = rows(budgeted, "budgets.csv")
     assert (row["value"], row["better"], row["status"]) == (repr(expected.value), "below", "ok")
+
+
+@pytest.mark.parametrize("at_most", [True, False])
+def test_a_budget_without_a_value_has_no_better_side(at_most: bool) -> None:
+    ended = BudgetOutcome(
+        *("serial", "J1", "h", "N", "norm", at_most),
+        value=280.5,
+        standard_error=6.6,
+        interval=(265.3, 296.7),
+        crossings=[280.5],
+        status="ok",
+        message="",
+    )
+    none = {"value": None, "standard_error": None, "interval": None, "status": "unbounded"}
+    endless = replace(ended, **none, crossings=[], message="the design is better for no h from 1 N to 2 N")
+    told = list(csv.DictReader(budgets_csv([ended, endless]).splitlines()))
+    assert [row["better"] for row in told] == ["below" if at_most else "above", ""]
+    assert told[1]["status"] == "unbounded: the design is better for no h from 1 N to 2 N"
 
 
 def test_budgets_and_outcomes_survive_the_journal_and_are_not_computed_again(budgeted: StudyResult) -> None:

@@ -134,8 +134,8 @@ def test_interrupted_sweep_resumes_to_the_same_bytes(
     _, problems = process.communicate(timeout=60)
     if how == signal.SIGINT:
         assert process.returncode == 130
-        kept_is_said = f"what was computed is kept. Continue with: inerter run {study.path} -o {broken} --resume"
-        assert f"inerter: interrupted; {kept_is_said}" in problems.decode()
+        again = f"inerter run {study.path} -o {broken} --resume -j {processes}"
+        assert f"inerter: interrupted; what was computed is kept. Continue with: {again}\n" in problems.decode()
         assert b"Traceback" not in problems
     kept = lines(broken / "journal.jsonl")
     assert points // 4 < len(kept) < 1 + 4 * points

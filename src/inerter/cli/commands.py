@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -39,7 +41,7 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
         draw_study(result.data, into / FIGURES)
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
 
-    kept = f"what was computed is kept. Continue with: inerter run {study} -o {folder} --resume"
+    kept = _kept(("run", str(study)), folder, jobs, as_json=as_json)
     items = "designs and budgets" if loaded.budgets else "designs"
     with interruptible(lambda: kept), progress(study.stem, items) as callback:
         result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback, finish=show)
@@ -83,7 +85,8 @@ def reproduce(
 
     folder = output or Path(f"{KEY}-results")
     processes = _processes(jobs)
-    kept = f"what was computed is kept. Continue with --resume -o {folder}"
+    parts = (word for part in only for word in ("--only", part))
+    kept = _kept(("reproduce", KEY, *parts), folder, jobs, as_json=as_json)
     with interruptible(lambda: kept), steps(KEY) as callback:
         found = paper.reproduce(
             folder,
@@ -97,6 +100,13 @@ def reproduce(
     _say(f"report: {folder / REPORT}")
     print(json.dumps(tables(found), indent=2) if as_json else reproduction_text(found))
     return max([_judge(result) for result in found.studies.values()], default=0)
+
+
+def _kept(command: Iterable[str], folder: Path, jobs: int | None, *, as_json: bool) -> str:
+    """What is kept of work that is interrupted, with the whole command that goes on with it."""
+    options = (*(() if jobs is None else ("-j", str(jobs))), *(("--json",) if as_json else ()))
+    again = shlex.join(["inerter", *command, "-o", str(folder), "--resume", *options])
+    return f"; what was computed is kept. Continue with: {again}"
 
 
 def _processes(jobs: int | None) -> int:

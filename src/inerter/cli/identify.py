@@ -57,14 +57,16 @@ def identify(
     folder = output or Path(f"{paths[0].stem}-results")
     inputs = (*paths, *(() if config is None else (config,)))
     intent = Intent(folder, "identify", OWN, inputs, force=force)
-    kept = ["before there was a fit."]
+    kept = [" before there was a fit."]
     try:
         with interruptible(lambda: kept[-1]), claimed(intent) as results:
             with fraction(f"fitting {request.name or 'the model'}") as callback:
                 found = run_identification(readings, request, callback)
             write_fit(found, results.draft)
             results.publish()
-            kept.append(f"{folder / FIT} is complete." if results.place == folder else f"{folder} is as it was before.")
+            kept.append(
+                f"; {folder / FIT} is complete." if results.place == folder else f"; {folder} is as it was before."
+            )
             print(json.dumps(identification_data(found), indent=2) if as_json else identification_text(found))
             sys.stdout.flush()
             with fraction("drawing") as callback:

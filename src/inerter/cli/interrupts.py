@@ -22,6 +22,8 @@ _came, _told = threading.Event(), threading.Event()
 def interruptible(kept: Callable[[], str] = lambda: "") -> Iterator[None]:
     """Ctrl-C leaves the block as KeyboardInterrupt with the words of `kept`, which say what is kept of the work.
 
+    They end the sentence that begins with "interrupted", such as " before there was a fit." or "; all is kept.".
+
     The call of a compiled function may go on after the signal's exception is set and return its result: Python then
     raises SystemError ("returned a result with an exception set") whose cause is the KeyboardInterrupt, or another
     such error from a call inside, and so on down to it.
@@ -50,10 +52,10 @@ def heed() -> None:
 
 
 def tell(kept: object = "") -> None:
-    """Say once that the work was interrupted, and what is kept of it."""
+    """Say once that the work was interrupted, and what is kept of it, in words as of `interruptible`."""
     if not _told.is_set():
         _told.set()
-        print(f"inerter: interrupted{'; ' if str(kept) else '.'}{kept}", file=sys.stderr, flush=True)
+        print(f"inerter: interrupted{str(kept) or '.'}", file=sys.stderr, flush=True)
 
 
 def came() -> bool:

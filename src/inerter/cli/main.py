@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from inspect import signature
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -316,13 +317,14 @@ def call(arguments: list[str]) -> int:
             code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
         if (lost := problem()) is not None:
-            return _fail(f"standard output: {lost.strerror}. The results are written all the same.", 1)
+            written = " The results are written all the same." if _writes(arguments) else ""
+            return _fail(f"standard output: {lost.strerror}.{written}", 1)
         return code if isinstance(code, int) else 0
     except KeyboardInterrupt as error:
         tell(error)
         return INTERRUPTED
     except CycloptsError as error:
-        return _fail(f"{error}\nTry: inerter --help", 2)
+        return _fail(f"{error}\nTry: {' '.join(('inerter', *_command(arguments)))} --help", 2)
     except InerterError as error:
         return _fail(str(error), 1 if isinstance(error, WorkError) else 2)
     except OSError as error:
@@ -332,6 +334,17 @@ def call(arguments: list[str]) -> int:
             tell()
             return INTERRUPTED
         raise
+
+
+def _command(arguments: list[str]) -> tuple[str, ...]:
+    """The command among some arguments; empty where there is none."""
+    return app.parse_commands(arguments)[0]
+
+
+def _writes(arguments: list[str]) -> bool:
+    """Whether a command writes results to files, and not only to the terminal."""
+    command = app.parse_commands(arguments)[1][-1].default_command
+    return command is not None and "output" in signature(command).parameters
 
 
 def _fail(message: str, code: int) -> int:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inerter.errors import IdentificationError, InerterError, Status, StatusKind
 from inerter.identification.concluding import fit_of
 from inerter.identification.fit import Fit
+from inerter.identification.given import checked_records, model_of
 from inerter.identification.identify import solution_of
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, yardstick
@@ -97,6 +98,7 @@ def choose(
     fails among others is told in `notes`.
     """
     given = _named(models)
+    records = checked_records(records)
     if not 0.0 < check <= 0.6:
         raise IdentificationError(f"Candidates are compared on the part kept for the check, 0 to 0.6, got {check!r}.")
     asked = Request(offset, gain, delay, check, bandwidth, lead, starts, seed)
@@ -195,10 +197,7 @@ def _named(models: Mapping[str, Network] | Iterable[str] | None) -> dict[str, Ne
         chosen = dict(models)
     else:
         names = [models] if isinstance(models, str) else list(models)
-        for name in names:
-            if name not in MODELS:
-                raise IdentificationError(f"There is no candidate named {name!r} (there are: {', '.join(MODELS)}).")
-        chosen = {name: MODELS[name] for name in names}
+        chosen = {name: model_of(name) for name in names}
     if not chosen:
         raise IdentificationError("There is no candidate to choose from.")
     return chosen

@@ -10,6 +10,7 @@ from inerter.errors import IdentificationError
 from inerter.identification import hypotheses
 from inerter.identification.concluding import fit_of
 from inerter.identification.fit import Fit
+from inerter.identification.given import checked_records, model_of
 from inerter.identification.models import mounted
 from inerter.identification.search import POINTS
 from inerter.identification.solving import Request, Solution, part, solve
@@ -23,7 +24,7 @@ _SOLVED = 0.8  # of the work, before explanations are looked for
 
 def identify(
     records: Record | Sequence[Record],
-    model: Network,
+    model: Network | str,
     *,
     seed: int = 0,
     offset: bool = True,
@@ -36,6 +37,8 @@ def identify(
     progress: Callable[[float], None] | None = None,
 ) -> Fit:
     """Fit the free values of `model`, the device on the rig, to the force of one record or several together.
+
+    `model` is a network with free values, or the name of one of `inerter.identification.models.MODELS`.
 
     The model is moved as the record's displacement was, smoothed below `bandwidth` [Hz] (by default as far as it
     stands out of its noise), and its force compared; no measured motion is differentiated twice. Sensors may have an
@@ -59,7 +62,7 @@ def identify(
     records that cannot be used.
     """
     asked = Request(offset, gain, delay, check, bandwidth, lead, starts, seed)
-    fit = fit_of(solution_of(records, model, asked, part(progress, 0.0, _SOLVED)))
+    fit = fit_of(solution_of(records, model_of(model), asked, part(progress, 0.0, _SOLVED)))
     if progress is not None:
         progress(1.0)
     return fit
@@ -83,11 +86,7 @@ def solution_of(
 
 
 def _checked(records: Record | Sequence[Record], model: Network, check: float, starts: int) -> tuple[list[Record], Rig]:
-    given = [records] if isinstance(records, Record) else list(records) if isinstance(records, Sequence) else []
-    if not given or not all(isinstance(r, Record) for r in given):
-        raise IdentificationError(
-            f"identify(...) takes a record or a list of records, such as [read_record('bench.csv')], got {records!r}."
-        )
+    given = checked_records(records)
     rig = Rig(mounted(model))
     if not rig.free_values():
         raise IdentificationError(

@@ -23,10 +23,11 @@ from inerter.networks.parser import written
 from inerter.units import format_quantity
 
 Matrix = NDArray[np.float64]
-_LAW = "models have no such friction; the values under this hypothesis stand above"
+_LAW = "no model has such friction; the values with it, where there are any, are the ones to go by"
 _STEPS = 30.0  # in a period of the shaft's resonance, at least
 _MOST_PARTS = 64  # of a sampling interval
 _FINEST = 1.25e-4  # [s] of a step, at most
+_ONE_SIDED = 0.99  # of the friction: what it may differ by to either side, so that it resists both ways
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class Chained:
     speed: float = 1.0  # [m/s] ... below about this speed
     tilt: float = 0.0  # [N/m] of the friction over the position
     bend: float = 0.0  # [N/m^2]
-    bias: float = 0.0  # [N] more when it slides up, less when down
+    skew: float = 0.0  # part of the friction that it has more when it slides up, less when down
 
 
 def laws(chain: Chain, fastest: float, stroke: float) -> Iterator[Hypothesis]:
@@ -109,21 +110,22 @@ def _place(chain: Chain, stroke: float) -> Hypothesis:
 
     def said(values: Values) -> str:
         x = np.linspace(-stroke, stroke, 101)
-        over = values[tilt.name] * x + values[bend.name] * x**2
+        level = _value(chain.friction, values) + values[tilt.name] * x + values[bend.name] * x**2
+        over = np.maximum(level, 0.0)
         return f"friction depends on the position, by {format_quantity(float(np.ptp(over)), 'N', 3)} over the stroke"
 
     return _changed(chain, "friction by position", {"tilt": tilt, "bend": bend}, said, ({},))
 
 
 def _direction(chain: Chain) -> Hypothesis:
-    bias = Unknown("bias of the friction", "N", -1e3, 1e3, 1.0)
+    skew = Unknown("skew of the friction", "", -_ONE_SIDED, _ONE_SIDED, 0.1)
 
     def said(values: Values) -> str:
-        mean, half = _value(chain.friction, values), values[bias.name]
-        up, down = (format_quantity(size, "N", 3) for size in (mean + half, mean - half))
+        mean, more = _value(chain.friction, values), values[skew.name]
+        up, down = (format_quantity(size, "N", 3) for size in (mean * (1.0 + more), mean * (1.0 - more)))
         return f"friction is {up} in one direction and {down} in the other"
 
-    return _changed(chain, "asymmetric friction", {"bias": bias}, said, ({},))
+    return _changed(chain, "asymmetric friction", {"skew": skew}, said, ({},))
 
 
 def _changed(
@@ -162,7 +164,9 @@ def stepped(chain: Chained, experiment: Experiment, samples: int) -> Matrix:
     z, v = motion.displacement[:samples] - motion.displacement[0], motion.velocity[:samples]
     if math.isinf(chain.ks):
         level = np.maximum(_level(chain, z, v), 0.0)
-        return np.asarray(chain.b * motion.acceleration[:samples] + chain.c * v + level * np.sign(v) + chain.bias)
+        return np.asarray(
+            chain.b * motion.acceleration[:samples] + chain.c * v + level * np.sign(v) + chain.skew * chain.f
+        )
     omega = math.sqrt(chain.ks / chain.b)
     parts = math.ceil(max(interval / _FINEST, _STEPS * omega * interval / (2.0 * math.pi)))
     numbers = np.array([getattr(chain, field.name) for field in fields(chain)])
@@ -177,7 +181,8 @@ def _level(chain: Chained, z: Matrix, v: Matrix) -> Matrix:
 
 @numba.njit(cache=True)
 def _march(z, v, interval, parts, numbers):  # type: ignore[no-untyped-def]
-    ks, cs, gap, b, f, c, rise, speed, tilt, bend, bias = numbers
+    ks, cs, gap, b, f, c, rise, speed, tilt, bend, skew = numbers
+    bias = skew * f
     h = interval / parts
     force = np.zeros(z.size)
     y, w, shaft, side = 0.0, 0.0, 0.0, 0

@@ -7,7 +7,19 @@ from functools import reduce
 from operator import sub
 from types import MappingProxyType
 
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Series, Spring, free
+from inerter.networks.elements import (
+    Damper,
+    Element,
+    Free,
+    Friction,
+    Gap,
+    Inerter,
+    Network,
+    Series,
+    Spring,
+    check_network,
+    free,
+)
 from inerter.networks.parser import network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.cars import Rig
@@ -86,6 +98,7 @@ def unmounted(model: Network) -> Network:
 
 def rigid(model: Network) -> bool:
     """Whether nothing in a device gives way, so that its admittance grows without end."""
+    check_network(model)
     low, high = (complex(abs(map_elements(model, _midway).admittance(1j * omega))) for omega in _FAST)
     return abs(high) > _RISES * abs(low) or not abs(high) < float("inf")
 

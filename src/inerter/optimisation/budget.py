@@ -223,9 +223,9 @@ def _status(
         return failed
     if end is not None:
         return OK
-    between = f"for every {parameter} from {format_quantity(lower, unit)} to {format_quantity(upper, unit)}"
+    between = f"{parameter} from {format_quantity(lower, unit)} to {format_quantity(upper, unit)}"
     if all(gap < 0.0 for gap in gaps):
-        return Status(StatusKind.UNBOUNDED, f"the design is better {between}")
+        return Status(StatusKind.UNBOUNDED, f"the design is better for every {between}")
     if all(gap >= 0.0 for gap in gaps):
-        return Status(StatusKind.UNBOUNDED, f"the design is not better {between}")
-    return Status(StatusKind.UNBOUNDED, f"the design is better only beyond the crossings {between}")
+        return Status(StatusKind.UNBOUNDED, f"the design is better for no {between}")
+    return Status(StatusKind.UNBOUNDED, f"the design is better only beyond the crossings, of all {between}")

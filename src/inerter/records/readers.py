@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records import matlab, mdf, tables, tdms
-from inerter.records.channels import Channel, Contents, Progress, Samples, choose
+from inerter.records.channels import Channel, Contents, Progress, Samples
+from inerter.records.choosing import choose, example
 from inerter.records.gaps import alike, mend, onto_force
 from inerter.records.lost import mended
 from inerter.records.record import Record
@@ -85,7 +86,7 @@ def read_record(
         scales, notes = _scales(source, chosen, units, asked)
         samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or _silent), strict=True))
     channels = {role: _scaled(source, chosen[role], samples[role], scales[role]) for role in chosen}
-    channels, more = _timed(source, chosen, channels, interval, bool(contents.meta.get("cut")))
+    channels, more = _timed(contents, source, chosen, channels, interval)
     channels, filled_in, filled = mend(source, channels, gaps)
     meta = {
         **contents.meta,
@@ -188,11 +189,11 @@ def _scaled(source: str, channel: Channel, samples: Samples, factor: float) -> S
 
 
 def _timed(
-    source: str, chosen: dict[str, Channel], channels: dict[str, Samples], interval: float | None, cut: bool
+    contents: Contents, source: str, chosen: dict[str, Channel], channels: dict[str, Samples], interval: float | None
 ) -> tuple[dict[str, Samples], list[str]]:
     """All channels over the same times, which are a channel of their own, from here on."""
     notes = []
-    if cut:
+    if contents.meta.get("cut"):
         shortest = min(samples.values.size for samples in channels.values())
         notes.append(f"The file is cut short; the first {shortest} samples are complete and were kept.")
         channels = {role: _first(samples, shortest) for role, samples in channels.items()}
@@ -201,7 +202,7 @@ def _timed(
     if timed and any(time is None for time in rasters.values()):
         raise RecordError(
             f"{source}: no channel has an obvious name for the time, and no other gives the sampling. Name it, such as "
-            f"time='Zeit', or give interval=1e-3 in s."
+            f"time={example(contents.channels, 'time')}, or give interval=1e-3 in s."
         )
     if timed and not alike([time for time in rasters.values() if time is not None]):
         return onto_force(source, channels)

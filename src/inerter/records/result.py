@@ -92,13 +92,16 @@ class Response:
         about = {"source": self.source, "estimator": self.estimator, "amplitude": self.amplitude}
         return xarray.Dataset(data, coords, {**about, "status": str(self.status), "notes": "\n".join(self.notes)})
 
-    def to_csv(self, path: str | Path) -> None:
+    def to_csv(self, path: str | Path, *, overwrite: bool = False) -> None:
         """Write a table with a header `name [unit]`; numbers read back to the last bit.
 
-        Raises `RecordError` if the file cannot be written.
+        Raises `RecordError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
         """
         columns = self.columns()
-        with export(path, RecordError) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        with (
+            export(path, RecordError, overwrite=overwrite) as draft,
+            draft.open("w", newline="", encoding="utf-8") as file,
+        ):
             writer = csv.writer(file)
             writer.writerow(["frequency [Hz]", *(f"{name} [{_COLUMNS[name][0]}]" for name in columns)])
             rows = np.column_stack([self.frequency, *columns.values()]).tolist()

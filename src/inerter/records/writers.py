@@ -16,16 +16,16 @@ from inerter.writing import export
 _NOT_GIVEN = "nothing is known of where it came from"
 
 
-def write_record(record: Record, path: str | os.PathLike[str]) -> None:
+def write_record(record: Record, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
     """Writes the channels with their units; the suffix says how: .csv, .tsv, .txt, .tdms, .mf4 or .mat.
 
     `read_record` gives the same numbers back. The source and notes go along for people; the range of the load cell
     and the period are for the call that reads it.
 
-    The file is there as a whole or, if that fails, as it was before.
+    A file that is there already is replaced with `overwrite` only, and then as a whole: if that fails, it is as it was.
 
-    Raises `RecordError` for another suffix, a folder that is not there, or a library that is not installed; `WorkError`
-    if the disk is full.
+    Raises `RecordError` for a file that is there, another suffix, a folder that is not there, or a library that is not
+    installed; `WorkError` if the disk is full.
     """
     if not isinstance(record, Record):
         raise RecordError(f"write_record takes a Record, got {type(record).__name__}.")
@@ -33,7 +33,7 @@ def write_record(record: Record, path: str | os.PathLike[str]) -> None:
     suffix = Path(name).suffix.lower()
     if suffix not in WRITERS:
         raise RecordError(f"Records are written to {', '.join(WRITERS)}, got {name!r}. Name a file with such a suffix.")
-    with export(name, RecordError) as draft:
+    with export(name, RecordError, overwrite=overwrite) as draft:
         WRITERS[suffix](record, str(draft))
 
 

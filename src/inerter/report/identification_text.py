@@ -20,6 +20,7 @@ _AS_OPTIONS = (
     (r"units=\{'(\w+)': '([^']+)'\}", r'--unit "\1=\2"'),
     (r"\bforce=(?=['\d])", "--force-channel "),
     (r"\bgaps='(\w+)'", r"--gaps \1"),
+    (r"\bgaps=([\d.e-]+)", r'--gaps "\1 s"'),
     (r"\binterval=1e-3(?: in s)?", '--interval "1 ms"'),
     (r"\binterval=([\d.e-]+)", r'--interval "\1 s"'),
     (r"\binterval=", "--interval"),

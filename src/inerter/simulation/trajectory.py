@@ -155,24 +155,39 @@ class Trajectory:
         coords = {"time": ("time", self.time, {"units": "s", "long_name": "time"})}
         return xarray.Dataset(data, coords, {"signal": self.label, "status": str(self.status)})
 
-    def to_csv(self, path: str | Path, names: Sequence[str] | None = None) -> None:
-        """Write the named outputs, or all, with a header `name [unit]`; numbers read back to the last bit."""
+    def to_csv(self, path: str | Path, names: Sequence[str] | None = None, *, overwrite: bool = False) -> None:
+        """Write the named outputs, or all, with a header `name [unit]`; numbers read back to the last bit.
+
+        Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
+        """
         chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
         columns = [self.time, *(self[name] for name in chosen)]
-        with export(path, SimulationError) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        with (
+            export(path, SimulationError, overwrite=overwrite) as draft,
+            draft.open("w", newline="", encoding="utf-8") as file,
+        ):
             writer = csv.writer(file)
             writer.writerow(["time [s]", *(f"{name} [{self.outputs[name].unit}]" for name in chosen)])
             writer.writerows(map(repr, row) for row in np.column_stack(columns).tolist())
 
-    def events_to_csv(self, path: str | Path) -> None:
-        """Write the table of events."""
-        with export(path, SimulationError) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+    def events_to_csv(self, path: str | Path, *, overwrite: bool = False) -> None:
+        """Write the table of events.
+
+        Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
+        """
+        with (
+            export(path, SimulationError, overwrite=overwrite) as draft,
+            draft.open("w", newline="", encoding="utf-8") as file,
+        ):
             writer = csv.writer(file)
             writer.writerow(["time [s]", "element", "from", "to"])
             writer.writerows([repr(e.time), e.element, e.before, e.after] for e in self.events)
 
-    def to_mat(self, path: str | Path, names: Sequence[str] | None = None) -> None:
-        """Write a MATLAB 5 file with `time`, the named outputs, or all, a struct `units`, and the events."""
+    def to_mat(self, path: str | Path, names: Sequence[str] | None = None, *, overwrite: bool = False) -> None:
+        """Write a MATLAB 5 file with `time`, the named outputs, or all, a struct `units`, and the events.
+
+        Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
+        """
         from scipy.io import savemat
 
         chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
@@ -185,5 +200,5 @@ class Trajectory:
             "before": np.array([e.before for e in self.events], dtype=object),
             "after": np.array([e.after for e in self.events], dtype=object),
         }
-        with export(path, SimulationError) as draft:
+        with export(path, SimulationError, overwrite=overwrite) as draft:
             savemat(draft, data, oned_as="column", long_field_names=True)

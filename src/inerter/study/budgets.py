@@ -116,9 +116,10 @@ def budgets_csv(outcomes: Sequence[BudgetOutcome]) -> str:
     for found in outcomes:
         numbers = [found.value, found.standard_error, *(found.interval or (None, None))]
         value, error, low, high = ("" if number is None else repr(number) for number in numbers)
+        better = "" if found.value is None else "below" if found.at_most else "above"
         writer.writerow(
             [
-                *(found.parameter, found.index, found.layout, found.method, "below" if found.at_most else "above"),
+                *(found.parameter, found.index, found.layout, found.method, better),
                 *(value, found.unit, error, low, high, ";".join(map(repr, found.crossings))),
                 f"{found.status}: {found.message}" if found.message else found.status,
             ]

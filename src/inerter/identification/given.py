@@ -1,0 +1,65 @@
+"""What `identify` is given: records that count once each, and a model, which may be named."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from itertools import combinations
+
+import numpy as np
+
+from inerter.errors import IdentificationError
+from inerter.identification.models import MODELS
+from inerter.networks.elements import Network
+from inerter.records.record import Record
+
+_FEWEST = 4  # samples of two records at the same times that can tell that they are the same
+_SAME = 1e-9  # of the largest value: differences that other units and formats leave of one and the same sample
+
+
+def checked_records(records: object) -> list[Record]:
+    """The records as a list.
+
+    Raises `IdentificationError` unless they are one record or several, of different samples: samples that count twice
+    would make intervals narrower than they are.
+    """
+    given = [records] if isinstance(records, Record) else list(records) if isinstance(records, Sequence) else []
+    if not given or not all(isinstance(r, Record) for r in given):
+        raise IdentificationError(
+            f"identify(...) takes a record or a list of records, such as [read_record('bench.csv')], got {records!r}."
+        )
+    for (i, one), (j, other) in combinations(enumerate(given, 1), 2):
+        if share_samples(one, other):
+            raise IdentificationError(
+                f"Record {i} ({one.source}) and record {j} ({other.source}) hold the same samples, which would count "
+                f"twice and make the intervals too narrow: leave one of them out."
+            )
+    return given
+
+
+def share_samples(one: Record, other: Record) -> bool:
+    """Whether all that two records have at the same times is the same, as of a record and a part or copy of it."""
+    tick = 1e-3 * one.interval
+    _, mine, its = np.intersect1d(np.round(one.time / tick), np.round(other.time / tick), return_indices=True)
+    moves = mine.size >= _FEWEST and float(np.ptp(one.displacement[mine])) > 0.0
+    return moves and all(
+        np.allclose(a[mine], b[its], rtol=0.0, atol=_SAME * float(np.abs(a).max()))
+        for a, b in ((one.displacement, other.displacement), (one.force, other.force))
+    )
+
+
+def model_of(model: object) -> Network:
+    """A device as it is, or one of `MODELS` by its name.
+
+    Raises `IdentificationError` for anything else.
+    """
+    if isinstance(model, Network):
+        return model
+    if isinstance(model, str) and model in MODELS:
+        return MODELS[model]
+    close = get_close_matches(model.lower(), MODELS, n=1) if isinstance(model, str) else []
+    hint = f" Did you mean {close[0]!r}?" if close else ""
+    raise IdentificationError(
+        f"There is no model {model!r} (there are: {', '.join(MODELS)}).{hint} Or write one of your own, such as "
+        f"Spring(free(1e5, 1e7, name='ks')) - Inerter(free(1, 500, name='b'))."
+    )

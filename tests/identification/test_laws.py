@@ -1,0 +1,61 @@
+"""Laws of friction that are proposed are ones that a device can have."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rigs import device, fit_test
+
+from inerter.identification.experiment import experiment_of
+from inerter.identification.guess import chain_of
+from inerter.identification.hypotheses import Hypothesis
+from inerter.identification.laws import Chained, laws, stepped
+from inerter.units import parse_quantity
+
+CHAIN = chain_of(device(f=27.5))
+FASTEST, STROKE = 0.02, 1e-3
+
+
+def law(name: str) -> Hypothesis:
+    assert CHAIN is not None
+    return next(h for h in laws(CHAIN, FASTEST, STROKE) if h.name == name)
+
+
+def sizes(sentence: str) -> list[float]:
+    return [parse_quantity(size, "N") for size in re.findall(r"-?[\d.]+(?:e-?\d+)? [kmu]?N\b", sentence)]
+
+
+@given(st.floats(0.0, 1.0))
+def test_friction_resists_in_both_directions_however_it_differs(place: float) -> None:
+    """At every value that a fit may come to, both are positive, and their mean is that of the model."""
+    asymmetric = law("asymmetric friction")
+    (skew,) = asymmetric.unknowns
+    up, down = sizes(asymmetric.said({skew.name: skew.lower + place * (skew.upper - skew.lower)}))
+    assert min(up, down) > 0.0
+    assert 0.5 * (up + down) == pytest.approx(27.5, rel=0.01)
+
+
+@given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_friction_by_position_varies_between_none_and_its_largest(tilt: float, bend: float) -> None:
+    by_position = law("friction by position")
+    tilted, bent = by_position.unknowns
+    (told,) = sizes(by_position.said({tilted.name: tilt * tilted.upper, bent.name: bend * bent.upper}))
+    x = np.linspace(-STROKE, STROKE, 101)
+    most = float(np.max(27.5 + tilt * tilted.upper * x + bend * bent.upper * x**2))
+    assert told <= max(most, 0.0) * 1.01
+
+
+@pytest.mark.parametrize("skew", [-0.99, -0.4, 0.0, 0.99])
+def test_a_skewed_friction_takes_energy_and_differs_by_its_share(skew: float) -> None:
+    """A rigid device without inertance has a force of friction alone, which opposes every motion."""
+    experiment = experiment_of(fit_test(seed=1, duration=1.0))
+    v = experiment.motion.velocity
+    force = stepped(Chained(f=20.0, skew=skew), experiment, experiment.size)
+    moves = np.abs(v) > 1e-6
+    assert np.all((force * v)[moves] > 0.0)
+    assert force[moves & (v > 0.0)] == pytest.approx(20.0 * (1.0 + skew))
+    assert force[moves & (v < 0.0)] == pytest.approx(-20.0 * (1.0 - skew))

@@ -70,7 +70,7 @@ def test_own_models_and_those_that_fail():
 @pytest.mark.parametrize(
     ("models", "check", "said"),
     [
-        (["screw"], 0.2, "no candidate named 'screw'"),
+        (["screw"], 0.2, "no model 'screw'"),
         ([], 0.2, "no candidate to choose"),
         (["ideal"], 0.0, "kept for the check"),
         ({"known": it.Inerter(113.0)}, 0.2, "No candidate can be fitted"),

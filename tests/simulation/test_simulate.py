@@ -280,7 +280,7 @@ def test_threads_that_compile_at_once_do_not_see_each_others_settings(monkeypatc
     """The compiler's settings, such as where it keeps its files, belong to the whole process."""
     kept = []
 
-    def slow(signature, **options):
+    def slow(**options):
         def compiler(function):
             folder = numba.config.CACHE_DIR
             time.sleep(0.02)

@@ -151,7 +151,7 @@ def tabulate(
             value[:, i], slope[:, i] = signal.sample(time - delay)
         else:
             value[:, i], slope[:, i] = signal.grid(start - delay, step, count + 1)
-        if not abs(value[:, i].sum()) + abs(slope[:, i].sum()) < _LARGEST:
+        if not all(-_LARGEST < x < _LARGEST for of in (value[:, i], slope[:, i]) for x in (of.min(), of.max())):
             raise SimulationError(f"The signal {signal.label!r} is too large to compute with: beyond 1e100.")
         if broken[i].size:
             before.append((i, *_from_the_left(signal, delay, broken[i], time, step)))

@@ -82,14 +82,18 @@ def test_a_dataset_is_the_same_in_every_run(tmp_path: Path) -> None:
 
 def test_ctrl_c_waits_for_the_end_of_a_move() -> None:
     done = []
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 
     def move() -> None:
         with undisturbed():
             signal.raise_signal(signal.SIGINT)
             done.append(True)
 
-    with pytest.raises(KeyboardInterrupt):
-        move()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            move()
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert done
 
 

@@ -30,7 +30,7 @@ _FIRST = 2  # roads that decide how long the others must be
 _MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside the band
 _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
-_IMAGES = 4  # of each line, on either side, that samples cannot tell from it
+_IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _COARSE = 1e-2  # how well what knots of the road take from a mean square is known
 _UNLIKE = "no linear design resembles the motion with play: nothing is added for the road outside 0.1 to 1000 Hz"
@@ -152,7 +152,8 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     if unseen > _LOST:
         return Rest(np.full(count, np.nan), unseen, within_reach, _undamped(pole, design.longest))
     share = float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left
-    unseen += _COARSE * float(np.max(np.abs(1.0 - seen / np.maximum(inside, 1e-300))))
+    taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
+    unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     return Rest(added, unseen, within_reach, OK if share <= _MOST_BEYOND else _mostly_beyond(share))
 
 
@@ -160,20 +161,26 @@ def _squared_gains(system: LinearSystem, omega: Array, pade_order: int | None) -
     """Squared gains (lines, outputs), and those of a simulation's samples, whose road is cubic between knots.
 
     A line of angle a between knots becomes lines of angles a + 2 pi m, a series that falls with the fourth power: the
-    transform of the cubics through values and slopes. Samples see all of them as one.
+    transform of the cubics through values and slopes. Samples see all of them as one. Knots are at the same instants
+    for all axles, so that each of the lines arrives with the phase of the first.
     """
     here = modal_response(system, omega, pade_order)[:, :, 0]
     some = omega[np.linspace(0, omega.size - 1, min(omega.size, _SMOOTH)).astype(int)]
-    images = np.zeros((some.size, len(system.outputs)), dtype=complex)  # of which little depends, and smoothly
+    at_once = replace(system, sources=(), delays=np.zeros(0))
+    images = np.zeros((some.size, len(system.outputs), len(system.inputs)), dtype=complex)
     for m in (*range(-_IMAGES, 0), *range(1, _IMAGES + 1)):
         there = some + 2.0 * np.pi * m / STEP
-        share = _cubic(some * STEP, there * STEP) * there / some
-        images += modal_response(system, there, pade_order)[:, :, 0] * share[:, None]
-    between = np.column_stack([np.interp(omega, some, column) for column in images.T])
-    return np.abs(here) ** 2, np.abs(here * _cubic(omega * STEP, omega * STEP)[:, None] + between) ** 2
+        share = _cubic(some * STEP, there * STEP) * there / some**4  # with the cube of the angle they grow
+        images += modal_response(at_once, there) * share[:, None, None]
+    sampled = here * _cubic(omega * STEP, omega * STEP)[:, None]
+    for j, delay in enumerate(system.delays):
+        arrival = omega**3 * np.exp(-1j * delay * omega)
+        sampled += np.column_stack([arrival * np.interp(omega, some, column) for column in images[:, :, j].T])
+    return np.abs(here) ** 2, np.abs(sampled) ** 2
 
 
 def _cubic(angle: Array, there: Array) -> Array:
+    """What a line of this angle has at the angle `there`: itself, or one of its images."""
     values = -6.0 * np.sin(there) / there**3 - 12.0 * (np.cos(there) - 1.0) / there**4
     slopes = (2.0 * np.cos(there) + 4.0) / there**3 - 6.0 * np.sin(there) / there**4
     near = np.abs(there) < 0.1  # where these two would cancel

@@ -23,6 +23,8 @@ Array = Any
 _ACCURATE = 1e-9  # relative error of a squared norm up to which it is believed
 _SMALL = 1e-7  # relative size of the terms of a correction at first order up to which the rest is far below that
 _DAMPED = 1e-6  # relative correction of a variance from which on its motion may be damped by rounding
+_REFINED = 3e-5  # correction from which on the twofold A and B, right at first order, may be off by `_ACCURATE`
+_FOUND, _REFINEMENTS = 1e-2, 5  # correction up to which others may make it small; how many in all
 _SOLVED = 1e-3  # share of the noise that enters a state that the solution may leave over
 _EPS = 2.2e-16
 _ENTERED = 8.0 * _EPS  # relative error of what the road puts into a state that only it moves, and of its covariance
@@ -375,6 +377,38 @@ def unsure_of_drifts(A: Array, B: Array, met: Array, known: Array, Q: Array) -> 
 
 
 @part(borrowing=True)
+def refine(matrices: Array, lost: Array, lyapunov: Array, drifts: Array, room: Array) -> tuple[bool, float]:
+    """Correct P by what it lacks until that is little; fill `rest` with what it leaves, `lacks` with what it lacks.
+
+    Whether that came to an end, and the largest share that a variance may lack: `_DAMPED` as P was, `_ACCURATE` where
+    it had to be corrected, zero where one lacked more than `_REFINED` before.
+    """
+    A, B, _, met = matrices
+    W, P, rest, lacks = room
+    n, limit = A.shape[0], _DAMPED
+    for _ in range(_REFINEMENTS):
+        if not leave(lost, A, B, met, W, P, rest):
+            return False, 0.0
+        for i in range(drifts.size):
+            for j in range(drifts.size):
+                rest[drifts[i], drifts[j]] = 0.0
+        solve_symmetric(lyapunov, rest, False, lacks)
+        worst = 0.0
+        for i in range(n):
+            if not abs(lacks[i, i]) <= _FOUND * P[i, i]:
+                return False, 0.0
+            if P[i, i] > 0.0:
+                worst = max(worst, abs(lacks[i, i]) / P[i, i])
+        if worst <= max(limit, _ACCURATE):
+            return True, limit
+        limit = _ACCURATE if worst <= _REFINED and limit > 0.0 else 0.0
+        for i in range(n):
+            for j in range(n):
+                P[i, j] += lacks[i, j]
+    return False, 0.0
+
+
+@part(borrowing=True)
 def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Array, result: Array) -> bool:
     """Fill `result` once A, B and C, the factors and `met` are there. See `norms_in`."""
     A, B, C, met = matrices
@@ -396,17 +430,10 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
         for j in range(drifts.size):
             W[drifts[i], drifts[j]] = -walks[i, j]
     solve_symmetric(lyapunov, W, False, P)
-    if not leave((lost_A, lost_B), A, B, met, W, P, rest):
+    found, limit = refine(matrices, (lost_A, lost_B), lyapunov, drifts, (W, P, rest, lacks))
+    if not found:
         return False
-    for i in range(drifts.size):
-        for j in range(drifts.size):
-            rest[drifts[i], drifts[j]] = 0.0
-    solve_symmetric(lyapunov, rest, False, lacks)  # what P lacks
-    for i in range(n):
-        if not abs(lacks[i, i]) <= _DAMPED * P[i, i]:
-            return False
-        for j in range(n):
-            Q[i, j] = 0.0
+    Q[:, :] = 0.0
     terms, unsure = 0.0, 0.0
     for k in range(o):
         total, change, size, rounding = 0.0, 0.0, 0.0, 0.0
@@ -436,7 +463,7 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
             terms += abs(Q[i, j] * rest[i, j])
             for c in range(1, m):
                 unsure += 2.0 * abs(Q[i, j]) * (met[1, c, i] * abs(B[j, c]))
-    return terms <= _SMALL and unsure <= _ACCURATE
+    return terms <= min(_SMALL, limit) and unsure <= _ACCURATE
 
 
 @part()
@@ -491,9 +518,10 @@ def gradient_in(
 
 @compiled
 def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, corner: float, weights: Array) -> Any:
-    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each is right.
+    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each norm is right.
 
-    The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. `twofold` as
+    The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. Norms that
+    may be off are nan, or what was found with its gradient. `twofold` as
     in `close_twofold`. `arrivals` = (gaps, (poles, residues, direct), (drifts, walks)): times between an arrival of the
     road and the next, the Pade approximant (no poles: exact), and the states that only the road moves, if there are
     any, with their covariance. `corner` > 0 puts a high-pass filter on every output.
@@ -504,7 +532,7 @@ def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, cor
     gradients = np.full((count if weights.size > 0 else 0, points.shape[1]), np.nan)
     for i in range(count):
         good[i] = norms_in(space, points[i], descriptor, twofold, arrivals, corner, result[i])
-        if good[i] and weights.size > 0:
+        if weights.size > 0 and not np.isnan(result[i, -1]):
             gradient = gradient_in(space, points[i], descriptor, arrivals, corner, weights, result[i])
             for j in range(gradient.size):
                 gradients[i, j] = gradient[j]

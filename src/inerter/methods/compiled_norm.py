@@ -7,7 +7,7 @@ silently wrong.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -29,7 +29,9 @@ from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _ASIDE = 0.0137  # relative distance from the middle of the bounds, another one for each value
-_ASTRIDE, _SAME_SLOPE = 1e-4, 1e-7  # relative distance at which a gradient is looked at, and what it may be off by
+_ASTRIDE, _SAME = 1e-4, 1e-7  # relative distance at which a gradient is looked at; what it and values may be off by
+_NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
+_FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
@@ -153,8 +155,7 @@ class CompiledQuestion:
     def _compiled_norms(self, points: Array) -> Array:
         result = np.full((points.shape[0], self.serves.size), np.inf)
         if np.all(self.serves):
-            arguments = self.descriptor, self.twofold, self.arrivals, self.corner
-            norms, _, good = h2_kernels.norms(points, *arguments, np.empty(0))
+            norms, _, good = h2_kernels.norms(points, *self._arguments, np.empty(0))
             norms[~good] = np.nan
             return np.asarray(norms)
         if np.any(self.serves):
@@ -162,29 +163,37 @@ class CompiledQuestion:
         return result
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
-        """An index of r.m.s. values and its gradient: by differences of exact values where compiled code is unsure."""
-        weights = self.problem.weights
-        if np.all(self.serves):
-            arguments = self.descriptor, self.twofold, self.arrivals, self.corner
-            norms, gradients, good = h2_kernels.norms(point[None], *arguments, weights)
-            value = float(norms[0] @ weights)
-            if good[0] and self._confirmed(point, value, gradients[0], arguments):
-                return value, gradients[0]
-        steps = 1e-5 * point * np.eye(point.size)
-        places = np.vstack([point[None], point + steps, point - steps])
-        values = np.array([self._exact_norms(place) @ weights for place in places])
-        with np.errstate(invalid="ignore"):  # infinite on both sides: no gradient
-            slopes = (values[1 : 1 + point.size] - values[1 + point.size :]) / (2e-5 * point)
-        return float(values[0]), slopes
+        """An index of r.m.s. values and its gradient.
 
-    def _confirmed(self, point: Array, value: float, gradient: Array, arguments: tuple[Any, Any, Any, float]) -> bool:
+        The adjoint's where it is confirmed, else differences: of compiled values where these are sure, else of values
+        without rounding.
+        """
+        weights = self.problem.weights
+        if not np.all(self.serves):
+            return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
+        norms, gradients, good = h2_kernels.norms(point[None], *self._arguments, weights)
+        found = value = float(norms[0] @ weights)
+        if not good[0]:
+            value = self._exact_index(point)
+        if abs(found - value) <= _SAME * value and self._confirmed(point, value, gradients[0]):
+            return value, gradients[0]
+        slopes = _slopes(lambda place: float((self._compiled_norms(place[None]) @ weights)[0]), point, _FAR)
+        return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
+
+    @property
+    def _arguments(self) -> tuple[Any, Any, Any, float]:
+        return self.descriptor, self.twofold, self.arrivals, self.corner
+
+    def _exact_index(self, point: Array) -> float:
+        return float(self._exact_norms(point) @ self.problem.weights)
+
+    def _confirmed(self, point: Array, value: float, gradient: Array) -> bool:
         """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        norms, _, good = h2_kernels.norms(ends, *arguments, np.empty(0))
-        ahead, behind = norms @ self.problem.weights
+        ahead, behind = h2_kernels.norms(ends, *self._arguments, np.empty(0))[0] @ self.problem.weights
         slope = (ahead - behind) / (2.0 * _ASTRIDE)
-        return bool(np.all(good)) and abs(slope - (gradient * point) @ direction) <= _SAME_SLOPE * value
+        return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
 
     def active(self, point: Array) -> Array | None:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""
@@ -202,6 +211,18 @@ class CompiledQuestion:
         gains, gradients = gain_kernels.gains(point, self.descriptor, which)
         weight = self.problem.weights[0]
         return weight * gains, weight * gradients
+
+
+def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tuple[float, float]]) -> Array:
+    """Central differences of the value by relative steps, those of the stencil with their weights."""
+
+    def moved(i: int, step: float) -> float:
+        return value(point * (1.0 + step * (np.arange(point.size) == i)))
+
+    with np.errstate(invalid="ignore"):  # infinite on both sides: no gradient
+        return np.array(
+            [sum(w * (moved(i, h) - moved(i, -h)) for h, w in stencil) / point[i] for i in range(point.size)]
+        )
 
 
 def evaluate_problems(

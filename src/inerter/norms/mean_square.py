@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, DecimalException, getcontext, localcontext
+from functools import cached_property, lru_cache
 from itertools import zip_longest
 
 from inerter.systems.polynomials import (
@@ -99,8 +100,8 @@ def _float(number: Decimal) -> float:
 
 def _square(a: Polynomial, numerators: Sequence[Polynomial], times: Sequence[float]) -> Decimal:
     """Sum over all pairs of arrivals of the integral of p(s) q(-s) exp(s dt) / (a(s) a(-s))."""
-    ring = _Modulo(a)
-    inverse = ring.inverse_of_mirrored()
+    ring = _modulo(tuple(a), getcontext().prec)
+    inverse = ring.inverse_of_mirrored
     total = Decimal(0)
     for i, p in enumerate(numerators):
         for j, q in enumerate(numerators):
@@ -123,7 +124,7 @@ def _drifting(response: Response) -> Decimal:
     rests = [
         trimmed(add(scaled(n, a[0]), scaled(a, -step))[1:]) for n, step in zip(response.numerators, steps, strict=True)
     ]
-    ring = _Modulo(a)
+    ring = _modulo(tuple(a), getcontext().prec)
     total = _square(a, rests, times) if any(rests) else Decimal(0)
     for step, start in zip(steps, times, strict=True):
         for other, then in zip(steps, times, strict=True):
@@ -136,10 +137,17 @@ def _drifting(response: Response) -> Decimal:
     return total / Decimal(a[0]) ** 2
 
 
+@lru_cache(maxsize=16)  # the outputs of one vehicle share their denominator
+def _modulo(a: tuple[int, ...], digits: int) -> _Modulo:
+    """The ring of polynomials modulo a(s), in numbers of as many digits as the context has."""
+    assert digits == getcontext().prec
+    return _Modulo(a)
+
+
 class _Modulo:
     """Polynomials modulo a(s), whose roots all lie to the left: numbers that stand for values at its roots."""
 
-    def __init__(self, a: Polynomial) -> None:
+    def __init__(self, a: Sequence[int]) -> None:
         self.whole, self.leading = a, Decimal(a[-1])
         self.a = [Decimal(c) / self.leading for c in a]
         self.n = len(a) - 1
@@ -169,6 +177,7 @@ class _Modulo:
     def inverse_of_s(self) -> Numbers:
         return [-c / self.a[0] for c in self.a[1:]]
 
+    @cached_property
     def inverse_of_mirrored(self) -> Numbers:
         """1/a(-s) at the roots of a = e(s^2) + s o(s^2), where a(-s) = 2 e(s^2) = -2 s o(s^2).
 

@@ -332,9 +332,8 @@ def norms_in(
 ) -> bool:
     """Fill `result` with the norm of each output; False where it may be off by more than `_ACCURATE`.
 
-    What P leaves of A P + P A' + W = 0, A and B as they were before rounding, corrects all rounding at first order.
-    With the solution Q of A' Q + Q A + C' C = 0 for one output it changes the square by tr(Q rest), whose terms are
-    small where that can be believed.
+    What P leaves of A P + P A' + W = 0, A and B as they were before rounding, corrects all rounding at first order:
+    solved for once more it is what P lacks, whose share of a square has small terms where that can be believed.
     """
     closing, lyapunov, met, (W, P, Q, rest, lacks), CP = space
     if not close_twofold(closing, p, descriptor, twofold):
@@ -354,25 +353,36 @@ def norms_in(
 
 
 @part(borrowing=True)
-def unsure_of_drifts(A: Array, B: Array, met: Array, known: Array, Q: Array) -> float:
-    """What the error of what enters the states that drift, and of their covariance, changes: as many times that error.
+def unsure_of_road(matrices: Array, lyapunov: Array, known: Array, result: Array, Q: Array) -> float:
+    """Relative error of the squares that what each arrival meets has, and what enters the states that drift.
 
-    Q becomes zero between these states: nothing else enters there.
+    A change of what enters changes the squares by its product with Q of A' Q + Q A + C' C = 0, C over the norms.
     """
+    A, B, C, met = matrices
     drifts, walks = known
     n, m = B.shape
+    for i in range(n):
+        for j in range(n):
+            Q[i, j] = 0.0
+            for k in range(C.shape[0]):
+                Q[i, j] += (C[k, i] / result[k]) * (C[k, j] / result[k])
+    solve_symmetric(lyapunov, Q, True, Q)
     total = 0.0
     for i in range(drifts.size):
         for j in range(drifts.size):
-            size = abs(walks[i, j])
+            size = _ENTERED * abs(walks[i, j])
             total += size * abs(Q[drifts[i], drifts[j]])
             for k in range(n):
                 total += 2.0 * size * abs(Q[k, drifts[j]] * A[k, drifts[i]])
-            Q[drifts[i], drifts[j]] = 0.0
+            Q[drifts[i], drifts[j]] = 0.0  # nothing else enters there
         for k in range(n):
             for c in range(m):
-                size = abs(B[drifts[i], c]) * (abs(B[k, c]) + abs(met[0, c, k]))
+                size = _ENTERED * abs(B[drifts[i], c]) * (abs(B[k, c]) + abs(met[0, c, k]))
                 total += 2.0 * size * abs(Q[k, drifts[i]])
+    for i in range(n):
+        for j in range(n):
+            for c in range(1, m):
+                total += 2.0 * abs(Q[i, j]) * (met[1, c, i] * abs(B[j, c]))
     return total
 
 
@@ -433,36 +443,27 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
     found, limit = refine(matrices, (lost_A, lost_B), lyapunov, drifts, (W, P, rest, lacks))
     if not found:
         return False
-    Q[:, :] = 0.0
     terms, unsure = 0.0, 0.0
     for k in range(o):
         total, change, size, rounding = 0.0, 0.0, 0.0, 0.0
         for i in range(n):
-            CP[k, i], row, more = 0.0, 0.0, 0.0
+            CP[k, i], row, more, most = 0.0, 0.0, 0.0, 0.0
             for j in range(n):
                 CP[k, i] += P[i, j] * C[k, j]
                 more += lacks[i, j] * C[k, j]
+                most += abs(lacks[i, j] * C[k, j])
                 row += abs(P[i, j] * C[k, j])
             total += CP[k, i] * C[k, i]
             change += more * C[k, i] + 2.0 * CP[k, i] * lost_C[k, i]
-            size += 2.0 * abs(CP[k, i] * lost_C[k, i])
+            size += most * abs(C[k, i]) + 2.0 * abs(CP[k, i] * lost_C[k, i])
             rounding += n * _EPS * row * abs(C[k, i])
         if not total > 0.0:
             return False
         result[k] = np.sqrt(total + change)
         terms += size / total
         unsure += rounding / total
-        for i in range(n):
-            for j in range(n):
-                Q[i, j] += C[k, i] * C[k, j] / total
-    solve_symmetric(lyapunov, Q, True, Q)
-    if drifts.size > 0:
-        unsure += _ENTERED * unsure_of_drifts(A, B, met, known, Q)
-    for i in range(n):
-        for j in range(n):
-            terms += abs(Q[i, j] * rest[i, j])
-            for c in range(1, m):
-                unsure += 2.0 * abs(Q[i, j]) * (met[1, c, i] * abs(B[j, c]))
+    if m > 1 or drifts.size > 0:
+        unsure += unsure_of_road(matrices, lyapunov, known, result, Q)
     return terms <= min(_SMALL, limit) and unsure <= _ACCURATE
 
 

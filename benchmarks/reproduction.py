@@ -17,9 +17,9 @@ from collections import Counter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from inerter.files.study.workers import Crew
 from inerter.papers.wang_su_2008 import reproduce as paper
 from inerter.report.reproduction import write_reproduction
-from inerter.study.workers import Crew
 
 
 def main(only: tuple[str, ...]) -> None:

@@ -77,7 +77,7 @@ def test_a_corrected_numeric_makes_other_numbers(tmp_path: Path, monkeypatch: py
     for name, matters in {
         "kernels/h2.py": True,
         "norms/h2.py": True,
-        "study/cases.py": True,
+        "files/study/cases.py": True,
         "errors.py": True,
         "papers/data/wang-su-2008/table1.csv": True,
         "report/text.py": False,

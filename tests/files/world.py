@@ -14,11 +14,11 @@ from typing import Any
 from unittest.mock import patch
 
 from inerter.files.common.listing import MARK, digest, listing
+from inerter.files.identification.running import RESIDUALS, Identified
+from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import run_study
 from inerter.report.identification import write_fit
-from inerter.study.cases import Case, Outcome
-from inerter.study.file import load_study
-from inerter.study.identification_run import RESIDUALS, Identified
-from inerter.study.run import run_study
 from inerter.writing import write_text
 
 STUDY = """
@@ -117,14 +117,13 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
 
     The reproduction has its two linear studies, with the same folders and journals, and no simulated tasks.
     """
-    study = "inerter.study"
     paper = "inerter.papers.wang_su_2008.reproduce"
     with ExitStack() as stack:
 
         def change(place: str, by: object) -> None:
             stack.enter_context(patch(place, by))
 
-        change(f"{study}.workers.run_case", outcome)
+        change("inerter.files.study.workers.run_case", outcome)
         change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
         change(
             "inerter.cli.commands.write_report",

@@ -7,13 +7,13 @@ import csv
 import numpy as np
 import pytest
 
+from inerter.files.study.registry import INDEX
+from inerter.files.study.running import check_study
+from inerter.files.study.study import Study
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.linear import compare
 from inerter.papers.wang_su_2008.source import PrintedRow, linear_rows, study
-from inerter.study.registry import INDEX
-from inerter.study.run import check_study
-from inerter.study.values import Study
 
 ROWS = linear_rows()
 DESIGNS = [row for row in ROWS if row.table < 3]

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from inerter.errors import StudyError
+from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED, NEEDED, UNITS
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.request import SignalRequest, SimulationRequest, write_simulation
+from inerter.files.simulation.shape import INITIAL, SimulationSettings
+from inerter.files.study.study import StrutLayout
 from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
-from inerter.study.request import SignalRequest, SimulationRequest, write_simulation
-from inerter.study.signal_kinds import FORCES, KINDS, MOVED, NEEDED, UNITS
-from inerter.study.simulation_file import load_simulation
-from inerter.study.simulation_schema import INITIAL, SimulationSettings
-from inerter.study.values import StrutLayout
 from inerter.vehicle.cars import QuarterCar, Rig
 
 EXAMPLES = sorted(

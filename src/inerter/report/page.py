@@ -13,13 +13,13 @@ from markupsafe import Markup, escape
 
 from inerter.figures.labels import printed, swept_element, typeset
 from inerter.figures.study import study_figures
+from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.study import Study, write_resolved
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
 from inerter.report.findings import crossing_sentences, headlines
 from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
-from inerter.study.budgets import BudgetOutcome
-from inerter.study.values import Study, write_resolved
 from inerter.writing import write_text
 
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)

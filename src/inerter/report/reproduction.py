@@ -9,6 +9,8 @@ from pathlib import Path
 
 from inerter.figures import reproduction as drawn
 from inerter.figures.networks import draw_networks
+from inerter.files.study.running import FIGURES, REPORT
+from inerter.files.study.workers import Crew, crewed
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
 from inerter.networks.parser import network
 from inerter.papers.wang_su_2008.origins import origins
@@ -27,8 +29,6 @@ from inerter.report.reproduction_tables import (
     simulated_table,
 )
 from inerter.report.reproduction_text import agreement_of
-from inerter.study.run import FIGURES, REPORT
-from inerter.study.workers import Crew, crewed
 from inerter.writing import write_text
 
 Drawing = Callable[[], list[Path]]

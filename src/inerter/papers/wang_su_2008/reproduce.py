@@ -14,6 +14,8 @@ import xarray as xr
 from inerter.errors import StudyError
 from inerter.files.common.folder import Intent, Results, claimed
 from inerter.files.common.journal import Journal
+from inerter.files.study.running import FIGURES, NAMES, REPORT, StudyResult, run_study
+from inerter.files.study.workers import Crew, crewed
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
@@ -22,8 +24,6 @@ from inerter.papers.wang_su_2008.linear import Linear
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import KEY, study
-from inerter.study.run import FIGURES, NAMES, REPORT, StudyResult, run_study
-from inerter.study.workers import Crew, crewed
 
 JOURNAL = "tasks.jsonl"
 _PAPER = ("rig", "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import as_file, files
 
+from inerter.files.study.loading import load_study
+from inerter.files.study.registry import INDEX
+from inerter.files.study.study import Study
 from inerter.indices.index import Index, LoadCarrying
-from inerter.study.file import load_study
-from inerter.study.registry import INDEX
-from inerter.study.values import Study
 from inerter.vehicle.cars import Vehicle
 
 KEY = "wang-su-2008"

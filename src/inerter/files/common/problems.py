@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inerter.errors import StudyError
-from inerter.study.schema import SHAPES, Shape
-from inerter.study.suggest import nearest
+from inerter.files.common.suggest import nearest
+from inerter.files.study.shape import SHAPES, Shape
 from inerter.units import shown
 
 if TYPE_CHECKING:

@@ -9,14 +9,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from inerter.errors import InerterError, SimulationError
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED
+from inerter.files.common.suggest import nearest, some
+from inerter.files.simulation.request import SignalRequest, SimulationRequest
+from inerter.files.simulation.shape import SIMULATION_SHAPES, SimulationFile
+from inerter.files.study.loading import element_of, layout_problems, read_tables, struts_of
+from inerter.files.study.study import StrutLayout
 from inerter.simulation.inputs import whole_steps
-from inerter.study.file import element_of, layout_problems, read_tables, struts_of
-from inerter.study.problems import at, explain, refusal
-from inerter.study.request import SignalRequest, SimulationRequest
-from inerter.study.signal_kinds import FORCES, KINDS, MOVED
-from inerter.study.simulation_schema import SIMULATION_SHAPES, SimulationFile
-from inerter.study.suggest import nearest, some
-from inerter.study.values import StrutLayout
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
 from inerter.writing import characters

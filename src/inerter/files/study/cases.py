@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import OK, InerterError, Status, StatusKind
+from inerter.files.study.registry import INDEX, method_of
+from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
-from inerter.study.registry import INDEX, method_of
-from inerter.study.values import Study
 from inerter.systems.descriptor import is_held_by_springs
 from inerter.systems.graph import linear_graph
 from inerter.vehicle.mechanism import Mechanism

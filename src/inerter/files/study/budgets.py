@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import StatusKind
+from inerter.files.study.cases import FAILURES, Case, Outcome
+from inerter.files.study.method_problems import budget_method
+from inerter.files.study.registry import INDEX, method_of
+from inerter.files.study.study import Study, elements_used
 from inerter.networks.elements import Free, Friction, Gap
 from inerter.optimisation.budget import Budget, budget
 from inerter.optimisation.threads import one_blas_thread
-from inerter.study.cases import FAILURES, Case, Outcome
-from inerter.study.method_problems import budget_method
-from inerter.study.registry import INDEX, method_of
-from inerter.study.values import Study, elements_used
 
 _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 

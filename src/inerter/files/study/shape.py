@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, PlainValidator, Tag, model_validator
 
-from inerter.study.entries import (
+from inerter.files.common.entries import (
     MOST_POINTS,
     Amount,
     amount,

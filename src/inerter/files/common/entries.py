@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 from pydantic import PlainValidator
 
 from inerter.errors import UnitError
+from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME
-from inerter.study.suggest import nearest
 from inerter.units import format_quantity, parse_element, parse_quantity, shown
 
 MOST_POINTS = 10_000

@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from inerter.files.study.study import Study
 from inerter.indices.index import Index, LoadCarrying, RideComfort, TyreLoad
 from inerter.methods.method import Method
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
-from inerter.study.values import Study
 
 INDEX: dict[str, Callable[[Study], Index]] = {
     "J1": lambda study: RideComfort(study.road),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import InerterError, RecordError
+from inerter.files.identification.loading import CUSTOM, IdentificationRequest, RecordRequest
 from inerter.identification.choice import choose
 from inerter.identification.fit import Comparison, Fit
 from inerter.identification.hypotheses import DELAY, GAIN
@@ -25,7 +26,6 @@ from inerter.records.readers import read_record
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
-from inerter.study.identification_file import CUSTOM, IdentificationRequest, RecordRequest
 from inerter.vehicle.cars import Rig
 
 Progress = Callable[[float], None]

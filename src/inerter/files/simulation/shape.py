@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, PlainValidator, Tag, create_model
 
-from inerter.study.entries import Amount, fixed_amount, one_of, positive, text, whole, yes_or_no
-from inerter.study.schema import (
+from inerter.files.common.entries import Amount, fixed_amount, one_of, positive, text, whole, yes_or_no
+from inerter.files.common.signal_kinds import KINDS, NEEDED, UNITS, unit_of
+from inerter.files.study.shape import (
     MODELS,
     RIG,
     SHAPES,
@@ -21,7 +22,6 @@ from inerter.study.schema import (
     Shape,
     model_tag,
 )
-from inerter.study.signal_kinds import KINDS, NEEDED, UNITS, unit_of
 
 INTEGRATORS = ("event-driven", "time-stepping")
 INITIAL = ("rest", "preload", "periodic")

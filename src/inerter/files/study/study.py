@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
+from inerter.files.common.suggest import nearest
+from inerter.files.study.shape import UNITS
 from inerter.networks.elements import Element, Free
 from inerter.networks.parser import names, network
 from inerter.signals.road import Road
-from inerter.study.schema import UNITS
-from inerter.study.suggest import nearest
 from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
 
 MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear"), "rig": ("device",)}

@@ -6,11 +6,11 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator
 
+from inerter.files.common.entries import expression, not_negative, one_of, positive, text, whole, yes_or_no
+from inerter.files.common.suggest import nearest
+from inerter.files.study.shape import ElementEntry, ElementName, Range, Shape
 from inerter.identification.models import MODELS
 from inerter.records.record import CHANNELS
-from inerter.study.entries import expression, not_negative, one_of, positive, text, whole, yes_or_no
-from inerter.study.schema import ElementEntry, ElementName, Range, Shape
-from inerter.study.suggest import nearest
 from inerter.units import parse_quantity, shown
 
 CHOOSE = "choose"  # between all models

@@ -10,11 +10,7 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator, ValidationError
 
 from inerter.errors import InerterError, StudyError
-from inerter.identification.virtual_rig import VirtualRig
-from inerter.networks.elements import Element
-from inerter.networks.parser import network
-from inerter.records.record import Record
-from inerter.study.entries import (
+from inerter.files.common.entries import (
     Amount,
     fixed_amount,
     not_negative,
@@ -25,14 +21,18 @@ from inerter.study.entries import (
     whole,
     yes_or_no,
 )
-from inerter.study.file import element_of, layout_problems, read_tables, struts_of
-from inerter.study.problems import at, explain, refusal
-from inerter.study.request import SignalRequest
-from inerter.study.schema import RIG, ElementName, Layouts, Shape
-from inerter.study.signal_kinds import KINDS, MOVED
-from inerter.study.simulation_file import chosen_layout, signal_of
-from inerter.study.simulation_schema import SIMULATION_SHAPES, SignalEntry
-from inerter.study.values import StrutLayout
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.signal_kinds import KINDS, MOVED
+from inerter.files.simulation.loading import chosen_layout, signal_of
+from inerter.files.simulation.request import SignalRequest
+from inerter.files.simulation.shape import SIMULATION_SHAPES, SignalEntry
+from inerter.files.study.loading import element_of, layout_problems, read_tables, struts_of
+from inerter.files.study.shape import RIG, ElementName, Layouts, Shape
+from inerter.files.study.study import StrutLayout
+from inerter.identification.virtual_rig import VirtualRig
+from inerter.networks.elements import Element
+from inerter.networks.parser import network
+from inerter.records.record import Record
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
 from inerter.vehicle.cars import Rig

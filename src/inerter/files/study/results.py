@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 import inerter
 from inerter.errors import LinearSystemError, MechanismError
+from inerter.files.study.cases import Case, Outcome, cases
+from inerter.files.study.registry import INDEX
+from inerter.files.study.study import Study
 from inerter.methods.compare import difference_of
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Estimate
 from inerter.networks.elements import Free
 from inerter.norms.response import frequency_response
-from inerter.study.cases import Case, Outcome, cases
-from inerter.study.registry import INDEX
-from inerter.study.values import Study
 from inerter.systems.descriptor import close
 
 Array = NDArray[np.float64]

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 from pydantic import PlainValidator
 
+from inerter.files.common.entries import one_of, positive, quantity, text, whole, yes_or_no
 from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
 from inerter.signals.records import held_noise, profile, recorded
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
 from inerter.signals.transients import bump, chirp, step
-from inerter.study.entries import one_of, positive, quantity, text, whole, yes_or_no
 
 NEEDED: Any = ...
 MOVED = {

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from inerter.errors import StudyError
 from inerter.files.common.journal import Entry, Journal
-from inerter.study.budgets import BudgetCase, BudgetOutcome
-from inerter.study.cases import Case, Outcome
-from inerter.study.values import Study
+from inerter.files.study.budgets import BudgetCase, BudgetOutcome
+from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.study import Study
 
 NAME = "journal.jsonl"
 Done = dict[Case, Outcome]

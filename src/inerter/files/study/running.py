@@ -13,18 +13,18 @@ import xarray as xr
 from inerter.errors import InerterError, StatusKind
 from inerter.files.common.folder import Intent, Results, claimed
 from inerter.files.common.origin import versions
+from inerter.files.common.problems import at, refusal
+from inerter.files.common.suggest import some
+from inerter.files.study import journal as journals
+from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
+from inerter.files.study.cases import Outcome, cases, design_notes
+from inerter.files.study.registry import INDEX, METHOD
+from inerter.files.study.results import dataset, summary_csv
+from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.workers import Crew, crewed, run_all
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.networks.parser import names
 from inerter.optimisation.optimise import check_variables
-from inerter.study import journal as journals
-from inerter.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
-from inerter.study.cases import Outcome, cases, design_notes
-from inerter.study.problems import at, refusal
-from inerter.study.registry import INDEX, METHOD
-from inerter.study.results import dataset, summary_csv
-from inerter.study.suggest import some
-from inerter.study.values import Study, write_resolved
-from inerter.study.workers import Crew, crewed, run_all
 from inerter.vehicle.cars import Vehicle
 from inerter.writing import write_netcdf, write_text
 

@@ -12,11 +12,11 @@ import numpy as np
 from inerter.errors import InerterError, StudyError
 from inerter.files.common.folder import Intent, claimed
 from inerter.files.common.origin import versions
+from inerter.files.common.problems import at
+from inerter.files.simulation.request import SimulationRequest, write_simulation
+from inerter.files.study.running import FIGURES
 from inerter.networks.elements import Friction, Gap, Inerter
 from inerter.simulation.trajectory import Trajectory
-from inerter.study.problems import at
-from inerter.study.request import SimulationRequest, write_simulation
-from inerter.study.run import FIGURES
 from inerter.systems.graph import full_graph
 from inerter.vehicle.mechanism import Mechanism
 from inerter.writing import write_netcdf, write_text

@@ -17,8 +17,8 @@ from multiprocessing.process import BaseProcess
 from typing import TypeVar
 
 from inerter.errors import WorkError
-from inerter.study.cases import Case, Outcome, run_case
-from inerter.study.values import Study
+from inerter.files.study.cases import Case, Outcome, run_case
+from inerter.files.study.study import Study
 from inerter.writing import undisturbed
 
 Item = TypeVar("Item")

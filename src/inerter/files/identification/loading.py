@@ -10,14 +10,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from inerter.errors import InerterError, StudyError
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.suggest import nearest
+from inerter.files.identification.shape import CHOOSE, IDENTIFICATION_SHAPES, IdentificationFile
+from inerter.files.study.loading import element_of, network_problems, read_tables
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.parser import names, network
 from inerter.networks.transform import map_elements
-from inerter.study.file import element_of, network_problems, read_tables
-from inerter.study.identification_schema import CHOOSE, IDENTIFICATION_SHAPES, IdentificationFile
-from inerter.study.problems import at, explain, refusal
-from inerter.study.suggest import nearest
 from inerter.units import shown
 from inerter.vehicle.cars import Rig
 

@@ -12,15 +12,15 @@ import numpy as np
 from pydantic import ValidationError
 
 from inerter.errors import NetworkError, StudyError
+from inerter.files.common.entries import Amount
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.suggest import nearest, some
+from inerter.files.study.method_problems import method_problems
+from inerter.files.study.shape import Axles, Range, StudyFile, SweepRange
+from inerter.files.study.study import MOUNTS, StrutLayout, Study, Sweep, elements_used, write_resolved
 from inerter.networks.elements import ELEMENT_TYPES, Element, Free, Value
 from inerter.networks.parser import names, network
 from inerter.signals.road import Road
-from inerter.study.entries import Amount
-from inerter.study.method_problems import method_problems
-from inerter.study.problems import at, explain, refusal
-from inerter.study.schema import Axles, Range, StudyFile, SweepRange
-from inerter.study.suggest import nearest, some
-from inerter.study.values import MOUNTS, StrutLayout, Study, Sweep, elements_used, write_resolved
 from inerter.units import shown
 from inerter.writing import characters
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from inerter.files.common.problems import at
+from inerter.files.common.suggest import nearest, some
+from inerter.files.study.shape import AVERAGING, FORCED
+from inerter.files.study.study import Study, elements_used
 from inerter.networks.elements import Friction, Gap
-from inerter.study.problems import at
-from inerter.study.schema import AVERAGING, FORCED
-from inerter.study.suggest import nearest, some
-from inerter.study.values import Study, elements_used
 from inerter.units import shown
 
 _BLIND = "norm"  # the method that sees neither friction nor gaps

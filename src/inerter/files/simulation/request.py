@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from inerter.files.common.signal_kinds import KINDS, unit_of
+from inerter.files.study.study import StrutLayout, as_toml, element_entry, in_si
 from inerter.networks.elements import Element
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
 from inerter.simulation.trajectory import Trajectory
-from inerter.study.signal_kinds import KINDS, unit_of
-from inerter.study.values import StrutLayout, as_toml, element_entry, in_si
 from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
 
 

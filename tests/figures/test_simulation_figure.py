@@ -11,9 +11,9 @@ from matplotlib.colors import to_hex
 from inerter.errors import StudyError
 from inerter.figures.simulation import draw_simulation, panels, readable_window, simulation_figure
 from inerter.figures.style import styled
+from inerter.files.common.layouts import StrutLayout
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.running import SimulationResult
-from inerter.files.study.study import StrutLayout
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -17,10 +17,11 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import progress, steps
 from inerter.errors import StatusKind, StudyError
 from inerter.figures.study import draw_study
+from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.common.suggest import some
 from inerter.files.study.budgets import budget_cases
 from inerter.files.study.loading import load_study
-from inerter.files.study.running import FIGURES, REPORT, SUMMARY, StudyResult, check_study, run_study, study_notes
+from inerter.files.study.running import SUMMARY, StudyResult, check_study, run_study, study_notes
 from inerter.papers.wang_su_2008.source import KEY
 from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines

@@ -12,11 +12,10 @@ from typing import Any
 from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
-from inerter.files.common.folder import Intent, claimed
+from inerter.files.common.folder import REPORT, Intent, claimed
 from inerter.files.identification.loading import IdentificationRequest, RecordRequest, load_identification
 from inerter.files.identification.running import FIT, read, run_identification
 from inerter.files.identification.shape import channel_units, gap_treatment
-from inerter.files.study.running import REPORT
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import as_options, identification_text

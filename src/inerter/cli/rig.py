@@ -8,7 +8,8 @@ from pathlib import Path
 from inerter.cli.interrupts import interruptible
 from inerter.errors import StudyError
 from inerter.files.common.folder import check_single, single
-from inerter.files.rig.loading import load_rig, record_of
+from inerter.files.rig.loading import load_rig
+from inerter.files.rig.running import record_of
 from inerter.records.writers import WRITERS, write_record
 from inerter.report.rig import rig_text
 

@@ -11,10 +11,10 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.errors import StudyError
 from inerter.figures.simulation import Window, draw_simulation, readable_window
+from inerter.files.common.folder import FIGURES
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.running import SimulationResult, run_simulation
-from inerter.files.study.running import FIGURES
 from inerter.report.simulation import simulation_data, simulation_text
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inerter.figures.identification import draw
+from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.common.origin import versions
 from inerter.files.identification.running import FIT, RESIDUALS, Identified, model_title, responses
-from inerter.files.study.running import FIGURES, REPORT
 from inerter.networks.parser import written
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures

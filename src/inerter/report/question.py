@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import capital, index_title, indices
-from inerter.files.study.shape import UNITS
+from inerter.files.common.shape import UNITS
 from inerter.files.study.study import Study
 from inerter.networks.elements import Element, Free
 from inerter.units import ELEMENT_UNITS, format_quantity

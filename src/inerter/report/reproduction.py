@@ -9,7 +9,7 @@ from pathlib import Path
 
 from inerter.figures import reproduction as drawn
 from inerter.figures.networks import draw_networks
-from inerter.files.study.running import FIGURES, REPORT
+from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.workers import Crew, crewed
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
 from inerter.networks.parser import network

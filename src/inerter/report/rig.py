@@ -8,7 +8,7 @@ from textwrap import wrap
 import numpy as np
 
 from inerter.figures.labels import quantity
-from inerter.files.rig.loading import RigRequest
+from inerter.files.rig.running import RigRequest
 from inerter.records.record import Record
 from inerter.report.text import WIDTH
 

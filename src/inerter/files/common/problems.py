@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inerter.errors import StudyError
+from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest
-from inerter.files.study.shape import SHAPES, Shape
 from inerter.units import shown
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def at(place: Iterable[str], sentence: str) -> str:
     return f"{keys}: {sentence[0].lower()}{sentence[1:]}"
 
 
-def explain(error: ValidationError, shapes: Shapes = SHAPES) -> Iterator[str]:
+def explain(error: ValidationError, shapes: Shapes) -> Iterator[str]:
     """The problems that the shape of the file has; `shapes` are all its tables, by their place."""
     for detail in error.errors(include_url=False):
         place = tuple(str(part) for part in detail["loc"])

@@ -10,10 +10,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from inerter.errors import InerterError, StudyError
+from inerter.files.common.layouts import element_of, network_problems
 from inerter.files.common.problems import at, explain, refusal
 from inerter.files.common.suggest import nearest
-from inerter.files.identification.shape import CHOOSE, IDENTIFICATION_SHAPES, IdentificationFile
-from inerter.files.study.loading import element_of, network_problems, read_tables
+from inerter.files.common.toml import read_tables
+from inerter.files.identification.shape import CHOOSE, SHAPES, IdentificationFile
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.parser import names, network
@@ -91,7 +92,7 @@ def load_identification(path: str | Path) -> IdentificationRequest:
     try:
         shape = IdentificationFile.model_validate(tables)
     except ValidationError as error:
-        raise refusal(path, explain(error, IDENTIFICATION_SHAPES)) from None
+        raise refusal(path, explain(error, SHAPES)) from None
     record, settings = shape.record.model_dump(), shape.fit.model_dump()
     roles = ("displacement", "force", "time", "velocity", "acceleration")
     channels = {role: value for role in roles if (value := record.pop(role)) is not None}

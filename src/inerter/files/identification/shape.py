@@ -7,8 +7,8 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator
 
 from inerter.files.common.entries import expression, not_negative, one_of, positive, text, whole, yes_or_no
+from inerter.files.common.shape import ElementEntry, ElementName, Range, Shape
 from inerter.files.common.suggest import nearest
-from inerter.files.study.shape import ElementEntry, ElementName, Range, Shape
 from inerter.identification.models import MODELS
 from inerter.records.record import CHANNELS
 from inerter.units import parse_quantity, shown
@@ -124,7 +124,7 @@ class IdentificationFile(Shape):
     fit: FitShape = Field(default_factory=FitShape, examples=["a section [fit] with seed = 0"])
 
 
-IDENTIFICATION_SHAPES: dict[tuple[str, ...], type[Shape]] = {
+SHAPES: dict[tuple[str, ...], type[Shape]] = {
     (): IdentificationFile,
     ("record",): RecordShape,
     ("model",): ModelShape,

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 
 from inerter.errors import InerterError, SimulationError
+from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
 from inerter.files.common.problems import at, explain, refusal
 from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED
+from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
-from inerter.files.simulation.request import SignalRequest, SimulationRequest
-from inerter.files.simulation.shape import SIMULATION_SHAPES, SimulationFile
-from inerter.files.study.loading import element_of, layout_problems, read_tables, struts_of
-from inerter.files.study.study import StrutLayout
+from inerter.files.common.toml import read_tables
+from inerter.files.simulation.request import SimulationRequest
+from inerter.files.simulation.shape import SHAPES, SimulationFile
 from inerter.simulation.inputs import whole_steps
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
@@ -32,7 +32,7 @@ def load_simulation(path: str | Path) -> SimulationRequest:
     try:
         shape = SimulationFile.model_validate(tables)
     except ValidationError as error:
-        raise refusal(path, explain(error, SIMULATION_SHAPES)) from None
+        raise refusal(path, explain(error, SHAPES)) from None
     request = _resolve(path, shape)
     for check in (_names, _needs, _parts):
         problems = list(check(request))
@@ -61,24 +61,6 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
         layout="" if chosen is None else chosen,
         **settings,
     )
-
-
-def signal_of(path: Path, model: str, entry: dict[str, Any]) -> SignalRequest:
-    """The signal that a section [signal] asks for; its file is looked for beside that at `path`."""
-    values = dict(entry)
-    kind, moved = values.pop("kind"), values.pop("input") or MOVED[model]
-    if "file" in values:
-        values["file"] = str((path.parent / values["file"]).absolute())
-    return SignalRequest(kind, moved, values)
-
-
-def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[str]:
-    """What is wrong with the layout that a section chooses."""
-    layouts = some(known)
-    if not layout:
-        yield at((section, "layout"), f"missing, but there are several layouts; expected one of {layouts}.")
-    elif layout not in known:
-        yield at((section, "layout"), f"got {shown(layout)}; expected one of {layouts}.{nearest(layout, known)}")
 
 
 def _names(request: SimulationRequest) -> Iterator[str]:

@@ -7,51 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from inerter.files.common.signal_kinds import KINDS, unit_of
-from inerter.files.study.study import StrutLayout, as_toml, element_entry, in_si
+from inerter.files.common.layouts import StrutLayout, element_entry, in_si
+from inerter.files.common.signals import SignalRequest
+from inerter.files.common.toml import as_toml
 from inerter.networks.elements import Element
-from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
 from inerter.simulation.trajectory import Trajectory
 from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
-
-
-@dataclass(frozen=True)
-class SignalRequest:
-    """A signal by its kind, what it moves, and the values of the kind's keys."""
-
-    kind: str
-    input: str
-    values: dict[str, Any]
-
-    @property
-    def unit(self) -> str:
-        """Of the signal: m, N or N m."""
-        return unit_of(self.input)
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Of the values; empty for what has none."""
-        return {name: key.of(self.unit).unit for name, key in KINDS[self.kind].keys.items()}
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """The files that it is read from."""
-        return (Path(self.values["file"]),) if "file" in self.values else ()
-
-    def make(self, speed: float | None = None, roughness: float | None = None) -> Signal:
-        """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
-        kind = KINDS[self.kind]
-        road = None if speed is None or roughness is None else Road(roughness, speed)
-        known = {"road": road, "speed": speed, "unit": self.unit}
-        return kind.make(**self.values, **{name: known[name] for name in kind.given})
-
-    def resolved(self) -> dict[str, Any]:
-        """How a file says it, in SI units."""
-        units = self.units
-        values = {name: f"{v!r} {units[name]}" if units[name] else v for name, v in self.values.items()}
-        return {"kind": self.kind, "input": self.input, **values}
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from inerter.errors import InerterError, StudyError
-from inerter.files.common.folder import Intent, claimed
+from inerter.files.common.folder import FIGURES, Intent, claimed
 from inerter.files.common.origin import versions
 from inerter.files.common.problems import at
 from inerter.files.simulation.request import SimulationRequest, write_simulation
-from inerter.files.study.running import FIGURES
 from inerter.networks.elements import Friction, Gap, Inerter
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.graph import full_graph

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from functools import reduce
-from operator import or_
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, PlainValidator, Tag, create_model
+from pydantic import ConfigDict, Discriminator, Field, PlainValidator, Tag
 
 from inerter.files.common.entries import Amount, fixed_amount, one_of, positive, text, whole, yes_or_no
-from inerter.files.common.signal_kinds import KINDS, NEEDED, UNITS, unit_of
-from inerter.files.study.shape import (
+from inerter.files.common.shape import (
     MODELS,
     RIG,
-    SHAPES,
     Axles,
     ElementName,
     HalfCarShape,
@@ -22,6 +18,7 @@ from inerter.files.study.shape import (
     Shape,
     model_tag,
 )
+from inerter.files.common.signals import SIGNAL_SHAPES, SignalEntry
 
 INTEGRATORS = ("event-driven", "time-stepping")
 INITIAL = ("rest", "preload", "periodic")
@@ -62,41 +59,6 @@ class PassedRoad(Shape):
     roughness: Annotated[float | None, positive("m^3/cycle")] = None
 
 
-class AnySignal(Shape):
-    """A signal whose kind is missing or unknown: nothing more can be said about its keys."""
-
-    model_config = ConfigDict(extra="ignore")
-    kind: Annotated[str, PlainValidator(one_of("a kind of signal", tuple(KINDS)))] = Field(
-        examples=['kind = "multisine"']
-    )
-
-
-def _signal_shape(kind: str, unit: str) -> type[Shape]:
-    keys = {name: key.of(unit) for name, key in KINDS[kind].keys.items()}
-    fields: dict[str, Any] = {
-        name: (Annotated[Any, key.check(key.unit)], Field(default=key.default, examples=[key.example]))
-        for name, key in keys.items()
-    }
-    fields["kind"] = (Literal[kind], NEEDED)
-    fields["input"] = (Annotated[str | None, PlainValidator(text)], None)
-    return create_model(f"{kind} in {unit}", __base__=Shape, **fields)
-
-
-def _signal_tag(signal: Any) -> str:
-    kind = signal.get("kind") if isinstance(signal, dict) else None
-    return f"<{kind} in {unit_of(signal.get('input'))}>" if isinstance(kind, str) and kind in KINDS else "<any>"
-
-
-_SIGNALS = {f"<{kind} in {unit}>": _signal_shape(kind, unit) for kind in KINDS for unit in UNITS}
-if TYPE_CHECKING:
-    SignalEntry = Shape
-else:
-    SignalEntry = Annotated[
-        reduce(or_, (Annotated[shape, Tag(tag)] for tag, shape in {"<any>": AnySignal, **_SIGNALS}.items())),
-        Discriminator(_signal_tag),
-    ]
-
-
 class SimulationSettings(Shape):
     """How the motion is computed, and what is kept of it."""
 
@@ -125,14 +87,14 @@ class SimulationFile(Shape):
     simulation: SimulationSettings = Field(examples=['a section [simulation] with duration = "10 s"'])
 
 
-SIMULATION_SHAPES: dict[tuple[str, ...], type[Shape]] = {
-    **{place: SHAPES[place] for place in (("vehicle", "<quarter-car>"), ("vehicle", "<half-car>"))},
+SHAPES: dict[tuple[str, ...], type[Shape]] = {
+    ("vehicle", "<quarter-car>"): QuarterCarShape,
+    ("vehicle", "<half-car>"): HalfCarShape,
     (): SimulationFile,
     ("vehicle", "<any>"): AnyVehicle,
     ("vehicle", "<rig>"): RigShape,
     ("road",): PassedRoad,
     ("layouts", "*", "<axles>"): Axles,
-    ("signal", "<any>"): AnySignal,
-    **{("signal", tag): shape for tag, shape in _SIGNALS.items()},
+    **SIGNAL_SHAPES,
     ("simulation",): SimulationSettings,
 }

@@ -2,33 +2,24 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
-from inerter.errors import NetworkError, StudyError
 from inerter.files.common.entries import Amount
+from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
 from inerter.files.common.problems import at, explain, refusal
 from inerter.files.common.suggest import nearest, some
+from inerter.files.common.toml import read_tables
 from inerter.files.study.method_problems import method_problems
-from inerter.files.study.shape import Axles, Range, StudyFile, SweepRange
-from inerter.files.study.study import MOUNTS, StrutLayout, Study, Sweep, elements_used, write_resolved
-from inerter.networks.elements import ELEMENT_TYPES, Element, Free, Value
-from inerter.networks.parser import names, network
+from inerter.files.study.shape import SHAPES, StudyFile, SweepRange
+from inerter.files.study.study import Study, Sweep, elements_used
+from inerter.networks.elements import Free
 from inerter.signals.road import Road
 from inerter.units import shown
 from inerter.writing import characters
-
-__all__ = ["StrutLayout", "Study", "Sweep", "load_study", "write_resolved"]
-
-_LARGEST = 1_000_000  # bytes
-_POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
-_KINDS: dict[str, Callable[[Value, str], Element]] = {kind.unit: kind for kind in ELEMENT_TYPES}
 
 
 def load_study(path: str | Path) -> Study:
@@ -37,11 +28,11 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    tables = read_tables(path)
+    tables = read_tables(path, "a study file")
     try:
         shape = StudyFile.model_validate(tables)
     except ValidationError as error:
-        raise refusal(path, explain(error)) from None
+        raise refusal(path, explain(error, SHAPES)) from None
     study = _resolve(path, shape)
     problems = [
         *layout_problems(study.model, study.elements, study.layouts),
@@ -54,45 +45,6 @@ def load_study(path: str | Path) -> Study:
     if problems:
         raise refusal(path, problems)
     return study
-
-
-def read_tables(path: Path, what: str = "a study file") -> dict[str, Any]:
-    """The tables of a TOML file; `what` it should be is for messages.
-
-    Raises `StudyError` for a file that cannot be read, or is no TOML.
-    """
-    if path.is_dir():
-        raise StudyError(f"{path}: this is a folder; expected {what}. Give the path of a .toml file in it.")
-    try:
-        with path.open("rb") as stream:
-            data = stream.read(_LARGEST + 1)
-    except FileNotFoundError:
-        raise StudyError(f"{path}: there is no such file; expected {what}. Check the path.") from None
-    except OSError as error:
-        raise StudyError(f"{path}: cannot be read ({error.strerror}); expected {what}.") from None
-    if len(data) > _LARGEST:
-        raise refusal(path, [f"larger than {_LARGEST} bytes; expected {what}, which is a page of TOML."])
-    try:
-        return tomllib.loads(data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise refusal(path, [f"line {line}: not UTF-8 text; save the file with the encoding UTF-8."]) from None
-    except tomllib.TOMLDecodeError as error:
-        raise refusal(path, [_syntax_problem(str(error), data)]) from None
-    except (RecursionError, ValueError):  # thousands of brackets, or of digits in a whole number
-        raise refusal(path, [f"not {what}: brackets nested too deeply, or a number too long."]) from None
-
-
-def _syntax_problem(message: str, data: bytes) -> str:
-    """Tomllib's message with its position in front and a hint for the two most frequent causes."""
-    position = _POSITION.search(message)
-    lines = data.decode("utf-8-sig").split("\n")
-    line, column = position.groups() if position else (None, None)
-    where = f"line {line or len(lines)}, column {column or len(lines[-1]) + 1}"
-    what = _POSITION.sub("", message)
-    if what.startswith(("Cannot", "Duplicate")):
-        return f"{where}: a key or section is given twice ({what}); expected each once. Rename or remove one."
-    return f'{where}: not valid TOML ({what}); quantities, names and networks are quoted, such as k = "120 kN/m".'
 
 
 def _resolve(path: Path, shape: StudyFile) -> Study:
@@ -126,56 +78,12 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
     )
 
 
-def struts_of(model: str, entry: Axles | str) -> dict[str, str]:
-    """The network of every mount."""
-    return entry.model_dump() if isinstance(entry, Axles) else dict.fromkeys(MOUNTS[model], entry)
-
-
-def element_of(name: str, entry: Range | Amount) -> Element:
-    """The element that the unit of its value tells."""
-    if isinstance(entry, Range):
-        return _KINDS[entry.lower.unit](Free(entry.lower.value, entry.upper.value, name), name)
-    return _KINDS[entry.unit](entry.value, name)
-
-
 def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
     if not isinstance(entry, SweepRange):
         return Sweep(name, tuple(amount.value for amount in entry), entry[0].unit)
     space = np.geomspace if entry.spacing == "log" else np.linspace
     values = space(entry.lower.value, entry.upper.value, entry.points)
     return Sweep(name, tuple(float(value) for value in values), entry.lower.unit)
-
-
-def layout_problems(model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[str]:
-    """What is wrong with layouts: networks that cannot be, and elements that are not there."""
-    for name, layout in layouts.items():
-        if tuple(layout.struts) != MOUNTS[model]:
-            yield at(
-                ("layouts", name),
-                f"got a table; a {model.replace('-', ' ')} has one {MOUNTS[model][0]}, so expected its network in "
-                f"quotes, such as {shown(next(iter(layout.struts.values())))}.",
-            )
-            continue
-        alike = len(set(layout.struts.values())) == 1
-        for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
-            place = ("layouts", name) if alike else ("layouts", name, mount)
-            yield from (at(place, problem) for problem in network_problems(expression, elements))
-
-
-def network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:
-    """What is wrong with one network: its syntax, or elements that are not there."""
-    try:
-        unknown = [name for name in names(expression) if name not in elements]
-        for name in unknown:
-            defined = some(elements)
-            yield (
-                f"got {shown(expression)}: {shown(name)} is not in [elements], where there are {defined}"
-                f".{nearest(name, elements)}"
-            )
-        if not unknown:
-            network(expression, **elements)
-    except NetworkError as error:
-        yield str(error)
 
 
 def _sweep_problems(study: Study) -> Iterator[str]:

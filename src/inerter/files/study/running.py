@@ -11,7 +11,7 @@ from pathlib import Path
 import xarray as xr
 
 from inerter.errors import InerterError, StatusKind
-from inerter.files.common.folder import Intent, Results, claimed
+from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.common.origin import versions
 from inerter.files.common.problems import at, refusal
 from inerter.files.common.suggest import some
@@ -30,7 +30,6 @@ from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
 BUDGETS = "budgets.csv"
-FIGURES, REPORT = "figures", "report.html"
 NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, VERSIONS, f"{FIGURES}/", REPORT)
 _ANSWERS = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)  # better at every value is an answer too
 Progress = Callable[[int, int, Outcome | BudgetOutcome | None], None]

@@ -2,43 +2,18 @@
 
 from __future__ import annotations
 
-import json
-import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
+from inerter.files.common.layouts import StrutLayout, element_entry, in_si
 from inerter.files.common.suggest import nearest
-from inerter.files.study.shape import UNITS
-from inerter.networks.elements import Element, Free
-from inerter.networks.parser import names, network
+from inerter.files.common.toml import as_toml
+from inerter.networks.elements import Element
+from inerter.networks.parser import names
 from inerter.signals.road import Road
 from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
-
-MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear"), "rig": ("device",)}
-_CARS: dict[str, type[QuarterCar | HalfCar | Rig]] = {"quarter-car": QuarterCar, "half-car": HalfCar, "rig": Rig}
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
-
-
-@dataclass(frozen=True)
-class StrutLayout:
-    """The network of every mount of the vehicle, as an expression: `strut`, or `front` and `rear`."""
-
-    struts: dict[str, str]
-
-    def design(
-        self, model: str, vehicle: Mapping[str, float], elements: Mapping[str, Element]
-    ) -> QuarterCar | HalfCar | Rig:
-        """The vehicle with these struts, made of `elements`."""
-        mounted = {mount: network(text, **elements) for mount, text in self.struts.items()}
-        arguments: dict[str, Any] = {**vehicle, **mounted}
-        return _CARS[model](**arguments)
-
-    def entry(self) -> str | dict[str, str]:
-        """How a file says it."""
-        return dict(self.struts) if len(self.struts) > 1 else next(iter(self.struts.values()))
 
 
 @dataclass(frozen=True)
@@ -149,43 +124,3 @@ def _names(expression: str) -> tuple[str, ...]:
 def write_resolved(study: Study) -> str:
     """`study.resolved()` as TOML. `load_study` reads an equal study from it, to the last bit of every value."""
     return as_toml(study.resolved())
-
-
-def as_toml(tables: Mapping[str, Any]) -> str:
-    """TOML text: keys that hold a value, then a section for each dictionary."""
-    lines = [f"{key} = {_toml(value)}" for key, value in tables.items() if not isinstance(value, dict)]
-    for section, table in tables.items():
-        if isinstance(table, dict):
-            lines += ["", f"[{section}]", *(f"{_key(key)} = {_toml(value)}" for key, value in table.items())]
-    return "\n".join(lines) + "\n"
-
-
-def in_si(key: str, value: float) -> str:
-    """The text of a quantity, in the SI unit of its key."""
-    return f"{value!r} {UNITS[key]}"  # repr is the shortest text that reads back as the same number
-
-
-def element_entry(element: Element) -> str | dict[str, str]:
-    """How a file says an element's value or range."""
-    value = element.value
-    if isinstance(value, Free):
-        return {"from": f"{value.lower!r} {element.unit}", "to": f"{value.upper!r} {element.unit}"}
-    return f"{value!r} {element.unit}"
-
-
-def _toml(value: object) -> str:
-    match value:
-        case dict():
-            return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
-        case list():
-            return "[" + ", ".join(_toml(item) for item in value) + "]"
-        case bool():
-            return str(value).lower()
-        case str():
-            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON leaves DEL, TOML may not
-        case _:
-            return str(value)
-
-
-def _key(key: str) -> str:
-    return key if _BARE_KEY.fullmatch(key) else _toml(key)

@@ -12,9 +12,9 @@ from typing import Any
 import xarray as xr
 
 from inerter.errors import StudyError
-from inerter.files.common.folder import Intent, Results, claimed
+from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.common.journal import Journal
-from inerter.files.study.running import FIGURES, NAMES, REPORT, StudyResult, run_study
+from inerter.files.study.running import NAMES, StudyResult, run_study
 from inerter.files.study.workers import Crew, crewed
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows

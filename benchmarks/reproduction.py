@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 
 from inerter.files.study.workers import Crew
 from inerter.papers.wang_su_2008 import reproduce as paper
-from inerter.report.reproduction import write_reproduction
+from inerter.papers.wang_su_2008.report.page import write_reproduction
 
 
 def main(only: tuple[str, ...]) -> None:

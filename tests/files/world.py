@@ -134,7 +134,7 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
         change("inerter.cli.identify.write_fit", fit)
         if identified is not None:
             change("inerter.cli.identify.run_identification", lambda *arguments: identified)
-        change("inerter.report.reproduction.write_reproduction", page)
+        change("inerter.papers.wang_su_2008.report.page.write_reproduction", page)
         change(f"{paper}.linear.recompute", lambda studies: None)
         change(f"{paper}._figure11", lambda studies: None)
         change(f"{paper}.run_study", small_study)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import xarray as xr
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from inerter.figures.labels import printed, swept_element, typeset
@@ -74,10 +74,13 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
     )
 
 
-def environment() -> Environment:
-    """Where the templates of all pages are, and the filters that they use. What is filled in is escaped."""
+def environment(*packages: str) -> Environment:
+    """Where the templates of pages are, in folders of this and other packages, and the filters that they use.
+
+    What is filled in is escaped.
+    """
     templates = Environment(
-        loader=PackageLoader("inerter.report"),
+        loader=ChoiceLoader([PackageLoader(package) for package in (*packages, "inerter.report")]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

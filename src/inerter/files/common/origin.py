@@ -10,7 +10,7 @@ from pathlib import Path
 
 VERSION = version("inerter")
 _COMPUTE = ("numpy", "scipy", "numba", "llvmlite")
-_TELL = {"cli", "report", "figures"}  # packages that show numbers and make none
+_TELL = {"cli", "report", "figures"}  # packages that show numbers and make none, also those of a paper
 
 
 def versions() -> dict[str, str]:
@@ -31,6 +31,6 @@ def origin() -> str:
     root = Path(__file__).parents[2]
     for path in sorted(root.rglob("*")):
         place = path.relative_to(root)
-        if path.is_file() and place.parts[0] not in _TELL and "__pycache__" not in place.parts:
+        if path.is_file() and not {*_TELL, "__pycache__"} & set(place.parts):
             digest.update(f"{place.as_posix()}\n{path.stat().st_size}\n".encode() + path.read_bytes())
     return digest.hexdigest()

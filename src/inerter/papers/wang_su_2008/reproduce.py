@@ -21,13 +21,12 @@ from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, line
 from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import Claim, Evidence
 from inerter.papers.wang_su_2008.linear import Linear
+from inerter.papers.wang_su_2008.paper import PAPER, PARTS
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
-from inerter.papers.wang_su_2008.source import KEY, study
+from inerter.papers.wang_su_2008.source import study
 
 JOURNAL = "tasks.jsonl"
-_PAPER = ("rig", "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")
-PARTS = (*_PAPER, "methods", "optima", "budgets")  # the last ones are not in the paper
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
 _ORDER = (
     "rig",
@@ -224,7 +223,7 @@ def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
 
 def _run(tasks: list[Task], results: Results, crew: Crew, progress: Progress) -> dict[tuple[str, str], Numbers]:
     """The numbers of all tasks; each is in the journal as soon as it is there."""
-    journal = Journal(results.place / JOURNAL, {"paper": KEY})
+    journal = Journal(results.place / JOURNAL, {"paper": PAPER.name})
     before = journal.read() if results.resume else []
     found = {(entry["part"], entry["name"]): entry["numbers"] for entry in before}
     pending = [task for task in tasks if task.key not in found]

@@ -14,9 +14,7 @@ from inerter.files.study.study import Study
 from inerter.indices.index import Index, LoadCarrying
 from inerter.vehicle.cars import Vehicle
 
-KEY = "wang-su-2008"
-TITLE = "Wang and Su (2008), Impact of inerter nonlinearities on vehicle suspension control"
-_DATA = files("inerter.papers") / "data" / KEY
+_DATA = files("inerter.papers.wang_su_2008") / "data"
 _LINEAR = {"none": "", "ideal": "", "elastic": "-soft", "elastic soft": "-soft", "elastic hard": "-hard"}
 _FRICTION = {
     "friction 10 N": "-10N",

@@ -9,10 +9,10 @@ from typing import Any
 from inerter.figures.labels import printed
 from inerter.papers.wang_su_2008.judging import Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
+from inerter.papers.wang_su_2008.paper import PAPER
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rig import SIMULATED, Found
 from inerter.papers.wang_su_2008.rows import VERDICTS, SimulatedRow
-from inerter.papers.wang_su_2008.source import TITLE
 from inerter.report.text import WIDTH
 from inerter.units import format_quantity
 
@@ -21,7 +21,7 @@ _SIGNS = dict(zip(VERDICTS, "=~<^!", strict=True))
 
 def reproduction_text(found: Reproduction) -> str:
     """Everything as plain text of at most 80 columns."""
-    lines = [*wrap(TITLE, WIDTH), ""]
+    lines = [*wrap(PAPER.title, WIDTH), ""]
     if found.rig is not None:
         lines += [*wrap(SIMULATED, WIDTH), "", *(_rig_line(p) for p in found.rig.parameters), ""]
         lines += [line for note in (*found.rig.notes, *found.rig.bands) for line in wrap(note, WIDTH)] + [""]

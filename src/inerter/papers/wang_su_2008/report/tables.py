@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from inerter.figures.labels import printed, typeset
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
+from inerter.papers.wang_su_2008.report.data import reason
+from inerter.papers.wang_su_2008.report.text import budget_value, digits, share, signed, with_error
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK
-from inerter.report.reproduction_rows import reason
-from inerter.report.reproduction_text import budget_value, digits, share, signed, with_error
 from inerter.report.tables import Cell, Row, Table
 
 

@@ -7,20 +7,16 @@ from functools import partial
 from operator import call
 from pathlib import Path
 
-from inerter.figures import reproduction as drawn
 from inerter.figures.networks import draw_networks
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.workers import Crew, crewed
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
 from inerter.networks.parser import network
 from inerter.papers.wang_su_2008.origins import origins
-from inerter.papers.wang_su_2008.reproduce import Reproduction
-from inerter.papers.wang_su_2008.rig import SIMULATED
-from inerter.papers.wang_su_2008.rows import VERDICTS
-from inerter.papers.wang_su_2008.source import TITLE, study
-from inerter.report.page import PageFigure, environment, inline
-from inerter.report.reproduction_rows import csv_text, method_points, tables
-from inerter.report.reproduction_tables import (
+from inerter.papers.wang_su_2008.paper import NETWORKS, PAPER
+from inerter.papers.wang_su_2008.report import figures as drawn
+from inerter.papers.wang_su_2008.report.data import csv_text, method_points, tables
+from inerter.papers.wang_su_2008.report.tables import (
     budgets_table,
     compared_table,
     designs_table,
@@ -28,11 +24,15 @@ from inerter.report.reproduction_tables import (
     rig_table,
     simulated_table,
 )
-from inerter.report.reproduction_text import agreement_of
+from inerter.papers.wang_su_2008.report.text import agreement_of
+from inerter.papers.wang_su_2008.reproduce import Reproduction
+from inerter.papers.wang_su_2008.rig import SIMULATED
+from inerter.papers.wang_su_2008.rows import VERDICTS
+from inerter.papers.wang_su_2008.source import study
+from inerter.report.page import PageFigure, environment, inline
 from inerter.writing import write_text
 
 Drawing = Callable[[], list[Path]]
-_NETWORKS = "networks"
 _DRAWN = {
     "S1": "k | c",
     "S2": "k | c | b",
@@ -53,43 +53,6 @@ _METHOD_TITLES = {
     "statistical-linearisation": "Statistical linearisation",
     "expected-value": "Expected value (Method 2)",
     "approximate-linear": "Approximated linear model (Method 1)",
-}
-_CAPTIONS = {
-    drawn.FIGURE_8: (
-        "Figure 8 anew, on a virtual rig: friction without the flywheel, a cosine of 0.1 Hz and 1 mm. The force is a "
-        "square wave of 10 N, rounded where the shaft winds up."
-    ),
-    drawn.FIGURE_9: (
-        "Figure 9 anew, on a virtual rig: a cosine of 3 Hz and 1 mm, and the force of the identified model; the third "
-        "of five seconds."
-    ),
-    drawn.FIGURE_10: (
-        "Figure 10 anew, on a virtual rig: from displacement to force, by a multisine of 0.1 mm r.m.s. from 0.5 to "
-        "20 Hz that nothing was fitted to. The identified model on the same displacement, its linear part, and its "
-        "inertance alone, all as the load cell reads them."
-    ),
-    drawn.FIGURE_11: (
-        "Figure 11 anew: optimal indices of the quarter car over the static stiffness, and their improvement over S1, "
-        "with an ideal inerter and with an elastic one in its hard (2000 kN/m, 6400 N s/m) and soft setting "
-        "(1000 kN/m, 3200 N s/m)."
-    ),
-    drawn.FIGURE_12: "Figure 12 anew: one period of a road of eq. (17), seed 0.",
-    drawn.FIGURE_13: (
-        "Figure 13 anew: the optimal linear designs with friction in the inerter, by the approximated linear model "
-        "(Method 1). Bands: two standard errors."
-    ),
-    drawn.FIGURE_14: (
-        "Figure 14 anew: ideal inerter, the soft elastic one, friction of 10 N, and both, by the approximated linear "
-        "model (Method 1). Bands: two standard errors."
-    ),
-    drawn.METHODS: (
-        "Increase of J1 and J3 by friction, printed designs of Table 1, by three methods; bars: two standard errors. "
-        "Method 1 drives the car with white noise of height, which moves the inerter far less than the road does: "
-        "friction then weighs about ten times more."
-    ),
-    _NETWORKS: (
-        "The layouts, and the device: spring k, damper c, inerter b; shaft k_s and c_s, backlash eps, friction f."
-    ),
 }
 
 
@@ -118,7 +81,7 @@ def _figures(found: Reproduction, folder: Path) -> list[Drawing]:
         figures.append(partial(drawn.draw_figure_14, found.curves, folder))
     if "figure12" in found.parts:
         figures.append(partial(drawn.draw_figure_12, study("table1").road, folder))
-    return [*figures, partial(draw_networks, _networks(), folder, _NETWORKS)]
+    return [*figures, partial(draw_networks, _networks(), folder, NETWORKS)]
 
 
 def _networks() -> dict[str, Network]:
@@ -128,16 +91,16 @@ def _networks() -> dict[str, Network]:
 
 def _page(found: Reproduction, folder: Path) -> str:
     figures = {}
-    for name, caption in _CAPTIONS.items():
+    for name, caption in PAPER.figures.items():
         path = folder / FIGURES / f"{name}.svg"
         if path.exists():
             figures[name] = PageFigure(inline(path.read_text(encoding="utf-8"), name, caption), caption)
     linear = found.linear
     return (
-        environment()
+        environment(__package__)
         .get_template("reproduction.html")
         .render(
-            title=TITLE,
+            title=PAPER.title,
             agreement=agreement_of(linear.compared) if linear else "",
             summary=_summary(found),
             linear=[compared_table(linear.compared, number) for number in (1, 2, 3)] if linear else [],

@@ -1,4 +1,4 @@
-"""Figures of reproduced papers."""
+"""The figures of the paper anew."""
 
 from __future__ import annotations
 
@@ -14,12 +14,20 @@ from matplotlib.figure import Figure
 from inerter.figures.identification import Motion, response_figure, time_figure
 from inerter.figures.labels import axis_label, capital, index_title, index_unit, indices, scale
 from inerter.figures.style import LayoutStyle, add_legend, colour, log_axis, new_figure, save, styled
+from inerter.papers.wang_su_2008.paper import (
+    FIGURE_8,
+    FIGURE_9,
+    FIGURE_10,
+    FIGURE_11,
+    FIGURE_12,
+    FIGURE_13,
+    FIGURE_14,
+    METHODS,
+)
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
 
-FIGURE_8, FIGURE_9, FIGURE_10, FIGURE_11, FIGURE_12, FIGURE_13, FIGURE_14 = (f"figure-{n}" for n in range(8, 15))
-METHODS = "methods"
 _CURVES = (("measured (virtual rig)", "force"), ("identified model", "model"))
 _WINDOW = (2.0, 3.0)  # [s] of Figure 9
 _COLOUR = {"S2": "#0072B2", "S3": "#D55E00"}

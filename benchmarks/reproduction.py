@@ -17,9 +17,9 @@ from collections import Counter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from inerter.files.study.workers import Crew
 from inerter.papers.wang_su_2008 import reproduce as paper
 from inerter.papers.wang_su_2008.report.page import write_reproduction
+from inerter.work.pool import Crew
 
 
 def main(only: tuple[str, ...]) -> None:

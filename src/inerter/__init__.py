@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from inerter.errors import Status as Status
     from inerter.errors import StatusKind as StatusKind
     from inerter.files.study.loading import load_study as load_study
+    from inerter.files.study.running import run_study as run_study
     from inerter.identification.choice import Choice as Choice
     from inerter.identification.choice import choose as choose
     from inerter.identification.fit import Fit as Fit
@@ -158,6 +159,7 @@ __all__ = [
     "optimise",
     "profile",
     "read_record",
+    "run_study",
     "simulate",
     "simulate_many",
     "sine",
@@ -241,6 +243,7 @@ _HOME = {
     "hinf_norm": "norms.hinf",
     "network": "networks.parser",
     "load_study": "files.study.loading",
+    "run_study": "files.study.running",
     "optimise": "optimisation.optimise",
 }
 

@@ -123,7 +123,7 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
         def change(place: str, by: object) -> None:
             stack.enter_context(patch(place, by))
 
-        change("inerter.files.study.workers.run_case", outcome)
+        change("inerter.files.study.running.run_case", outcome)
         change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
         change(
             "inerter.cli.commands.write_report",

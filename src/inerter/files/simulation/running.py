@@ -11,13 +11,13 @@ import numpy as np
 
 from inerter.errors import InerterError, StudyError
 from inerter.files.common.folder import FIGURES, Intent, claimed
-from inerter.files.common.origin import versions
 from inerter.files.common.problems import at
 from inerter.files.simulation.request import SimulationRequest, write_simulation
 from inerter.networks.elements import Friction, Gap, Inerter
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.graph import full_graph
 from inerter.vehicle.mechanism import Mechanism
+from inerter.work.origin import versions
 from inerter.writing import write_netcdf, write_text
 
 TRAJECTORY, DATASET, EVENTS, RESOLVED = "trajectory.csv", "trajectory.nc", "events.csv", "simulation.toml"

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from inerter.errors import StudyError
-from inerter.files.common.journal import Entry, Journal
 from inerter.files.study.budgets import BudgetCase, BudgetOutcome
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.study import Study
+from inerter.work.journal import Entry, Journal
 
 NAME = "journal.jsonl"
 Done = dict[Case, Outcome]

@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import xarray as xr
 
 from inerter.errors import InerterError, StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
-from inerter.files.common.origin import versions
 from inerter.files.common.problems import at, refusal
 from inerter.files.common.suggest import some
 from inerter.files.study import journal as journals
 from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
-from inerter.files.study.cases import Outcome, cases, design_notes
+from inerter.files.study.cases import Case, Outcome, cases, design_notes, run_case
 from inerter.files.study.registry import INDEX, METHOD
 from inerter.files.study.results import dataset, summary_csv
 from inerter.files.study.study import Study, write_resolved
-from inerter.files.study.workers import Crew, crewed, run_all
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.networks.parser import names
 from inerter.optimisation.optimise import check_variables
 from inerter.vehicle.cars import Vehicle
+from inerter.work.origin import versions
+from inerter.work.pool import Crew, crewed
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
@@ -111,9 +113,9 @@ def study_notes(study: Study) -> list[str]:
 
 def run_study(
     study: Study,
-    folder: Path | Results,
+    folder: str | Path | Results,
     *,
-    jobs: int | Crew = 1,
+    jobs: int | Executor | Crew = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, outcome: None,
@@ -121,10 +123,11 @@ def run_study(
 ) -> StudyResult:
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
 
-    `folder` may be a part of results that are being written. `jobs` is a number of processes, or a crew, which goes on
-    afterwards. With more than one process, a script that calls this needs the line `if __name__ == "__main__":`,
-    because processes are started afresh and import it. `finish` may add files to the results, in the folder that it is
-    given.
+    `folder` may be a part of results that are being written. `jobs` is a number of processes, or an executor (of
+    `concurrent.futures`) or a crew, which goes on afterwards. With more than one process, a script that calls this
+    needs the line `if __name__ == "__main__":`, because processes are started afresh and import it. `progress` is told
+    how many designs and budgets are done, how many there are, and the last one. `finish` may add files to the results,
+    in the folder that it is given.
 
     Every finished case is in the journal at once. With `resume`, cases in the journal are not computed again, and the
     results are the same, byte for byte, as those of an undisturbed run. With `force`, the results that the folder holds
@@ -152,11 +155,11 @@ def run_study(
 
 
 @contextmanager
-def _into(study: Study, folder: Path | Results, resume: bool, force: bool) -> Iterator[Results]:
+def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool) -> Iterator[Results]:
     if isinstance(folder, Results):
         yield folder
         return
-    with claimed(Intent(folder, "run", NAMES, (study.path,), resume, force)) as results:
+    with claimed(Intent(Path(folder), "run", NAMES, (study.path,), resume, force)) as results:
         yield results
 
 
@@ -173,7 +176,7 @@ def _computed(
     progress(len(done) + len(budgets), total, None)
     results.list_journal(journals.NAME)
     with journal.appending(before) as append:
-        for outcome in run_all(study, pending, crew):
+        for outcome in _outcomes(study, pending, crew):
             append(outcome.to_json())
             done[outcome.case] = outcome
             progress(len(done) + len(budgets), total, outcome)
@@ -183,3 +186,8 @@ def _computed(
                 append(budgets[case].to_json())
                 progress(len(done) + len(budgets), total, budgets[case])
     return done, budgets, computed
+
+
+def _outcomes(study: Study, pending: Sequence[Case], crew: Crew) -> Iterator[Outcome]:
+    here = partial(run_case, study, threads=crew.jobs)
+    return crew.spread(partial(run_case, study), pending, lambda case: case.index, here)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -13,9 +14,7 @@ import xarray as xr
 
 from inerter.errors import StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
-from inerter.files.common.journal import Journal
 from inerter.files.study.running import NAMES, StudyResult, run_study
-from inerter.files.study.workers import Crew, crewed
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
@@ -25,6 +24,8 @@ from inerter.papers.wang_su_2008.paper import PAPER, PARTS
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
+from inerter.work.journal import Journal
+from inerter.work.pool import Crew, crewed
 
 JOURNAL = "tasks.jsonl"
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
@@ -117,7 +118,7 @@ def reproduce(
     folder: Path,
     *,
     only: Sequence[str] = (),
-    jobs: int | Crew = 1,
+    jobs: int | Executor | Crew = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda what, done, total: None,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Executor
 from functools import partial
 from operator import call
 from pathlib import Path
 
 from inerter.figures.networks import draw_networks
 from inerter.files.common.folder import FIGURES, REPORT
-from inerter.files.study.workers import Crew, crewed
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
 from inerter.networks.parser import network
 from inerter.papers.wang_su_2008.origins import origins
@@ -30,6 +30,7 @@ from inerter.papers.wang_su_2008.rig import SIMULATED
 from inerter.papers.wang_su_2008.rows import VERDICTS
 from inerter.papers.wang_su_2008.source import study
 from inerter.report.page import PageFigure, environment, inline
+from inerter.work.pool import Crew, crewed
 from inerter.writing import write_text
 
 Drawing = Callable[[], list[Path]]
@@ -56,7 +57,7 @@ _METHOD_TITLES = {
 }
 
 
-def write_reproduction(found: Reproduction, folder: Path, jobs: int | Crew = 1) -> None:
+def write_reproduction(found: Reproduction, folder: Path, jobs: int | Executor | Crew = 1) -> None:
     """Write the tables as CSV, the figures, and a page that shows all of it, into `folder`."""
     for name, rows in tables(found).items():
         if rows:

@@ -9,7 +9,7 @@ from multiprocessing import active_children
 import pytest
 
 from inerter.errors import WorkError
-from inerter.files.study.workers import Crew, crewed
+from inerter.work.pool import Crew, crewed
 
 PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
 KILL = "__import__('os').kill(__import__('os').getpid(), 9)"

@@ -28,7 +28,7 @@ def origin() -> str:
     costs a wrong number.
     """
     digest = hashlib.sha256("".join(f"{name} {version(name)}\n" for name in _COMPUTE).encode())
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[1]
     for path in sorted(root.rglob("*")):
         place = path.relative_to(root)
         if path.is_file() and not {*_TELL, "__pycache__"} & set(place.parts):

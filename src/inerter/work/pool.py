@@ -1,4 +1,8 @@
-"""Running cases, in this process or over several."""
+"""Pieces of work in this process or over several.
+
+A piece of work is a function and an item. Both can be pickled, and so can the result, which depends on nothing else: a
+piece may be run anywhere and in any order.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +12,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing.connection import wait as wait_for_end
@@ -17,8 +20,6 @@ from multiprocessing.process import BaseProcess
 from typing import TypeVar
 
 from inerter.errors import WorkError
-from inerter.files.study.cases import Case, Outcome, run_case
-from inerter.files.study.study import Study
 from inerter.writing import undisturbed
 
 Item = TypeVar("Item")
@@ -27,28 +28,24 @@ _SHORT = 3.0  # seconds: to start processes takes about as long
 _PATIENCE = 0.4  # seconds that a process has to end
 
 
-def run_all(study: Study, pending: Sequence[Case], crew: Crew) -> Iterator[Outcome]:
-    """Outcomes of `pending` as they are ready; see `Crew.spread`."""
-    here = partial(run_case, study, threads=crew.jobs)
-    return crew.spread(partial(run_case, study), pending, lambda case: case.index, here)
-
-
 class Crew:
     """Up to `jobs` processes that work through one list after another, from when they are needed until the end.
 
-    They are spawned afresh (a fork of a threaded process may hang) and end when this one is gone, however it went.
+    They are spawned afresh (a fork of a threaded process may hang) and end when this one is gone, however it went. An
+    `executor` that is given works in their place, and goes on afterwards.
     """
 
-    def __init__(self, jobs: int) -> None:
+    def __init__(self, jobs: int, executor: Executor | None = None) -> None:
         self.jobs = jobs
-        self._pool: ProcessPoolExecutor | None = None
+        self._own = executor is None
+        self._pool = executor
         self._processes: set[BaseProcess] = set()
 
     def __enter__(self) -> Crew:
         return self
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
-        if self._pool is None:
+        if self._pool is None or not self._own:
             return
         self._pool.shutdown(wait=kind is None, cancel_futures=kind is not None)
         if kind is not None:  # Ctrl-C: what is under way is not waited for
@@ -56,8 +53,12 @@ class Crew:
 
     def begin(self, work: Callable[[], object]) -> None:
         """Have one of the processes do this first, whatever comes of it."""
-        if self.jobs > 1:
+        if not self._alone:
             self._submit([work])
+
+    @property
+    def _alone(self) -> bool:
+        return self._own and self.jobs == 1
 
     def spread(
         self,
@@ -80,7 +81,7 @@ class Crew:
             yield at_home(pending[i])
         rest = [item for i, item in enumerate(pending) if i not in firsts]
         start = time.monotonic()
-        while rest and (self.jobs == 1 or (self._pool is None and time.monotonic() - start < _SHORT)):
+        while rest and (self._alone or (self._pool is None and time.monotonic() - start < _SHORT)):
             yield at_home(rest.pop(0))
         if not rest:
             return
@@ -90,7 +91,7 @@ class Crew:
                 done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                 for future in done:
                     yield future.result()
-        except BrokenProcessPool:
+        except BrokenExecutor:
             raise WorkError(
                 "a process of this run was ended from outside, perhaps for want of memory. "
                 "What was computed is kept; continue with --resume, and fewer processes (-j 1)."
@@ -122,12 +123,12 @@ def _end(processes: Iterable[BaseProcess]) -> None:
 
 
 @contextmanager
-def crewed(jobs: int | Crew) -> Iterator[Crew]:
-    """The crew that is given, or one of so many processes that ends with this."""
+def crewed(jobs: int | Executor | Crew) -> Iterator[Crew]:
+    """The crew that is given, or one of so many processes, or with that executor, that ends with this."""
     if isinstance(jobs, Crew):
         yield jobs
     else:
-        with Crew(jobs) as crew:
+        with Crew(os.cpu_count() or 1, jobs) if isinstance(jobs, Executor) else Crew(jobs) as crew:
             yield crew
 
 

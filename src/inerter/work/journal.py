@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import StudyError
-from inerter.files.common.origin import VERSION, origin
+from inerter.work.origin import VERSION, origin
 from inerter.writing import whole
 
 FORMAT = 2

@@ -10,8 +10,8 @@ from __future__ import annotations
 import sys
 
 import inerter as it
+from inerter.files.study.registry import INDEX
 from inerter.papers.wang_su_2008.source import linear_rows, study
-from inerter.study.registry import INDEX
 
 CLAIM = {"J1": 1e-6, "J3": 1e-6, "J5": 1e-4}
 

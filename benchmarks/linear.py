@@ -19,8 +19,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import inerter as it
+from inerter.files.study.running import run_study
 from inerter.papers.wang_su_2008.source import study
-from inerter.study.run import run_study
 
 ROAD = it.Road(roughness=5e-7, speed=25)
 K, C = it.Spring(120e3), it.Damper(it.free(100, 100e3, name="c"))

@@ -18,8 +18,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from inerter.papers.wang_su_2008 import reproduce as paper
-from inerter.report.reproduction import write_reproduction
-from inerter.study.workers import Crew
+from inerter.papers.wang_su_2008.report.page import write_reproduction
+from inerter.work.pool import Crew
 
 
 def main(only: tuple[str, ...]) -> None:

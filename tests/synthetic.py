@@ -1,4 +1,4 @@
-"""Results of studies that were never computed: plausible numbers in the shape that `inerter.study` gives them."""
+"""Results of studies that were never computed: plausible numbers in the shape that `inerter.files.study` gives them."""
 
 from __future__ import annotations
 

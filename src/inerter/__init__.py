@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from inerter.errors import InerterError as InerterError
     from inerter.errors import Status as Status
     from inerter.errors import StatusKind as StatusKind
+    from inerter.files.study.loading import load_study as load_study
+    from inerter.files.study.running import run_study as run_study
     from inerter.identification.choice import Choice as Choice
     from inerter.identification.choice import choose as choose
     from inerter.identification.fit import Fit as Fit
@@ -71,7 +73,6 @@ if TYPE_CHECKING:
     from inerter.simulation.batch import simulate_many as simulate_many
     from inerter.simulation.simulate import simulate as simulate
     from inerter.simulation.trajectory import Trajectory as Trajectory
-    from inerter.study.file import load_study as load_study
     from inerter.systems.assemble import assemble as assemble
     from inerter.systems.linear import LinearSystem as LinearSystem
     from inerter.vehicle.cars import HalfCar as HalfCar
@@ -158,6 +159,7 @@ __all__ = [
     "optimise",
     "profile",
     "read_record",
+    "run_study",
     "simulate",
     "simulate_many",
     "sine",
@@ -240,7 +242,8 @@ _HOME = {
     "h2_norm": "norms.h2",
     "hinf_norm": "norms.hinf",
     "network": "networks.parser",
-    "load_study": "study.file",
+    "load_study": "files.study.loading",
+    "run_study": "files.study.running",
     "optimise": "optimisation.optimise",
 }
 

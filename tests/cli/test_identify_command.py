@@ -14,9 +14,9 @@ from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
 from inerter.cli.main import call
+from inerter.files.identification import running as identification_run
+from inerter.files.identification.loading import load_identification
 from inerter.identification.fit import Told
-from inerter.study import identification_run
-from inerter.study.identification_file import load_identification
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
 CONFIG = """

@@ -9,7 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.cli.main import call
-from inerter.study.rig_file import load_rig
+from inerter.files.rig.loading import load_rig
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SHORT = (

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 from inerter.cli.main import call
-from inerter.study.simulation_file import load_simulation
+from inerter.files.simulation.loading import load_simulation
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 RATTLE = (EXAMPLES / "backlash_rattle.toml").read_text(encoding="utf-8").replace('"2 s"', '"0.5 s"')

@@ -11,9 +11,9 @@ from matplotlib.colors import to_hex
 from inerter.errors import StudyError
 from inerter.figures.simulation import draw_simulation, panels, readable_window, simulation_figure
 from inerter.figures.style import styled
-from inerter.study.simulation_file import load_simulation
-from inerter.study.simulation_run import SimulationResult
-from inerter.study.values import StrutLayout
+from inerter.files.common.layouts import StrutLayout
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.running import SimulationResult
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -14,9 +14,9 @@ from world import STUDY, cheap, files_of, inputs
 
 from inerter.cli.main import call
 from inerter.errors import StudyError
-from inerter.files.common import journal as journals
-from inerter.files.common import origin
-from inerter.files.common.journal import Journal, is_intact
+from inerter.work import journal as journals
+from inerter.work import origin
+from inerter.work.journal import Journal, is_intact
 
 ENTRIES = [{"name": f"case {i}", "value": 0.1 * i, "more": {"a": [1, None, "é\u2028"]}} for i in range(6)]
 
@@ -68,18 +68,20 @@ def test_a_journal_of_other_work_is_refused(tmp_path: Path, monkeypatch: pytest.
 
 def test_a_corrected_numeric_makes_other_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Any source but those that only show numbers counts, and so do tables and the libraries."""
-    root = Path(origin.__file__).parents[2]
+    root = Path(origin.__file__).parents[1]
     shutil.copytree(root, tmp_path / "inerter", ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(origin, "__file__", str(tmp_path / "inerter" / "files" / "common" / "origin.py"))
+    monkeypatch.setattr(origin, "__file__", str(tmp_path / "inerter" / "work" / "origin.py"))
     fresh = origin.origin.__wrapped__
     before = fresh()
     assert before == origin.origin()
     for name, matters in {
         "kernels/h2.py": True,
         "norms/h2.py": True,
-        "study/cases.py": True,
+        "files/study/cases.py": True,
         "errors.py": True,
-        "papers/data/wang-su-2008/table1.csv": True,
+        "papers/wang_su_2008/data/table1.csv": True,
+        "papers/wang_su_2008/rows.py": True,
+        "papers/wang_su_2008/report/text.py": False,
         "report/text.py": False,
         "figures/style.py": False,
         "cli/main.py": False,

@@ -15,8 +15,8 @@ from world import PARTS, RIG_FILE, SIMULATION_FILE, STUDY, TABLE, cheap, files_o
 
 from inerter.cli.main import call
 from inerter.files.common.listing import MARK
-from inerter.study.identification_file import IdentificationRequest, RecordRequest
-from inerter.study.identification_run import Identified, read, run_identification
+from inerter.files.identification.loading import IdentificationRequest, RecordRequest
+from inerter.files.identification.running import Identified, read, run_identification
 
 FOLDERS = ("out", "out/figures", "other", ".", "out/table1", "link", "deep/er", "study-results")
 NAMES = (

@@ -14,11 +14,11 @@ from typing import Any
 from unittest.mock import patch
 
 from inerter.files.common.listing import MARK, digest, listing
+from inerter.files.identification.running import RESIDUALS, Identified
+from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import run_study
 from inerter.report.identification import write_fit
-from inerter.study.cases import Case, Outcome
-from inerter.study.file import load_study
-from inerter.study.identification_run import RESIDUALS, Identified
-from inerter.study.run import run_study
 from inerter.writing import write_text
 
 STUDY = """
@@ -117,14 +117,13 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
 
     The reproduction has its two linear studies, with the same folders and journals, and no simulated tasks.
     """
-    study = "inerter.study"
     paper = "inerter.papers.wang_su_2008.reproduce"
     with ExitStack() as stack:
 
         def change(place: str, by: object) -> None:
             stack.enter_context(patch(place, by))
 
-        change(f"{study}.workers.run_case", outcome)
+        change("inerter.files.study.running.run_case", outcome)
         change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
         change(
             "inerter.cli.commands.write_report",
@@ -135,7 +134,7 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
         change("inerter.cli.identify.write_fit", fit)
         if identified is not None:
             change("inerter.cli.identify.run_identification", lambda *arguments: identified)
-        change("inerter.report.reproduction.write_reproduction", page)
+        change("inerter.papers.wang_su_2008.report.page.write_reproduction", page)
         change(f"{paper}.linear.recompute", lambda studies: None)
         change(f"{paper}._figure11", lambda studies: None)
         change(f"{paper}.run_study", small_study)

@@ -24,12 +24,12 @@ from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import Claim, Evidence, Part
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.over_stiffness import Curves
+from inerter.papers.wang_su_2008.report.data import reason
+from inerter.papers.wang_su_2008.report.text import reproduction_text
 from inerter.papers.wang_su_2008.reproduce import JOURNAL, Reproduction, Task, work
 from inerter.papers.wang_su_2008.rig import Found, RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import simulated_rows, study
-from inerter.report.reproduction_rows import reason
-from inerter.report.reproduction_text import reproduction_text
 
 
 def judged(table: int, name: str) -> SimulatedRow:

@@ -7,13 +7,13 @@ import csv
 import numpy as np
 import pytest
 
+from inerter.files.study.registry import INDEX
+from inerter.files.study.running import check_study
+from inerter.files.study.study import Study
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.linear import compare
 from inerter.papers.wang_su_2008.source import PrintedRow, linear_rows, study
-from inerter.study.registry import INDEX
-from inerter.study.run import check_study
-from inerter.study.values import Study
 
 ROWS = linear_rows()
 DESIGNS = [row for row in ROWS if row.table < 3]
@@ -79,7 +79,7 @@ def test_last_digit_is_that_of_the_printed_text() -> None:
 def test_tables_hold_the_rows_with_friction_too() -> None:
     from importlib.resources import files
 
-    text = (files("inerter.papers") / "data" / "wang-su-2008" / "table2.csv").read_text(encoding="utf-8")
+    text = (files("inerter.papers.wang_su_2008") / "data" / "table2.csv").read_text(encoding="utf-8")
     rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
     assert len(rows) == 39
     assert sum("friction" in row["nonlinearity"] for row in rows) == 39 - 21

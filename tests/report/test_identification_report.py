@@ -16,6 +16,7 @@ import pytest
 
 import inerter as it
 from inerter.errors import Status, StatusKind
+from inerter.files.identification.running import Candidate, Identified, Reading, responses
 from inerter.identification.fit import Explanation, Misfit, Told
 from inerter.identification.guess import chain_of
 from inerter.identification.laws import laws
@@ -26,7 +27,6 @@ from inerter.report.identification_data import identification_data
 from inerter.report.identification_figures import window
 from inerter.report.identification_text import as_options, identification_text, share
 from inerter.report.identified_values import elements_block, single, value_and_interval
-from inerter.study.identification_run import Candidate, Identified, Reading, responses
 
 VOID = {"meta", "wbr", "br"}
 SHAFT = it.Spring(1e6, name="ks") | it.Damper(3200.0, name="cs")

@@ -12,9 +12,9 @@ import pytest
 from synthetic import LONG, designs, judged, sweep, with_value
 
 from inerter.figures.study import draw_study
+from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.loading import load_study
 from inerter.report.page import report, write_report
-from inerter.study.budgets import BudgetOutcome
-from inerter.study.file import load_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 VOID = {"meta", "wbr", "br"}

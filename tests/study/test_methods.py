@@ -10,18 +10,19 @@ import numpy as np
 import pytest
 
 from inerter.errors import IndicatorError, StudyError
+from inerter.files.common.layouts import StrutLayout
+from inerter.files.study import registry
+from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv
+from inerter.files.study.cases import Case, Outcome, run_case
+from inerter.files.study.loading import load_study
+from inerter.files.study.registry import INDEX, METHOD
+from inerter.files.study.running import StudyResult, check_study, run_study
+from inerter.files.study.study import Study
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
 from inerter.networks.elements import Free
 from inerter.optimisation.budget import budget
 from inerter.optimisation.optimise import optimise
-from inerter.study import registry
-from inerter.study.budgets import BudgetOutcome, budget_cases, budgets_csv
-from inerter.study.cases import Case, Outcome, run_case
-from inerter.study.file import load_study
-from inerter.study.registry import INDEX, METHOD
-from inerter.study.run import StudyResult, check_study, run_study
-from inerter.study.values import StrutLayout, Study
 
 TEXT = """
 title = "Friction on both sides"

@@ -17,12 +17,12 @@ import xarray as xr
 
 from inerter.errors import StudyError
 from inerter.files.common.folder import Intent, claimed
+from inerter.files.study.cases import Outcome, cases
+from inerter.files.study.journal import finished, journal_of
+from inerter.files.study.loading import load_study
+from inerter.files.study.registry import INDEX, METHOD
+from inerter.files.study.running import NAMES, check_study, run_study
 from inerter.methods.method import evaluate
-from inerter.study.cases import Outcome, cases
-from inerter.study.file import load_study
-from inerter.study.journal import finished, journal_of
-from inerter.study.registry import INDEX, METHOD
-from inerter.study.run import NAMES, check_study, run_study
 
 SWEEP = """
 title = "Soft and stiff springs"

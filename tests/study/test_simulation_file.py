@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 
 from inerter.errors import StudyError
+from inerter.files.common.layouts import StrutLayout
+from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED, NEEDED, UNITS
+from inerter.files.common.signals import SignalRequest
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.request import SimulationRequest, write_simulation
+from inerter.files.simulation.shape import INITIAL, SimulationSettings
 from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
-from inerter.study.request import SignalRequest, SimulationRequest, write_simulation
-from inerter.study.signal_kinds import FORCES, KINDS, MOVED, NEEDED, UNITS
-from inerter.study.simulation_file import load_simulation
-from inerter.study.simulation_schema import INITIAL, SimulationSettings
-from inerter.study.values import StrutLayout
 from inerter.vehicle.cars import QuarterCar, Rig
 
 EXAMPLES = sorted(

@@ -10,9 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.errors import NetworkError, StudyError
+from inerter.files.common.layouts import StrutLayout
+from inerter.files.study.loading import load_study
+from inerter.files.study.study import Study, Sweep, write_resolved
 from inerter.networks.elements import Damper, Free, Friction, Gap, Inerter, Spring
 from inerter.signals.road import Road
-from inerter.study.file import StrutLayout, Study, Sweep, load_study, write_resolved
 from inerter.vehicle.cars import HalfCar, QuarterCar
 
 EXAMPLES = sorted(

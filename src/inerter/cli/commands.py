@@ -17,15 +17,17 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import progress, steps
 from inerter.errors import StatusKind, StudyError
 from inerter.figures.study import draw_study
-from inerter.papers.wang_su_2008.source import KEY
+from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.common.suggest import some
+from inerter.files.study.budgets import budget_cases
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import SUMMARY, StudyResult, check_study, run_study, study_notes
+from inerter.papers.paper import Paper
+from inerter.papers.registry import PAPERS
 from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
 from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
-from inerter.study.budgets import budget_cases
-from inerter.study.file import load_study
-from inerter.study.run import FIGURES, REPORT, SUMMARY, StudyResult, check_study, run_study, study_notes
-from inerter.study.suggest import some
 
 _MOST = 20  # designs that are told one by one
 _JSON = {"improvement_error": "improvement_error_percent"}
@@ -74,31 +76,38 @@ def check(study: Path) -> int:
     return 0
 
 
-def reproduce(
-    only: tuple[str, ...], output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool
-) -> int:
-    """Reproduce Wang and Su (2008), or some parts of it; returns the exit code."""
-    from inerter.papers.wang_su_2008 import reproduce as paper
-    from inerter.report.reproduction import write_reproduction
-    from inerter.report.reproduction_rows import tables
-    from inerter.report.reproduction_text import reproduction_text
+def papers() -> int:
+    """Say which papers there are, and what of each can be reproduced; returns the exit code."""
+    print("\n\n".join(_told(paper) for paper in PAPERS.values()))
+    return 0
 
-    folder = output or Path(f"{KEY}-results")
+
+def _told(paper: Paper) -> str:
+    lines = (f"Parts: {', '.join(paper.parts)}.", f"Claims: {len(paper.claims)}. Figures: {len(paper.figures)}.")
+    told = [*wrap(paper.title, WIDTH - 2), *(line for text in lines for line in wrap(text, WIDTH - 2))]
+    return "\n".join([paper.name, *(f"  {line}" for line in told)])
+
+
+def reproduce(
+    name: str,
+    only: tuple[str, ...],
+    output: Path | None,
+    jobs: int | None,
+    *,
+    resume: bool,
+    force: bool,
+    as_json: bool,
+) -> int:
+    """Reproduce the paper of that name, or some parts of it; returns the exit code."""
+    paper = PAPERS[name]
+    folder = output or Path(f"{name}-results")
     processes = _processes(jobs)
     parts = (word for part in only for word in ("--only", part))
-    kept = _kept(("reproduce", KEY, *parts), folder, jobs, as_json=as_json)
-    with interruptible(lambda: kept), steps(KEY) as callback:
-        found = paper.reproduce(
-            folder,
-            only=only,
-            jobs=processes,
-            resume=resume,
-            force=force,
-            progress=callback,
-            finish=write_reproduction,
-        )
+    kept = _kept(("reproduce", name, *parts), folder, jobs, as_json=as_json)
+    with interruptible(lambda: kept), steps(name) as callback:
+        found = paper.reproduce(folder, only=only, jobs=processes, resume=resume, force=force, progress=callback)
     _say(f"report: {folder / REPORT}")
-    print(json.dumps(tables(found), indent=2) if as_json else reproduction_text(found))
+    print(json.dumps(paper.as_data(found), indent=2) if as_json else paper.as_text(found))
     return max([_judge(result) for result in found.studies.values()], default=0)
 
 

@@ -12,14 +12,13 @@ from typing import Any
 from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
-from inerter.files.common.folder import Intent, claimed
+from inerter.files.common.folder import REPORT, Intent, claimed
+from inerter.files.identification.loading import IdentificationRequest, RecordRequest, load_identification
+from inerter.files.identification.running import FIT, read, run_identification
+from inerter.files.identification.shape import channel_units, gap_treatment
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import as_options, identification_text
-from inerter.study.identification_file import IdentificationRequest, RecordRequest, load_identification
-from inerter.study.identification_run import FIT, read, run_identification
-from inerter.study.identification_schema import channel_units, gap_treatment
-from inerter.study.run import REPORT
 from inerter.units import parse_quantity
 
 _QUANTITIES = {

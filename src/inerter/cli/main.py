@@ -10,24 +10,25 @@ import signal
 import sys
 from inspect import signature
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
 from inerter.cli.streams import endure, problem
-from inerter.errors import InerterError, WorkError
+from inerter.errors import InerterError, StudyError, WorkError
+from inerter.papers.registry import PAPERS
 from inerter.writing import sweep
 
-EXAMPLES = """Examples:
+EXAMPLES = f"""Examples:
   inerter run examples/quarter-car.toml
   inerter run examples/stiffness-sweep.toml -o sweep -j 2
   inerter check my-study.toml
   inerter simulate examples/stick_slip.toml
   inerter rig examples/rig_fit.toml -o fit.csv
   inerter identify fit.csv --model ball-screw
-  inerter reproduce wang-su-2008 -o paper
+  inerter reproduce {next(iter(PAPERS))} -o paper
 
 Exit codes: 0 done, 1 the work failed, 2 the request was wrong, 130 interrupted by Ctrl-C."""
 
@@ -63,20 +64,12 @@ Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
 ]
 
-Part = Literal[
-    "rig",
-    "linear",
-    "table1",
-    "table2",
-    "table3",
-    "figure12",
-    "figure13",
-    "figure14",
-    "claims",
-    "methods",
-    "optima",
-    "budgets",
-]
+if TYPE_CHECKING:
+    Name = str
+    Part = str
+else:
+    Name = Literal[tuple(PAPERS)]
+    Part = Literal[tuple(dict.fromkeys(part for paper in PAPERS.values() for part in paper.parts))]
 
 
 @app.command(
@@ -261,14 +254,20 @@ def rig(
 
 
 @app.command(
-    help_epilogue="""Examples:
-  inerter reproduce wang-su-2008 -o paper
-  inerter reproduce wang-su-2008 --only linear
-  inerter reproduce wang-su-2008 --only rig    Figures 8 to 10, on a virtual rig
-  inerter reproduce wang-su-2008 --only table1 --only figure14"""
+    help_epilogue="\n  ".join(
+        [
+            "Examples:",
+            "inerter reproduce    tells which papers there are",
+            *(
+                f"inerter reproduce {p.name} {options}"
+                for p in PAPERS.values()
+                for options in ("-o paper", *p.examples)
+            ),
+        ]
+    )
 )
 def reproduce(
-    paper: Literal["wang-su-2008"],
+    paper: Name | None = None,
     /,
     *,
     only: Annotated[
@@ -286,12 +285,16 @@ def reproduce(
     Parameters
     ----------
     paper
-        The paper: wang-su-2008, Impact of inerter nonlinearities on vehicle suspension control.
+        The name of the paper; which there are is told if it is left out.
     """
+    from inerter.cli.commands import papers
     from inerter.cli.commands import reproduce as command
 
-    assert paper == "wang-su-2008"
-    return command(only, output, jobs, resume=resume, force=force, as_json=json)
+    if paper is None:
+        if only or output or jobs or resume or force or json:
+            raise StudyError(f"Got options without a paper; expected the name of one: {', '.join(PAPERS)}.")
+        return papers()
+    return command(paper, only, output, jobs, resume=resume, force=force, as_json=json)
 
 
 def main() -> None:

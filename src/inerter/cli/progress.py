@@ -20,9 +20,9 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from inerter.study.budgets import BudgetOutcome
-from inerter.study.cases import Outcome
-from inerter.study.run import Progress as Report
+from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.cases import Outcome
+from inerter.files.study.running import Progress as Report
 
 
 @contextmanager

@@ -8,9 +8,10 @@ from pathlib import Path
 from inerter.cli.interrupts import interruptible
 from inerter.errors import StudyError
 from inerter.files.common.folder import check_single, single
+from inerter.files.rig.loading import load_rig
+from inerter.files.rig.running import record_of
 from inerter.records.writers import WRITERS, write_record
 from inerter.report.rig import rig_text
-from inerter.study.rig_file import load_rig, record_of
 
 
 def rig(config: Path, output: Path, *, force: bool) -> int:

@@ -11,11 +11,11 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.errors import StudyError
 from inerter.figures.simulation import Window, draw_simulation, readable_window
+from inerter.files.common.folder import FIGURES
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.request import SimulationRequest
+from inerter.files.simulation.running import SimulationResult, run_simulation
 from inerter.report.simulation import simulation_data, simulation_text
-from inerter.study.request import SimulationRequest
-from inerter.study.run import FIGURES
-from inerter.study.simulation_file import load_simulation
-from inerter.study.simulation_run import SimulationResult, run_simulation
 
 
 def simulate(file: Path, output: Path | None, window: str | None, *, force: bool, as_json: bool) -> int:

@@ -17,7 +17,7 @@ from inerter.errors import StudyError
 from inerter.figures.curves import thinned
 from inerter.figures.labels import axis_label, capital, scale
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, styled
-from inerter.study.simulation_run import Nonlinear, SimulationResult
+from inerter.files.simulation.running import Nonlinear, SimulationResult
 
 Matrix = NDArray[np.float64]
 Window = tuple[float, float]

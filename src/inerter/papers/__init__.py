@@ -1,1 +1,1 @@
-"""Published results as data and checks, one module a paper."""
+"""Published results, recomputed: one folder a paper, with its tables, tasks, claims, figures and words."""

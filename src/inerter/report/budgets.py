@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from textwrap import wrap
 
 from inerter.figures.labels import printed, quantity
+from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.study import Study
 from inerter.report.tables import Cell, Row, Table
-from inerter.study.budgets import BudgetOutcome
-from inerter.study.values import Study
 
 Writer = Callable[[float, str, float], str]
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inerter.figures.identification import draw
-from inerter.files.common.origin import versions
+from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.identification.running import FIT, RESIDUALS, Identified, model_title, responses
 from inerter.networks.parser import written
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
@@ -34,8 +35,7 @@ from inerter.report.identified_values import (
     value_and_interval,
 )
 from inerter.report.page import PageFigure, environment, inline
-from inerter.study.identification_run import FIT, RESIDUALS, Identified, model_title, responses
-from inerter.study.run import FIGURES, REPORT
+from inerter.work.origin import versions
 from inerter.writing import write_text
 
 RESPONSE = "response.json"

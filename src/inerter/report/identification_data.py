@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from inerter.files.common.origin import versions
+from inerter.files.identification.running import Identified, Reading, Responses
 from inerter.identification.fit import Comparison
 from inerter.networks.parser import written
 from inerter.records.result import Response
 from inerter.report.identified_values import elements_block
-from inerter.study.identification_run import Identified, Reading, Responses
+from inerter.work.origin import versions
 from inerter.writing import whole
 
 

@@ -19,9 +19,9 @@ from inerter.figures.identification import (
     response_figure,
     time_figure,
 )
+from inerter.files.identification.running import Identified, Responses
 from inerter.identification.fit import Comparison
 from inerter.report.identified_values import UNTOLD, WITHHELD, scale_of, value_and_interval
-from inerter.study.identification_run import Identified, Responses
 
 Matrix = NDArray[np.float64]
 _PERIODS = 4.0  # of the motion in a window that can be read

@@ -8,10 +8,10 @@ from math import floor, log10
 from textwrap import wrap
 
 from inerter.figures.labels import measured
+from inerter.files.identification.running import Candidate, Identified, Reading, model_title
 from inerter.identification.fit import Comparison, Told
 from inerter.report.identified_values import elements_block, single, value_and_interval
 from inerter.report.text import WIDTH
-from inerter.study.identification_run import Candidate, Identified, Reading, model_title
 
 INDEPENDENT = 1e-3  # a p-value above tells residuals without pattern
 LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not told, nor are more

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from math import floor, isnan, log10
 
 from inerter.figures.labels import Scale, scale
+from inerter.files.identification.running import Identified
 from inerter.networks.elements import Element, Free
 from inerter.networks.parser import written
-from inerter.study.identification_run import Identified
 from inerter.units import format_quantity
 
 UNTOLD, WITHHELD = "cannot be told", "withheld"

@@ -8,18 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import xarray as xr
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from inerter.figures.labels import printed, swept_element, typeset
 from inerter.figures.study import study_figures
+from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.study import Study, write_resolved
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
 from inerter.report.findings import crossing_sentences, headlines
 from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
-from inerter.study.budgets import BudgetOutcome
-from inerter.study.values import Study, write_resolved
 from inerter.writing import write_text
 
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
@@ -74,10 +74,13 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
     )
 
 
-def environment() -> Environment:
-    """Where the templates of all pages are, and the filters that they use. What is filled in is escaped."""
+def environment(*packages: str) -> Environment:
+    """Where the templates of pages are, in folders of this and other packages, and the filters that they use.
+
+    What is filled in is escaped.
+    """
     templates = Environment(
-        loader=PackageLoader("inerter.report"),
+        loader=ChoiceLoader([PackageLoader(package) for package in (*packages, "inerter.report")]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import capital, index_title, indices
+from inerter.files.common.shape import UNITS
+from inerter.files.study.study import Study
 from inerter.networks.elements import Element, Free
-from inerter.study.schema import UNITS
-from inerter.study.values import Study
 from inerter.units import ELEMENT_UNITS, format_quantity
 
 _METHODS = {

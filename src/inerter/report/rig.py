@@ -8,9 +8,9 @@ from textwrap import wrap
 import numpy as np
 
 from inerter.figures.labels import quantity
+from inerter.files.rig.running import RigRequest
 from inerter.records.record import Record
 from inerter.report.text import WIDTH
-from inerter.study.rig_file import RigRequest
 
 
 def rig_text(request: RigRequest, record: Record) -> str:

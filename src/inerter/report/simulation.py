@@ -9,8 +9,8 @@ from typing import Any
 
 from inerter.figures.labels import quantity
 from inerter.figures.simulation import Window
+from inerter.files.simulation.running import SimulationResult
 from inerter.report.text import WIDTH
-from inerter.study.simulation_run import SimulationResult
 from inerter.units import shown
 
 _SHARES = {"stick": "stuck", "open": "in the gap", "upper contact": "upper end", "lower contact": "lower end"}

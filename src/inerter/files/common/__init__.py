@@ -1,1 +1,1 @@
-"""What all kinds of files share: result folders, journals of work that may be interrupted, where numbers come from."""
+"""What all kinds of files share: elements, layouts and signals in TOML, what is wrong with them, and result folders."""

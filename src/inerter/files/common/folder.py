@@ -19,6 +19,7 @@ from inerter.files.common.listing import MARK, Entry, Listing, digest, is_linked
 from inerter.writing import is_unforeseen, scratch, settle, undisturbed
 
 _LOCK, _NEW, _WHOLE = f"{MARK}/lock", f"{MARK}/new", f"{MARK}/whole"
+FIGURES, REPORT = "figures", "report.html"  # in folders of results of any command
 SINGLE = "rig"  # the command that writes single files, which make no folder of results
 _ELSEWHERE = "choose another folder with -o"
 _SHOWN = 3  # names in a message

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from inerter.files.common.journal import is_intact
+from inerter.work.journal import is_intact
 from inerter.writing import write_text
 
 MARK = ".inerter"  # the folder of the list, of the lock, and of what is under way

@@ -9,10 +9,10 @@ import numpy as np
 import scipy.optimize
 import xarray as xr
 
+from inerter.files.study.registry import INDEX
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.source import study
-from inerter.study.registry import INDEX
 
 WORSE = 1e-4  # two optima that differ by less, relatively, are equally good: no figure shows it
 _PLACE = 55e3  # [N/m] near which the paper finds an elastic S3 worse than S1

@@ -7,6 +7,7 @@ from itertools import combinations, pairwise
 from inerter.papers.wang_su_2008.between import WORSE, Found, crossings, excess_there
 from inerter.papers.wang_su_2008.judging import Claim, Evidence, Part, is_near, kilo
 from inerter.papers.wang_su_2008.over_stiffness import Array, Crossing, Curves
+from inerter.papers.wang_su_2008.paper import CLAIMS
 
 _SOFT = 60e3  # [N/m] half the stiffness for which Table 1 is printed: what is called small here
 _LAYOUTS = ("S2", "S3")
@@ -35,8 +36,7 @@ def _shrinks(curves: Curves, index: str) -> list[Part]:
 
 
 def _claim_1(curves: Curves) -> Claim:
-    statement = "Elastic effect only: the benefit in J1 shrinks, more so with the softer setting."
-    return Claim(1, statement, tuple(_shrinks(curves, "J1")))
+    return Claim(1, CLAIMS[1], tuple(_shrinks(curves, "J1")))
 
 
 def _claim_2(curves: Curves, between: Found) -> Claim:
@@ -47,11 +47,7 @@ def _claim_2(curves: Curves, between: Found) -> Claim:
         once = bool(excess[0] < 0.0 < excess[-1]) and len(found) == 1
         text = f"{kind}: better below k = {kilo(found)} kN/m, by at most {-100.0 * float(excess.min()):.2f} %"
         parts.append(Part(text, once, once and is_near(found[0], 120e3, curves.step)))
-    return Claim(
-        2,
-        "Elastic effect only: J3 of S3 is slightly better than with an ideal inerter below k = 120 kN/m, worse above.",
-        tuple(parts),
-    )
+    return Claim(2, CLAIMS[2], tuple(parts))
 
 
 def _claim_3(curves: Curves, between: Found) -> Claim:
@@ -63,12 +59,7 @@ def _claim_3(curves: Curves, between: Found) -> Claim:
         word = "worse" if there > 0.0 else "better"
         text = f"at 55 kN/m S3 {kind} is {abs(100.0 * there):.2f} % {word} than S1{where}"
         parts.append(Part(text, there > WORSE))
-    return Claim(
-        3,
-        "Elastic effect only: the benefit in J5 shrinks, more so with the softer setting; elastic S3 is worse than S1 "
-        "near k = 55 kN/m.",
-        tuple(parts),
-    )
+    return Claim(3, CLAIMS[3], tuple(parts))
 
 
 def _claim_4(curves: Curves) -> Claim:
@@ -93,12 +84,7 @@ def _claim_4(curves: Curves) -> Claim:
         last = -100.0 * curves.excess(name, "S1", "J1")[-1]
         text = f"J1 of {layout} with 10 N is {last:.1f} % better than S1's at k = {kilo([curves.k[-1]], '', 0)} kN/m"
         parts.append(Part(text, bool(curves.worse("S1", name, "J1")[-1])))
-    return Claim(
-        4,
-        "Friction only, Method 1: J1 and J3 degrade, more with 20 N than with 10 N; for k up to about 15 kN/m J1 is "
-        "worse than S1's; at large k it is still better.",
-        tuple(parts),
-    )
+    return Claim(4, CLAIMS[4], tuple(parts))
 
 
 def _claim_5(curves: Curves) -> Claim:
@@ -115,7 +101,7 @@ def _claim_5(curves: Curves) -> Claim:
             parts.append(Part(text, bool(there.any())))
     return Claim(
         5,
-        "Friction only, Method 1: at small k J3 of S2 and S3 is worse than S1's, and so is J5 of S2.",
+        CLAIMS[5],
         tuple(parts),
         note=f"Looked at up to k = {kilo([_SOFT], '', 0)} kN/m; worse means beyond two standard errors.",
     )
@@ -133,12 +119,7 @@ def _claim_8(curves: Curves) -> Claim:
         exceptions = curves.not_worst(both, (layout, friction, elastic), "J1")
         text = f"{layout}: both together are the worst{' at every k' if not exceptions.size else ''}{_but(exceptions)}"
         parts.append(Part(text, exceptions.size == 0))
-    return Claim(
-        8,
-        "Both effects, Method 1, J1: at large k friction alone is better than elasticity alone, below k = 50 kN/m (S2) "
-        "and 150 kN/m (S3) the contrary; both together are always the worst.",
-        tuple(parts),
-    )
+    return Claim(8, CLAIMS[8], tuple(parts))
 
 
 def _claim_9(curves: Curves) -> Claim:
@@ -161,9 +142,7 @@ def _claim_9(curves: Curves) -> Claim:
     ]
     return Claim(
         9,
-        "Both effects, Method 1, J3, best first: S2 with soft k: ideal, elastic, friction, both; S2 above 140 kN/m: "
-        "ideal, friction, elastic, both; S3 below 30 kN/m: elastic, both, ideal, friction; S3 above 230 kN/m: ideal, "
-        "friction, elastic, both.",
+        CLAIMS[9],
         tuple(parts),
         note=f"≈: no certain difference. Friction alone and elasticity alone are equal in {' and in '.join(equal)}.",
     )
@@ -187,12 +166,7 @@ def _claim_10(curves: Curves) -> Claim:
     text = f"S2: friction and elasticity cost the same at k = {_at(found, ', ')} kN/m, elasticity more above"
     holds = bool(friction_more.any() and elastic_more[-1])
     parts.append(Part(text, holds, len(found) == 1 and _is_at(found[0], 140e3, curves.step)))
-    return Claim(
-        10,
-        "Both effects, Method 1, J5: both together are the worst; S3 is influenced more by elasticity than by "
-        "friction, S2 by elasticity at large k and by friction below 140 kN/m.",
-        tuple(parts),
-    )
+    return Claim(10, CLAIMS[10], tuple(parts))
 
 
 def claim_13(evidence: Evidence) -> Claim:
@@ -208,12 +182,7 @@ def claim_13(evidence: Evidence) -> Claim:
             parts.append(Part(text + but, bool(better[-1] > 0.0) and exceptions.size == 0))
     half = [evidence.improvement(3, index, case)[0] for index in ("J1", "J3", "J5") for case in (7, 13)]
     parts.append(Part(f"half car, Method 2: {min(half):.1f} to {max(half):.1f} % better", min(half) > 0.0))
-    return Claim(
-        13,
-        "The suspension with a nonlinear inerter is still better than the traditional one, especially at large k.",
-        tuple(parts),
-        note="Worse means beyond two standard errors.",
-    )
+    return Claim(13, CLAIMS[13], tuple(parts), note="Worse means beyond two standard errors.")
 
 
 def _but(exceptions: Array) -> str:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.files.study.running import StudyResult
 from inerter.methods.method import evaluate
 from inerter.methods.norm import Norm
 from inerter.papers.wang_su_2008.source import PrintedRow, linear_rows
-from inerter.study.run import StudyResult
 
 STUDIES = ("table1", "table2", "figure11")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -12,22 +13,21 @@ from typing import Any
 import xarray as xr
 
 from inerter.errors import StudyError
-from inerter.files.common.folder import Intent, Results, claimed
-from inerter.files.common.journal import Journal
+from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
+from inerter.files.study.running import NAMES, StudyResult, run_study
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import Claim, Evidence
 from inerter.papers.wang_su_2008.linear import Linear
+from inerter.papers.wang_su_2008.paper import PAPER, PARTS
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
-from inerter.papers.wang_su_2008.source import KEY, study
-from inerter.study.run import FIGURES, NAMES, REPORT, StudyResult, run_study
-from inerter.study.workers import Crew, crewed
+from inerter.papers.wang_su_2008.source import study
+from inerter.work.journal import Journal
+from inerter.work.pool import Crew, crewed
 
 JOURNAL = "tasks.jsonl"
-_PAPER = ("rig", "linear", "table1", "table2", "table3", "figure12", "figure13", "figure14", "claims")
-PARTS = (*_PAPER, "methods", "optima", "budgets")  # the last ones are not in the paper
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
 _ORDER = (
     "rig",
@@ -118,7 +118,7 @@ def reproduce(
     folder: Path,
     *,
     only: Sequence[str] = (),
-    jobs: int | Crew = 1,
+    jobs: int | Executor | Crew = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda what, done, total: None,
@@ -224,7 +224,7 @@ def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
 
 def _run(tasks: list[Task], results: Results, crew: Crew, progress: Progress) -> dict[tuple[str, str], Numbers]:
     """The numbers of all tasks; each is in the journal as soon as it is there."""
-    journal = Journal(results.place / JOURNAL, {"paper": KEY})
+    journal = Journal(results.place / JOURNAL, {"paper": PAPER.name})
     before = journal.read() if results.resume else []
     found = {(entry["part"], entry["name"]): entry["numbers"] for entry in before}
     pending = [task for task in tasks if task.key not in found]

@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import as_file, files
 
+from inerter.files.study.loading import load_study
+from inerter.files.study.registry import INDEX
+from inerter.files.study.study import Study
 from inerter.indices.index import Index, LoadCarrying
-from inerter.study.file import load_study
-from inerter.study.registry import INDEX
-from inerter.study.values import Study
 from inerter.vehicle.cars import Vehicle
 
-KEY = "wang-su-2008"
-TITLE = "Wang and Su (2008), Impact of inerter nonlinearities on vehicle suspension control"
-_DATA = files("inerter.papers") / "data" / KEY
+_DATA = files("inerter.papers.wang_su_2008") / "data"
 _LINEAR = {"none": "", "ideal": "", "elastic": "-soft", "elastic soft": "-soft", "elastic hard": "-hard"}
 _FRICTION = {
     "friction 10 N": "-10N",

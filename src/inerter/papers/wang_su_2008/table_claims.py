@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from inerter.papers.wang_su_2008.judging import Claim, Evidence, Part, is_near
+from inerter.papers.wang_su_2008.paper import CLAIMS
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 
 _SAID = 0.5  # percentage points: the steps in which the paper speaks of losses (0.5, 1, 2.5)
@@ -25,13 +26,7 @@ def _claim_6(evidence: Evidence) -> Claim:
         cost, error = evidence.cost(1, "J3", ideal, hundred)
         text = f"{layout} with 100 N: J3 loses {cost:.2f} ± {error:.2f}, J1 {ride:.2f} percentage points"
         parts.append(Part(text, cost > 2.0 * error, is_near(cost, printed, _SAID, error)))
-    return Claim(
-        6,
-        "Friction only, Method 2: 10 N is negligible for J1 and J3; 100 N costs J3 about 1 % (S2) and 2.5 % (S3) of "
-        "the improvement.",
-        tuple(parts),
-        note="Negligible: less than half a percentage point.",
-    )
+    return Claim(6, CLAIMS[6], tuple(parts), note="Negligible: less than half a percentage point.")
 
 
 def _claim_7(evidence: Evidence) -> Claim:
@@ -44,12 +39,7 @@ def _claim_7(evidence: Evidence) -> Claim:
             text = f"{layout} with {force} N: {change:+.2f} % over all frequencies"
             parts.append(Part(text, change > 0.0 if layout == "S2" else change < 0.0))
             followed.append(_followed(layout, force, row, reference))
-    return Claim(
-        7,
-        "Friction only, Method 2: J5 becomes worse for S2 and slightly better for S3.",
-        tuple(parts),
-        note=f"At the peak nearest to the printed value: {'; '.join(followed)}.",
-    )
+    return Claim(7, CLAIMS[7], tuple(parts), note=f"At the peak nearest to the printed value: {'; '.join(followed)}.")
 
 
 def _followed(layout: str, force: int, row: SimulatedRow, reference: SimulatedRow) -> str:
@@ -65,11 +55,7 @@ def _claim_11(evidence: Evidence) -> Claim:
             cost, error = evidence.cost(1, index, ideal, both)
             said = _between(cost, 2.0, 3.0, error) if index == "J1" else is_near(cost, 0.5, _SAID, error)
             parts.append(Part(f"{index} of {layout} loses {cost:.2f} percentage points", cost > 2.0 * error, said))
-    return Claim(
-        11,
-        "Both effects, Method 2, quarter car: J1 degrades by 2 to 3 %, J3 by about 0.5 %.",
-        tuple(parts),
-    )
+    return Claim(11, CLAIMS[11], tuple(parts))
 
 
 def claim_12(evidence: Evidence) -> Claim:
@@ -88,12 +74,7 @@ def claim_12(evidence: Evidence) -> Claim:
         cost, error = evidence.cost(2, "J5", ideal, both)
         text = f"Method 1, J5 of {layout} loses {cost:.2f} ± {error:.2f} percentage points"
         parts.append(Part(text, cost > 2.0 * error, is_near(cost, 8.0, 1.0, error)))
-    return Claim(
-        12,
-        "Both effects, half car: by Method 2 J1 degrades by 2 to 3 %, J3 by less than 1 %, J5 by up to 6.5 % (S3); by "
-        "Method 1 J5 by about 8 % for S2 and S3.",
-        tuple(parts),
-    )
+    return Claim(12, CLAIMS[12], tuple(parts))
 
 
 def _between(value: float, low: float, high: float, error: float) -> bool:

@@ -1,0 +1,229 @@
+"""What a single entry of a study file may be: checks that turn it into its value, or say what is wrong with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from pydantic import PlainValidator
+
+from inerter.errors import UnitError
+from inerter.files.common.suggest import nearest
+from inerter.networks.elements import NAME
+from inerter.units import format_quantity, parse_element, parse_quantity, shown
+
+MOST_POINTS = 10_000
+_LONGEST_EXPRESSION = 500
+_MOST_BRACKETS = 50  # far from the depth at which Python's stack ends
+_LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")
+
+
+class Amount(NamedTuple):
+    """The value of an element in the SI unit that tells its kind."""
+
+    unit: str
+    value: float
+
+
+def positive(unit: str) -> PlainValidator:
+    """A quantity of `unit` that is greater than zero."""
+
+    def check(text: Any) -> float:
+        value = parse_quantity(text, unit)
+        if value <= 0.0:
+            raise UnitError(f"Got {shown(text)}: not positive; expected more than 0 {unit}.")
+        return value
+
+    return PlainValidator(check)
+
+
+def quantity(unit: str) -> PlainValidator:
+    """A quantity of `unit` of either sign."""
+    return PlainValidator(lambda text: parse_quantity(text, unit))
+
+
+def not_negative(unit: str) -> PlainValidator:
+    """A quantity of `unit` that may be zero."""
+
+    def check(text: Any) -> float:
+        value = parse_quantity(text, unit)
+        if value < 0.0:
+            raise UnitError(f"Got {shown(text)}: negative; expected 0 {unit} or more.")
+        return value
+
+    return PlainValidator(check)
+
+
+def positive_number(value: Any) -> float:
+    """A number greater than zero, without a unit."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
+        raise ValueError(f"Got {shown(value)}; expected a positive number without quotes, such as 1.02.")
+    return float(value)
+
+
+def yes_or_no(value: Any) -> bool:
+    """True or false."""
+    if not isinstance(value, bool):
+        raise ValueError(f"Got {shown(value)}; expected true or false, without quotes.")
+    return value
+
+
+def fixed_amount(text: Any) -> Amount:
+    """The value of an element where there is nothing to optimise."""
+    if isinstance(text, dict):
+        raise ValueError(
+            'Got a range; a simulation needs one value. Write one, such as "3 kN s/m", perhaps the best that '
+            "inerter run found (summary.csv)."
+        )
+    return amount(text)
+
+
+def amount(text: Any) -> Amount:
+    """The value of an element."""
+    unit, value = parse_element(text)
+    if value < 0.0 or (value == 0.0 and unit not in ("N", "m")):  # no friction, no play: an element that is not there
+        raise UnitError(
+            f"Got {shown(text)}: not positive; expected more than 0 {unit}. "
+            f"To leave the element out, drop its branch from the layouts."
+        )
+    return Amount(unit, value)
+
+
+def text(value: Any) -> str:
+    """A title or a name."""
+    if not isinstance(value, str) or not value.strip() or len(value) > 200:
+        raise ValueError(f'Got {shown(value)}; expected text of 1 to 200 characters in quotes, such as "My car".')
+    return value
+
+
+def one_of(what: str, known: tuple[str, ...]) -> Callable[[Any], str]:
+    """One of the words that this version knows; `what` says what kind of word it is, with its article."""
+
+    def check(value: Any) -> str:
+        if not isinstance(value, str) or value not in known:
+            raise ValueError(
+                f"Got {shown(value)}: not {what}; available in this version: "
+                f"{', '.join(shown(name) for name in known)}.{nearest(value, known)}"
+            )
+        return value
+
+    return check
+
+
+def some_of(what: str, known: tuple[str, ...]) -> PlainValidator:
+    """A list of at least one of `known`, none of them twice."""
+    return _list_of(one_of(what, known), known[0])
+
+
+def some_names(example: str) -> PlainValidator:
+    """A list of at least one name, none of them twice; whether they are known is seen later."""
+    return _list_of(text, example)
+
+
+def _list_of(one: Callable[[Any], str], example: str) -> PlainValidator:
+    def check(values: Any) -> tuple[str, ...]:
+        if not isinstance(values, list) or not values:
+            got = "an empty list" if values == [] else shown(values)
+            raise ValueError(f"Got {got}; expected a list of one or more, such as [{shown(example)}].")
+        checked = tuple(one(value) for value in values)
+        twice = next((value for value in checked if checked.count(value) > 1), None)
+        if twice is not None:
+            raise ValueError(f"Got {shown(twice)} more than once; expected each at most once.")
+        return checked
+
+    return PlainValidator(check)
+
+
+def whole(lower: int, upper: int) -> PlainValidator:
+    """A whole number between two others."""
+
+    def check(value: Any) -> int:
+        if not isinstance(value, int) or isinstance(value, bool) or not lower <= value <= upper:
+            raise ValueError(f"Got {shown(value)}; expected a whole number from {lower} to {upper}, without quotes.")
+        return value
+
+    return PlainValidator(check)
+
+
+def share(value: Any) -> float:
+    """A number between zero and one, without a unit."""
+    if not isinstance(value, float) or not 0.0 < value < 1.0:
+        raise ValueError(f"Got {shown(value)}; expected a number between 0 and 1 without quotes, such as 0.01.")
+    return value
+
+
+def expression(value: Any) -> str:
+    """The text of a network; whether it can be parsed is seen when all elements are known."""
+    if not isinstance(value, str):
+        raise ValueError(f'Got {shown(value)}; expected a network in quotes, such as "k | c - b".')
+    if len(value) > _LONGEST_EXPRESSION or value.count("(") > _MOST_BRACKETS:
+        raise ValueError(
+            f"Got a network of {len(value)} characters with {value.count('(')} brackets; expected at most "
+            f"{_LONGEST_EXPRESSION} and {_MOST_BRACKETS}. Write it with fewer brackets and shorter names."
+        )
+    return value
+
+
+_TAKEN = frozenset(
+    (
+        "layout index method other parameter point omega value standard_error improvement other_value parameter_value "
+        "parameter_low parameter_high at_bound status starts agreed evaluations parameter_unit index_unit index_title "
+        "improvement_error realisations over_linear over_linear_error"
+    ).split()
+)
+
+
+def element_name(name: Any) -> str:
+    """A name that can stand in an expression, and in results beside the names that are there already."""
+    if not NAME.fullmatch(name):
+        raise ValueError(
+            f"Got {shown(name)}: not a name; expected a letter followed by letters, digits and underscores, such as k1."
+        )
+    if name in _TAKEN:
+        raise ValueError(f"Got {shown(name)}: a word that results use themselves; expected another name, such as k1.")
+    return str(name)
+
+
+def layout_name(name: Any) -> str:
+    """A name that can stand in a table and in the name of a file."""
+    if not 0 < len(name) <= 40 or not _LAYOUT_NAME_CHARACTERS.issuperset(name) or name[0] in ".-+":
+        raise ValueError(
+            f"Got {shown(name)}: not a layout name, which also names files; expected up to 40 letters, digits and "
+            f"_ - + . that begin with a letter or a digit, such as S3e."
+        )
+    return str(name)
+
+
+def check_order(lower: Amount, upper: Amount) -> None:
+    """Raises ValueError unless both ends have one unit and `lower` is the lower."""
+    if lower.unit != upper.unit:
+        raise ValueError(f"Got ends of unlike units, {lower.unit} and {upper.unit}; expected one unit for both.")
+    if lower.value >= upper.value:
+        equal = lower.value == upper.value
+        how, remedy = ("equal", "Write a single value without from and to.") if equal else ("reversed", "Swap them.")
+        first, last = (format_quantity(end.value, end.unit, digits=12) for end in (lower, upper))
+        raise ValueError(f'Got {how} ends, from = "{first}" and to = "{last}"; expected from less than to. {remedy}')
+
+
+def sweep_list(values: Any) -> tuple[Amount, ...]:
+    """The values of a sweep, one by one."""
+    if not isinstance(values, list) or not 2 <= len(values) <= MOST_POINTS:
+        got = f"a list of {len(values)}" if isinstance(values, list) else shown(values)
+        raise ValueError(
+            f"Got {got}; expected 2 to {MOST_POINTS} values, as in "
+            f'k = {{ from = "10 kN/m", to = "300 kN/m", points = 30 }} or k = ["10 kN/m", "20 kN/m"].'
+        )
+    amounts = tuple(amount(value) for value in values)
+    if len({a.unit for a in amounts}) > 1:
+        raise ValueError(f"Got values of unlike units, {', '.join(sorted({a.unit for a in amounts}))}; expected one.")
+    if len(set(amounts)) < len(amounts):
+        raise ValueError("Got the same value more than once; expected each once.")
+    return amounts
+
+
+def one_sweep(sweep: dict[str, Any]) -> dict[str, Any]:
+    """Two swept elements would be a grid, which is not one line in a figure."""
+    if len(sweep) != 1:
+        got = ", ".join(shown(name) for name in sweep) or "none"
+        raise ValueError(f"Got {len(sweep)} swept elements ({got}); expected exactly one.")
+    return sweep

@@ -1,0 +1,106 @@
+"""Elements and layouts of files: what entries of them stand for, how they are written, what can be wrong with them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from inerter.errors import NetworkError
+from inerter.files.common.entries import Amount
+from inerter.files.common.problems import at
+from inerter.files.common.shape import UNITS, Axles, Range
+from inerter.files.common.suggest import nearest, some
+from inerter.networks.elements import ELEMENT_TYPES, Element, Free, Value
+from inerter.networks.parser import names, network
+from inerter.units import shown
+from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
+
+MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear"), "rig": ("device",)}
+_CARS: dict[str, type[QuarterCar | HalfCar | Rig]] = {"quarter-car": QuarterCar, "half-car": HalfCar, "rig": Rig}
+_KINDS: dict[str, Callable[[Value, str], Element]] = {kind.unit: kind for kind in ELEMENT_TYPES}
+
+
+@dataclass(frozen=True)
+class StrutLayout:
+    """The network of every mount of the vehicle, as an expression: `strut`, or `front` and `rear`."""
+
+    struts: dict[str, str]
+
+    def design(
+        self, model: str, vehicle: Mapping[str, float], elements: Mapping[str, Element]
+    ) -> QuarterCar | HalfCar | Rig:
+        """The vehicle with these struts, made of `elements`."""
+        mounted = {mount: network(text, **elements) for mount, text in self.struts.items()}
+        arguments: dict[str, Any] = {**vehicle, **mounted}
+        return _CARS[model](**arguments)
+
+    def entry(self) -> str | dict[str, str]:
+        """How a file says it."""
+        return dict(self.struts) if len(self.struts) > 1 else next(iter(self.struts.values()))
+
+
+def struts_of(model: str, entry: Axles | str) -> dict[str, str]:
+    """The network of every mount."""
+    return entry.model_dump() if isinstance(entry, Axles) else dict.fromkeys(MOUNTS[model], entry)
+
+
+def element_of(name: str, entry: Range | Amount) -> Element:
+    """The element that the unit of its value tells."""
+    if isinstance(entry, Range):
+        return _KINDS[entry.lower.unit](Free(entry.lower.value, entry.upper.value, name), name)
+    return _KINDS[entry.unit](entry.value, name)
+
+
+def element_entry(element: Element) -> str | dict[str, str]:
+    """How a file says an element's value or range."""
+    value = element.value
+    if isinstance(value, Free):
+        return {"from": f"{value.lower!r} {element.unit}", "to": f"{value.upper!r} {element.unit}"}
+    return f"{value!r} {element.unit}"
+
+
+def in_si(key: str, value: float) -> str:
+    """The text of a quantity, in the SI unit of its key."""
+    return f"{value!r} {UNITS[key]}"  # repr is the shortest text that reads back as the same number
+
+
+def layout_problems(model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[str]:
+    """What is wrong with layouts: networks that cannot be, and elements that are not there."""
+    for name, layout in layouts.items():
+        if tuple(layout.struts) != MOUNTS[model]:
+            yield at(
+                ("layouts", name),
+                f"got a table; a {model.replace('-', ' ')} has one {MOUNTS[model][0]}, so expected its network in "
+                f"quotes, such as {shown(next(iter(layout.struts.values())))}.",
+            )
+            continue
+        alike = len(set(layout.struts.values())) == 1
+        for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
+            place = ("layouts", name) if alike else ("layouts", name, mount)
+            yield from (at(place, problem) for problem in network_problems(expression, elements))
+
+
+def network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:
+    """What is wrong with one network: its syntax, or elements that are not there."""
+    try:
+        unknown = [name for name in names(expression) if name not in elements]
+        for name in unknown:
+            defined = some(elements)
+            yield (
+                f"got {shown(expression)}: {shown(name)} is not in [elements], where there are {defined}"
+                f".{nearest(name, elements)}"
+            )
+        if not unknown:
+            network(expression, **elements)
+    except NetworkError as error:
+        yield str(error)
+
+
+def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[str]:
+    """What is wrong with the layout that a section chooses."""
+    layouts = some(known)
+    if not layout:
+        yield at((section, "layout"), f"missing, but there are several layouts; expected one of {layouts}.")
+    elif layout not in known:
+        yield at((section, "layout"), f"got {shown(layout)}; expected one of {layouts}.{nearest(layout, known)}")

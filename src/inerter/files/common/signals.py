@@ -1,0 +1,103 @@
+"""The section [signal] of a file: its shape for every kind of signal, and the signal that it asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import reduce
+from operator import or_
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import ConfigDict, Discriminator, Field, PlainValidator, Tag, create_model
+
+from inerter.files.common.entries import one_of, text
+from inerter.files.common.shape import Shape
+from inerter.files.common.signal_kinds import KINDS, MOVED, NEEDED, UNITS, unit_of
+from inerter.signals.road import Road
+from inerter.signals.signal import Signal
+
+
+@dataclass(frozen=True)
+class SignalRequest:
+    """A signal by its kind, what it moves, and the values of the kind's keys."""
+
+    kind: str
+    input: str
+    values: dict[str, Any]
+
+    @property
+    def unit(self) -> str:
+        """Of the signal: m, N or N m."""
+        return unit_of(self.input)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Of the values; empty for what has none."""
+        return {name: key.of(self.unit).unit for name, key in KINDS[self.kind].keys.items()}
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it is read from."""
+        return (Path(self.values["file"]),) if "file" in self.values else ()
+
+    def make(self, speed: float | None = None, roughness: float | None = None) -> Signal:
+        """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
+        kind = KINDS[self.kind]
+        road = None if speed is None or roughness is None else Road(roughness, speed)
+        known = {"road": road, "speed": speed, "unit": self.unit}
+        return kind.make(**self.values, **{name: known[name] for name in kind.given})
+
+    def resolved(self) -> dict[str, Any]:
+        """How a file says it, in SI units."""
+        units = self.units
+        values = {name: f"{v!r} {units[name]}" if units[name] else v for name, v in self.values.items()}
+        return {"kind": self.kind, "input": self.input, **values}
+
+
+def signal_of(path: Path, model: str, entry: dict[str, Any]) -> SignalRequest:
+    """The signal that a section [signal] asks for; its file is looked for beside that at `path`."""
+    values = dict(entry)
+    kind, moved = values.pop("kind"), values.pop("input") or MOVED[model]
+    if "file" in values:
+        values["file"] = str((path.parent / values["file"]).absolute())
+    return SignalRequest(kind, moved, values)
+
+
+class AnySignal(Shape):
+    """A signal whose kind is missing or unknown: nothing more can be said about its keys."""
+
+    model_config = ConfigDict(extra="ignore")
+    kind: Annotated[str, PlainValidator(one_of("a kind of signal", tuple(KINDS)))] = Field(
+        examples=['kind = "multisine"']
+    )
+
+
+def _signal_shape(kind: str, unit: str) -> type[Shape]:
+    keys = {name: key.of(unit) for name, key in KINDS[kind].keys.items()}
+    fields: dict[str, Any] = {
+        name: (Annotated[Any, key.check(key.unit)], Field(default=key.default, examples=[key.example]))
+        for name, key in keys.items()
+    }
+    fields["kind"] = (Literal[kind], NEEDED)
+    fields["input"] = (Annotated[str | None, PlainValidator(text)], None)
+    return create_model(f"{kind} in {unit}", __base__=Shape, **fields)
+
+
+def _signal_tag(signal: Any) -> str:
+    kind = signal.get("kind") if isinstance(signal, dict) else None
+    return f"<{kind} in {unit_of(signal.get('input'))}>" if isinstance(kind, str) and kind in KINDS else "<any>"
+
+
+_SIGNALS = {f"<{kind} in {unit}>": _signal_shape(kind, unit) for kind in KINDS for unit in UNITS}
+if TYPE_CHECKING:
+    SignalEntry = Shape
+else:
+    SignalEntry = Annotated[
+        reduce(or_, (Annotated[shape, Tag(tag)] for tag, shape in {"<any>": AnySignal, **_SIGNALS}.items())),
+        Discriminator(_signal_tag),
+    ]
+
+SIGNAL_SHAPES: dict[tuple[str, ...], type[Shape]] = {
+    ("signal", "<any>"): AnySignal,
+    **{("signal", tag): shape for tag, shape in _SIGNALS.items()},
+}

@@ -1,0 +1,83 @@
+"""TOML files, read with an error that tells what is wrong with one, and written."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from inerter.errors import StudyError
+from inerter.files.common.problems import refusal
+
+_LARGEST = 1_000_000  # bytes
+_POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def read_tables(path: Path, what: str) -> dict[str, Any]:
+    """The tables of a TOML file; `what` it should be is for messages.
+
+    Raises `StudyError` for a file that cannot be read, or is no TOML.
+    """
+    if path.is_dir():
+        raise StudyError(f"{path}: this is a folder; expected {what}. Give the path of a .toml file in it.")
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(_LARGEST + 1)
+    except FileNotFoundError:
+        raise StudyError(f"{path}: there is no such file; expected {what}. Check the path.") from None
+    except OSError as error:
+        raise StudyError(f"{path}: cannot be read ({error.strerror}); expected {what}.") from None
+    if len(data) > _LARGEST:
+        raise refusal(path, [f"larger than {_LARGEST} bytes; expected {what}, which is a page of TOML."])
+    try:
+        return tomllib.loads(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise refusal(path, [f"line {line}: not UTF-8 text; save the file with the encoding UTF-8."]) from None
+    except tomllib.TOMLDecodeError as error:
+        raise refusal(path, [_syntax_problem(str(error), data)]) from None
+    except (RecursionError, ValueError):  # thousands of brackets, or of digits in a whole number
+        raise refusal(path, [f"not {what}: brackets nested too deeply, or a number too long."]) from None
+
+
+def _syntax_problem(message: str, data: bytes) -> str:
+    """Tomllib's message with its position in front and a hint for the two most frequent causes."""
+    position = _POSITION.search(message)
+    lines = data.decode("utf-8-sig").split("\n")
+    line, column = position.groups() if position else (None, None)
+    where = f"line {line or len(lines)}, column {column or len(lines[-1]) + 1}"
+    what = _POSITION.sub("", message)
+    if what.startswith(("Cannot", "Duplicate")):
+        return f"{where}: a key or section is given twice ({what}); expected each once. Rename or remove one."
+    return f'{where}: not valid TOML ({what}); quantities, names and networks are quoted, such as k = "120 kN/m".'
+
+
+def as_toml(tables: Mapping[str, Any]) -> str:
+    """TOML text: keys that hold a value, then a section for each dictionary."""
+    lines = [f"{key} = {_toml(value)}" for key, value in tables.items() if not isinstance(value, dict)]
+    for section, table in tables.items():
+        if isinstance(table, dict):
+            lines += ["", f"[{section}]", *(f"{_key(key)} = {_toml(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(value: object) -> str:
+    match value:
+        case dict():
+            return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+        case list():
+            return "[" + ", ".join(_toml(item) for item in value) + "]"
+        case bool():
+            return str(value).lower()
+        case str():
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON leaves DEL, TOML may not
+        case _:
+            return str(value)
+
+
+def _key(key: str) -> str:
+    return key if _BARE_KEY.fullmatch(key) else _toml(key)

@@ -1,0 +1,156 @@
+"""What `inerter identify` is asked for: how to read records, the model to fit, and the settings of the fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from inerter.errors import InerterError, StudyError
+from inerter.files.common.layouts import element_of, network_problems
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.suggest import nearest
+from inerter.files.common.toml import read_tables
+from inerter.files.identification.shape import CHOOSE, SHAPES, IdentificationFile
+from inerter.identification.models import MODELS
+from inerter.networks.elements import Element, Free, Network
+from inerter.networks.parser import names, network
+from inerter.networks.transform import map_elements
+from inerter.units import shown
+from inerter.vehicle.cars import Rig
+
+CUSTOM = "custom"
+
+
+@dataclass(frozen=True)
+class RecordRequest:
+    """How files are read, in the words of `read_record`, and what is done to their records then."""
+
+    channels: dict[str, str | int] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    interval: float | None = None  # [s]
+    gaps: str | float = "refuse"
+    force_range: float | None = None  # [N]
+    force_bandwidth: float | None = None  # [Hz]
+    force_noise: float | None = None  # [N] r.m.s.
+    displacement_noise: float | None = None  # [m] r.m.s.
+    fixture_mass: float | None = None  # [kg]
+    period: float | None = None  # [s]
+    start: float | None = None  # [s]
+    stop: float | None = None  # [s]
+    resample: float | None = None  # [s]
+    detrend: bool = False
+
+
+@dataclass(frozen=True)
+class IdentificationRequest:
+    """A model by its name, or made of elements, and what else the configuration says. No model is yet to be named."""
+
+    title: str | None = None
+    record: RecordRequest = RecordRequest()
+    name: str | None = None
+    layout: str | None = None
+    elements: dict[str, Element] = field(default_factory=dict)
+    settings: dict[str, Any] = field(default_factory=dict)  # of `identify`
+
+    @property
+    def chooses(self) -> bool:
+        """Whether there is a choice between models."""
+        return self.layout is None and self.name == CHOOSE
+
+    def models(self) -> dict[str, Network]:
+        """The models to fit, by name: one, or the whole catalogue for "choose".
+
+        Raises `StudyError` where none is named or a name is unknown.
+        """
+        if self.layout is not None:
+            return {CUSTOM: network(self.layout, **self.elements)}
+        known = ", ".join((*MODELS, CHOOSE))
+        if self.name is None:
+            raise StudyError(
+                f"Which model? Name one of {known} with --model, or write [model] and [elements] in a --config."
+            )
+        if self.name == CHOOSE:
+            return {name: _replaced(model, self.elements) for name, model in MODELS.items()}
+        if self.name not in MODELS:
+            raise StudyError(
+                f"Got --model {self.name}; expected one of {known}.{nearest(self.name, (*MODELS, CHOOSE))}"
+            )
+        return {self.name: _replaced(MODELS[self.name], self.elements)}
+
+
+def load_identification(path: str | Path) -> IdentificationRequest:
+    """The configuration in the TOML file at `path`.
+
+    Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
+    """
+    path = Path(path)
+    tables = read_tables(path, "a configuration for inerter identify")
+    try:
+        shape = IdentificationFile.model_validate(tables)
+    except ValidationError as error:
+        raise refusal(path, explain(error, SHAPES)) from None
+    record, settings = shape.record.model_dump(), shape.fit.model_dump()
+    roles = ("displacement", "force", "time", "velocity", "acceleration")
+    channels = {role: value for role in roles if (value := record.pop(role)) is not None}
+    request = IdentificationRequest(
+        title=shape.title,
+        record=RecordRequest(channels, **record),
+        name=shape.model.name,
+        layout=shape.model.layout,
+        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
+        settings={name: value for name, value in settings.items() if value is not None},
+    )
+    problems = list(_problems(request))
+    if problems:
+        raise refusal(path, problems)
+    return request
+
+
+def _problems(request: IdentificationRequest) -> Iterator[str]:
+    if request.layout is None:
+        yield from _of_named(request)
+        return
+    if request.name is not None:
+        yield at(("model",), f"got both a name, {shown(request.name)}, and a layout; expected one of them.")
+    wrong = list(network_problems(request.layout, request.elements))
+    yield from (at(("model", "layout"), problem) for problem in wrong)
+    if wrong:
+        return
+    used = names(request.layout)
+    for name in request.elements:
+        if name not in used:
+            yield at(("elements", name), "is not in the layout of [model]; use it there, or leave it out.")
+    if not any(isinstance(request.elements[name].value, Free) for name in used):
+        yield at(
+            ("elements",),
+            'nothing to identify, since every value is fixed; expected a range, such as b = { from = "1 kg", '
+            'to = "500 kg" }.',
+        )
+    try:
+        Rig(network(request.layout, **request.elements))
+    except InerterError as error:
+        yield at(("model", "layout"), str(error))
+
+
+def _of_named(request: IdentificationRequest) -> Iterator[str]:
+    """Elements that replace those of models of the catalogue."""
+    units = {e.label: e.unit for model in MODELS.values() for e in model.elements()}
+    for name, element in request.elements.items():
+        if name not in units:
+            hint = nearest(name, units)
+            yield at(
+                ("elements", name),
+                f"there is no model.layout that would use it, and the models of the catalogue have "
+                f"{', '.join(units)}.{hint}",
+            )
+        elif element.unit != units[name]:
+            yield at(("elements", name), f"got a value in {element.unit}; expected one in {units[name]}.")
+
+
+def _replaced(model: Network, elements: Mapping[str, Element]) -> Network:
+    """A model with the values of some of its elements fixed, or free within other bounds."""
+    return map_elements(model, lambda element: elements.get(element.label, element))

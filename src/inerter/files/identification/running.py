@@ -1,0 +1,198 @@
+"""From files of measurements to an identified device: reading, looking over, preparing, fitting, responses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from inerter.errors import InerterError, RecordError
+from inerter.files.identification.loading import CUSTOM, IdentificationRequest, RecordRequest
+from inerter.identification.choice import choose
+from inerter.identification.fit import Comparison, Fit
+from inerter.identification.hypotheses import DELAY, GAIN
+from inerter.identification.identify import identify
+from inerter.identification.models import VISCOUS, mounted
+from inerter.identification.response import linear_response, model_response
+from inerter.networks.elements import Free, Network
+from inerter.networks.transform import with_values
+from inerter.records.finding import Finding
+from inerter.records.findings import findings
+from inerter.records.prepare import detrend, resample, shift_force
+from inerter.records.readers import read_record
+from inerter.records.record import Record
+from inerter.records.response import frequency_response
+from inerter.records.result import Response
+from inerter.vehicle.cars import Rig
+
+Progress = Callable[[float], None]
+FIT, RESIDUALS = "fit.json", "residuals.csv"
+_LINEAR_POINTS = 300
+_OF_SENSORS = ("force_bandwidth", "force_noise", "displacement_noise", "fixture_mass")
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """A record as it was received and as it is used, and what is worth knowing about it."""
+
+    received: Record
+    used: Record
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One model of several, and how well it predicts the part of the records that it was not fitted to."""
+
+    name: str
+    unknowns: int
+    loss: float  # mean square of whitened residuals there, about 1 at best
+    behind: float  # the loss over the least
+    error: float  # standard error of that difference
+    as_good: bool  # as the best
+    status: str
+
+
+@dataclass(frozen=True, eq=False)
+class Responses:
+    """Force over displacement as measured, of the model at the same amplitude, and of the linear model."""
+
+    measured: Response | None
+    model: Response | None = None
+    linear: Response | None = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """A fit with all that a report of it tells."""
+
+    title: str
+    name: str  # of the model
+    model: Network  # with its free values named
+    device: Network  # the same with its best values
+    readings: tuple[Reading, ...]
+    fit: Fit
+    settings: dict[str, Any]
+    candidates: tuple[Candidate, ...] = ()  # the best first
+    choice: tuple[str, ...] = ()  # what there is to say of the choice between them
+
+    def bounds(self, parameter: str) -> tuple[float, float] | None:
+        """Between which a parameter of the device was sought; None for one of the sensors."""
+        free = (e.value for e in self.model.elements())
+        return next(((v.lower, v.upper) for v in free if isinstance(v, Free) and v.name == parameter), None)
+
+    @property
+    def explains(self) -> bool:
+        """Whether the model explains the records, so that its parameters mean anything."""
+        return self.fit.status.ok or any(self.fit.identifiable.values())
+
+
+def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> Reading:
+    """The record of a file, prepared as the request says, with its findings.
+
+    Raises `RecordError` for a file that cannot be used, or a record that nothing can be fitted to.
+    """
+    channels: dict[str, Any] = dict(asked.channels)
+    received = read_record(
+        path,
+        **channels,
+        units=asked.units or None,
+        interval=asked.interval,
+        gaps=asked.gaps,
+        force_range=asked.force_range,
+        period=asked.period,
+        progress=progress,
+    )
+    received = received.noted(**{name: getattr(asked, name) for name in _OF_SENSORS})
+    used = received
+    if asked.start is not None or asked.stop is not None:
+        used = used.trim(asked.start, asked.stop)
+    if asked.resample is not None:
+        used = resample(used, asked.resample)
+    if asked.detrend:
+        used = detrend(used)
+    found = tuple(findings(used))
+    if found and found[0].severity == "error":
+        raise RecordError(f"{used.source}: {found[0].sentence}")
+    return Reading(received, used, found)
+
+
+def run_identification(
+    readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None = None
+) -> Identified:
+    """Fit the model, or choose one, to the records.
+
+    Raises what `identify` raises.
+    """
+    records = [r.used for r in readings]
+    settings = dict(request.settings)
+    title = request.title or ", ".join(dict.fromkeys(r.source for r in records))
+    if request.chooses:
+        return _chosen(title, readings, request, settings, progress)
+    ((name, model),) = request.models().items()
+    fit = identify(records, mounted(model), **settings, progress=progress)
+    named = Rig(model).device
+    return Identified(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
+
+
+def _chosen(
+    title: str,
+    readings: Sequence[Reading],
+    request: IdentificationRequest,
+    settings: dict[str, Any],
+    progress: Progress | None,
+) -> Identified:
+    models = request.models()
+    given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
+    choice = choose([r.used for r in readings], models=given, **settings, progress=progress)
+    candidates = tuple(
+        Candidate(c.name, c.unknowns, c.loss, c.behind, c.error, c.as_good, str(choice.fits[c.name].status))
+        for c in choice.candidates
+    )
+    named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
+    return Identified(
+        title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings, candidates, choice.notes
+    )
+
+
+def _with_best(model: Network, fit: Fit) -> Network:
+    return with_values(model, {name: p.best for name, p in fit.parameters.items()})
+
+
+def responses(found: Identified) -> Responses:
+    """The frequency responses of the records, their sensors put right as the fit found them, and of the model."""
+    values = {name: p.best for name, p in found.fit.parameters.items()}
+    records = [_corrected(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
+    try:
+        measured = frequency_response(records)
+    except InerterError as error:
+        return Responses(None, notes=(str(error),))
+    if not measured.omega.size:
+        return Responses(None, notes=measured.notes)
+    notes, model, linear = list(measured.notes), None, None
+    try:
+        model = model_response(found.fit.device, records)
+        notes += [note for note in model.notes if note not in notes]
+        low, high = measured.omega[0], measured.omega[-1]
+        reach = 1.3 if high > 2.0 * low else 2.0
+        linear = linear_response(
+            found.fit.device, np.geomspace(low / reach, high * reach, _LINEAR_POINTS), records[0].force_bandwidth
+        )
+    except InerterError as error:
+        notes.append(str(error))
+    return Responses(measured, model, linear, tuple(notes))
+
+
+def model_title(found: Identified) -> str:
+    """The model in words."""
+    return "the model of the configuration" if found.name == CUSTOM else f"the model {found.name}"
+
+
+def _corrected(comparison: Comparison, gain: float, delay: float) -> Record:
+    moved = (comparison.record.fixture_mass or 0.0) * comparison.experiment.motion.acceleration
+    record = comparison.record.noted(force=(comparison.record.force - comparison.offset) / gain - moved)
+    return shift_force(record, delay) if delay else record

@@ -1,0 +1,84 @@
+"""Reading a rig file: TOML to a virtual rig and what its table does, or one error with a line for every problem."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from inerter.errors import InerterError
+from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.shape import RIG
+from inerter.files.common.signal_kinds import KINDS, MOVED
+from inerter.files.common.signals import SignalRequest, signal_of
+from inerter.files.common.toml import read_tables
+from inerter.files.rig.running import RigRequest
+from inerter.files.rig.shape import SHAPES, RigFile, RigSettings
+from inerter.identification.virtual_rig import VirtualRig
+from inerter.networks.elements import Element
+from inerter.networks.parser import network
+from inerter.systems.piecewise import piecewise
+from inerter.units import shown
+from inerter.vehicle.cars import Rig
+from inerter.writing import characters
+
+_OWN = ("layout", "duration", "start")  # of [rig], and not of the rig itself
+
+
+def load_rig(path: str | Path) -> RigRequest:
+    """The virtual rig that the TOML file at `path` describes.
+
+    Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
+    """
+    path = Path(path)
+    tables = read_tables(path, "a rig file")
+    try:
+        shape = RigFile.model_validate(tables)
+    except ValidationError as error:
+        raise refusal(path, explain(error, SHAPES)) from None
+    elements = {name: element_of(name, entry) for name, entry in shape.elements.items()}
+    layouts = {name: StrutLayout(struts_of(RIG, entry)) for name, entry in shape.layouts.items()}
+    chosen = shape.rig.layout or (next(iter(layouts)) if len(layouts) == 1 else "")
+    signal = signal_of(path, RIG, shape.signal.model_dump())
+    problems = [
+        *layout_problems(RIG, elements, layouts),
+        *chosen_layout("rig", chosen, tuple(layouts)),
+        *_signal_problems(signal),
+    ]
+    if problems:
+        raise refusal(path, problems)
+    rig = _rig(path, shape.rig, next(iter(layouts[chosen].struts.values())), elements)
+    return RigRequest(
+        characters(path.stem) if shape.title is None else shape.title, rig, signal, shape.rig.duration, shape.rig.start
+    )
+
+
+def _signal_problems(signal: SignalRequest) -> Iterator[str]:
+    if signal.input != MOVED[RIG]:
+        yield at(("signal", "input"), f"got {shown(signal.input)}; a table is moved by a {MOVED[RIG]}.")
+    elif KINDS[signal.kind].needs:
+        yield at(
+            ("signal", "kind"),
+            f"got {shown(signal.kind)}, which is the shape of a road; expected another kind, such as "
+            f'"flat-multisine" or "cosine".',
+        )
+    else:
+        try:
+            signal.make()
+        except InerterError as error:
+            yield at(("signal",), str(error))
+
+
+def _rig(path: Path, settings: RigSettings, expression: str, elements: dict[str, Element]) -> VirtualRig:
+    given: dict[str, Any] = {
+        name: value for name, value in settings.model_dump().items() if name not in _OWN and value is not None
+    }
+    try:
+        device = network(expression, **elements)
+        piecewise(Rig(device))
+        return VirtualRig(device, **given)
+    except InerterError as error:
+        raise refusal(path, [at((RIG,), str(error))]) from None

@@ -1,0 +1,36 @@
+"""A virtual rig that was asked for, and running it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from inerter.errors import InerterError, StudyError
+from inerter.files.common.problems import at
+from inerter.files.common.shape import RIG
+from inerter.files.common.signals import SignalRequest
+from inerter.identification.virtual_rig import VirtualRig
+from inerter.records.record import Record
+
+
+@dataclass(frozen=True)
+class RigRequest:
+    """A virtual rig with what its table does, and for how long it is measured."""
+
+    title: str
+    rig: VirtualRig
+    signal: SignalRequest
+    duration: float  # [s]
+    start: float  # [s]
+
+    def run(self) -> Record:
+        """What the sensors read; raises what `VirtualRig.run` raises."""
+        return self.rig.run(self.signal.make(), self.duration, self.start)
+
+
+def record_of(path: Path, request: RigRequest) -> Record:
+    """What the sensors read; raises `StudyError` naming the file for a run that cannot be."""
+    try:
+        return request.run()
+    except InerterError as error:
+        raise StudyError(f"{path.name}: {at((RIG,), str(error))}") from None

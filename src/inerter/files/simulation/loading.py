@@ -1,0 +1,113 @@
+"""Reading a simulation file: TOML to a checked `SimulationRequest`, or one error with a line for every problem."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from inerter.errors import InerterError, SimulationError
+from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED
+from inerter.files.common.signals import signal_of
+from inerter.files.common.suggest import nearest, some
+from inerter.files.common.toml import read_tables
+from inerter.files.simulation.request import SimulationRequest
+from inerter.files.simulation.shape import SHAPES, SimulationFile
+from inerter.simulation.inputs import whole_steps
+from inerter.systems.piecewise import piecewise
+from inerter.units import shown
+from inerter.writing import characters
+
+
+def load_simulation(path: str | Path) -> SimulationRequest:
+    """The simulation that the TOML file at `path` asks for.
+
+    Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
+    """
+    path = Path(path)
+    tables = read_tables(path, "a simulation file")
+    try:
+        shape = SimulationFile.model_validate(tables)
+    except ValidationError as error:
+        raise refusal(path, explain(error, SHAPES)) from None
+    request = _resolve(path, shape)
+    for check in (_names, _needs, _parts):
+        problems = list(check(request))
+        if problems:
+            raise refusal(path, problems)
+    return request
+
+
+def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
+    vehicle, settings = shape.vehicle.model_dump(), shape.simulation.model_dump()
+    model = vehicle.pop("model")
+    layouts = {name: StrutLayout(struts_of(model, entry)) for name, entry in shape.layouts.items()}
+    chosen = settings.pop("layout")
+    if chosen is None and len(layouts) == 1:
+        chosen = next(iter(layouts))
+    return SimulationRequest(
+        title=characters(path.stem) if shape.title is None else shape.title,
+        path=path,
+        model=model,
+        vehicle=vehicle,
+        speed=None if shape.road is None else shape.road.speed,
+        roughness=None if shape.road is None else shape.road.roughness,
+        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
+        layouts=layouts,
+        signal=signal_of(path, model, shape.signal.model_dump()),
+        layout="" if chosen is None else chosen,
+        **settings,
+    )
+
+
+def _names(request: SimulationRequest) -> Iterator[str]:
+    """Names that nothing has."""
+    yield from layout_problems(request.model, request.elements, request.layouts)
+    yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
+    moved, inputs = request.signal.input, (MOVED[request.model], *FORCES[request.model])
+    if moved not in inputs:
+        hint = nearest(moved, inputs)
+        yield at(("signal", "input"), f"got {shown(moved)}; expected one of {some(inputs)}.{hint}")
+
+
+def _needs(request: SimulationRequest) -> Iterator[str]:
+    """What is missing for the signal, the vehicle or the integration."""
+    signal, kind = request.signal, KINDS[request.signal.kind]
+    if kind.of_roads and signal.unit != "m":
+        yield at(
+            ("signal", "kind"),
+            f"got {shown(signal.kind)}, which is the shape of a road, for the force {signal.input}; expected another "
+            f"kind, or no input.",
+        )
+    known = {"speed": request.speed, "roughness": request.roughness}
+    examples = {"speed": "25 m/s", "roughness": "5e-7 m^3/cycle"}
+    for key in kind.needs:
+        if known[key] is None:
+            yield at(("road", key), f'missing, but a {signal.kind} needs it; expected {key} = "{examples[key]}".')
+    if request.model == "half-car" and signal.unit == "m" and request.speed is None and not kind.needs:
+        yield at(
+            ("road", "speed"),
+            'missing, but the rear wheel meets the road later than the front one; expected speed = "25 m/s".',
+        )
+    if request.duration is None and request.initial != "periodic":
+        yield at(("simulation", "duration"), 'missing; expected duration = "10 s".')
+    if request.duration is not None:
+        try:
+            whole_steps(request.duration, request.step)
+        except SimulationError as error:
+            yield at(("simulation", "step"), str(error))
+
+
+def _parts(request: SimulationRequest) -> Iterator[str]:
+    """The signal, or the vehicle, cannot be."""
+    try:
+        request.make_signal()
+    except InerterError as error:
+        yield at(("signal",), str(error))
+    try:
+        piecewise(request.design())
+    except InerterError as error:
+        yield at(("layouts", request.layout), str(error))

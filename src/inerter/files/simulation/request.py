@@ -1,0 +1,102 @@
+"""A simulation that was asked for, resolved and checked: SI values, one layout, one signal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from inerter.files.common.layouts import StrutLayout, element_entry, in_si
+from inerter.files.common.signals import SignalRequest
+from inerter.files.common.toml import as_toml
+from inerter.networks.elements import Element
+from inerter.signals.signal import Signal
+from inerter.simulation.simulate import simulate
+from inerter.simulation.trajectory import Trajectory
+from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
+
+
+@dataclass(frozen=True)
+class SimulationRequest:
+    """All that a simulation file says, with defaults filled in. Equal requests may come from different files."""
+
+    title: str
+    path: Path = field(compare=False)
+    model: str
+    vehicle: dict[str, float]
+    speed: float | None  # [m/s]
+    roughness: float | None  # [m^3/cycle]
+    elements: dict[str, Element]
+    layouts: dict[str, StrutLayout]
+    signal: SignalRequest
+    layout: str
+    duration: float | None  # [s]; None for one period
+    step: float = 2e-4  # [s]
+    integrator: str = "event-driven"
+    initial: str = "rest"
+    energy: bool = False
+    every: int = 1
+
+    @property
+    def length(self) -> float | None:
+        """Time from the first to the last sample [s]; None for a period that the signal does not have."""
+        return self.make_signal().period if self.duration is None else self.duration
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it is read from."""
+        return (self.path, *self.signal.inputs)
+
+    def design(self) -> QuarterCar | HalfCar | Rig:
+        """The vehicle, or rig, with the chosen layout."""
+        return self.layouts[self.layout].design(self.model, self.vehicle, self.elements)
+
+    def make_signal(self) -> Signal:
+        """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
+        return self.signal.make(self.speed, self.roughness)
+
+    def run(self, progress: Callable[[float], None] | None = None) -> Trajectory:
+        """Simulate it; raises what `simulate` raises."""
+        signal = self.make_signal()
+        moved: Any = {"road": signal} if self.signal.input == "road" else {"forces": {self.signal.input: signal}}
+        if self.signal.input == "displacement":
+            moved = {"displacement": signal}
+        settings: Any = {"integrator": self.integrator, "initial": self.initial}
+        return simulate(
+            self.design(),
+            **moved,
+            **settings,
+            duration=self.duration,
+            step=self.step,
+            speed=self.speed,
+            energy=self.energy,
+            every=self.every,
+            progress=progress,
+        )
+
+    def resolved(self) -> dict[str, Any]:
+        """The request as a simulation file says it: every default filled in, every quantity in SI units."""
+        road = {key: in_si(key, v) for key in ("speed", "roughness") if (v := getattr(self, key)) is not None}
+        return {
+            "title": self.title,
+            "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
+            **({"road": road} if road else {}),
+            "elements": {name: element_entry(element) for name, element in self.elements.items()},
+            "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
+            "signal": self.signal.resolved(),
+            "simulation": {
+                "layout": self.layout,
+                **({} if self.duration is None else {"duration": f"{self.duration!r} s"}),
+                "step": f"{self.step!r} s",
+                "integrator": self.integrator,
+                "initial": self.initial,
+                "energy": self.energy,
+                "every": self.every,
+            },
+        }
+
+
+def write_simulation(request: SimulationRequest) -> str:
+    """`request.resolved()` as TOML. `load_simulation` reads an equal request from it, to the last bit."""
+    return as_toml(request.resolved())

@@ -1,0 +1,152 @@
+"""Running a simulation file into a result folder, and what a reader wants to know of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from inerter.errors import InerterError, StudyError
+from inerter.files.common.folder import FIGURES, Intent, claimed
+from inerter.files.common.problems import at
+from inerter.files.simulation.request import SimulationRequest, write_simulation
+from inerter.networks.elements import Friction, Gap, Inerter
+from inerter.simulation.trajectory import Trajectory
+from inerter.systems.graph import full_graph
+from inerter.vehicle.mechanism import Mechanism
+from inerter.work.origin import versions
+from inerter.writing import write_netcdf, write_text
+
+TRAJECTORY, DATASET, EVENTS, RESOLVED = "trajectory.csv", "trajectory.nc", "events.csv", "simulation.toml"
+NAMES = (TRAJECTORY, DATASET, EVENTS, RESOLVED, f"{FIGURES}/")
+STATES = {
+    "friction": ("stick", "slip up", "slip down"),
+    "gap": ("open", "upper contact", "lower contact"),
+}
+
+
+@dataclass(frozen=True)
+class Nonlinear:
+    """A friction or gap: where it is, how often it changed its state, and what part of the time it spent in each."""
+
+    name: str
+    kind: str
+    strut: str
+    events: int
+    shares: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class SimulationResult:
+    """A motion with the request that it answers."""
+
+    request: SimulationRequest
+    run: Trajectory
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """What moved."""
+        return self.request.design().mechanism()
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Outputs that are what the signal moves."""
+        roads = tuple(road.name for road in self.mechanism.roads)
+        return roads if self.request.signal.unit == "m" else (self.request.signal.input,)
+
+    @property
+    def accelerations(self) -> tuple[str, ...]:
+        """Outputs that are accelerations of bodies, not of wheels."""
+        measures = self.mechanism.measures
+        return () if measures is None else tuple(weighted.output for weighted in measures.comfort)
+
+    @property
+    def tyre_loads(self) -> tuple[str, ...]:
+        """Outputs that are forces of tyres."""
+        return tuple(f"{tyre.name}_load" for tyre in self.mechanism.tyres)
+
+    @property
+    def struts(self) -> tuple[str, ...]:
+        """Names of the struts, or of the device."""
+        return tuple(strut.name for strut in self.mechanism.struts)
+
+    @property
+    def main_outputs(self) -> tuple[str, ...]:
+        """What a summary tells of."""
+        forces = tuple(f"{strut}_{what}" for strut in self.struts for what in ("force", "travel"))
+        return (*self.accelerations, *self.tyre_loads, *forces)
+
+    def rms(self, name: str) -> float:
+        """Root of the mean square of an output; infinite where a motion has grown beyond all bounds."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.run.rms(name)
+
+    @cached_property
+    def nonlinear(self) -> tuple[Nonlinear, ...]:
+        """What is known of every friction and gap; none where the integrator keeps no events."""
+        found = []
+        length = float(self.run.time[-1] - self.run.time[0]) or 1.0
+        for strut, label, element in self._placed():
+            if label in self.run.states:
+                kind = "friction" if isinstance(element, Friction) else "gap"
+                shares = {
+                    state: sum(end - start for start, end in self.run.intervals(label, state)) / length
+                    for state in STATES[kind]
+                }
+                events = sum(event.element == label for event in self.run.events)
+                found.append(Nonlinear(label, kind, strut, events, shares))
+        return tuple(found)
+
+    @property
+    def unrecorded(self) -> tuple[str, ...]:
+        """Frictions and gaps whose events the integrator did not keep."""
+        known = self.run.states
+        return tuple(n for _, n, element in self._placed() if isinstance(element, Friction | Gap) and n not in known)
+
+    def inerters(self, strut: str) -> tuple[str, ...]:
+        """The inerters of a strut, by the names that outputs have."""
+        return tuple(n for mount, n, element in self._placed() if mount == strut and isinstance(element, Inerter))
+
+    def _placed(self) -> Iterator[tuple[str, str, object]]:
+        branches = iter(full_graph(self.mechanism).branches)
+        for mount in self.mechanism.mounts():
+            for _ in mount.network.elements():
+                branch = next(branches)
+                yield mount.name, branch.label, branch.element
+
+
+def run_simulation(
+    request: SimulationRequest,
+    folder: Path,
+    *,
+    force: bool = False,
+    progress: Callable[[float], None] | None = None,
+    finish: Callable[[SimulationResult, Path], object] = lambda result, folder: None,
+) -> SimulationResult:
+    """Simulate `request` and write the trajectory, its events and the resolved request into `folder`.
+
+    With `force`, old results stay until the new ones are whole. Numbers in files are in SI units. `finish` may add
+    files to the results, in the folder that it is given.
+
+    Raises `StudyError` as `claimed` does, and if the request cannot be simulated.
+    """
+    with claimed(Intent(folder, "simulate", NAMES, request.inputs, force=force)) as results:
+        try:
+            result = SimulationResult(request, request.run(progress))
+        except InerterError as error:
+            raise StudyError(f"{request.path.name}: {at(('simulation',), str(error))}") from None
+        _write(result, results.draft)
+        results.publish()
+        finish(result, results.draft)
+    return result
+
+
+def _write(result: SimulationResult, folder: Path) -> None:
+    header = "".join(f"# {name} {version}\n" for name, version in versions().items())
+    write_text(folder / RESOLVED, f"{header}\n{write_simulation(result.request)}")
+    result.run.to_csv(folder / TRAJECTORY)
+    result.run.events_to_csv(folder / EVENTS)
+    write_netcdf(folder / DATASET, result.run.to_xarray())

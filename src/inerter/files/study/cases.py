@@ -1,0 +1,148 @@
+"""The cases of a study: one layout, one index, one swept value each, and what running one gives."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from inerter.errors import OK, InerterError, Status, StatusKind
+from inerter.files.study.registry import INDEX, method_of
+from inerter.files.study.study import Study
+from inerter.methods.method import Estimate, evaluate
+from inerter.optimisation.optimise import Optimum, optimise
+from inerter.optimisation.threads import one_blas_thread
+from inerter.systems.descriptor import is_held_by_springs
+from inerter.systems.graph import linear_graph
+from inerter.vehicle.mechanism import Mechanism
+
+FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
+_MOST_SAMPLES = 64  # that are kept, for differences on the same roads
+_LINEAR = "norm"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One design to find and to judge. `point` numbers the swept values, zero where nothing is swept."""
+
+    layout: str
+    index: str
+    point: int = 0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The design of a case and its values; all of it survives JSON."""
+
+    layout: str
+    index: str
+    point: int
+    parameters: dict[str, float]
+    active_bounds: dict[str, str]
+    ranges: dict[str, tuple[float, float]]
+    starts: int
+    agreed: int
+    evaluations: int
+    values: dict[str, dict[str, float]]  # method -> index -> value, at this design
+    standard_errors: dict[str, dict[str, float | None]]
+    status: dict[str, str]  # method -> kind of status of the case's own index
+    message: str = ""
+    notes: list[str] = field(default_factory=list)
+    realisations: dict[str, int] = field(default_factory=dict)  # method -> roads of the case's own index
+    samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
+    over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
+
+    @property
+    def case(self) -> Case:
+        """The case that it answers."""
+        return Case(self.layout, self.index, self.point)
+
+    def to_json(self) -> dict[str, Any]:
+        """A plain dictionary; `Outcome(**...)` undoes it."""
+        return asdict(self)
+
+
+def cases(study: Study) -> list[Case]:
+    """All cases in the order of the results: layouts, indices, swept values."""
+    points = range(len(study.sweep.values)) if study.sweep else range(1)
+    return [Case(layout, index, point) for layout in study.layouts for index in study.indices for point in points]
+
+
+def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
+    """Find the best design of a case and judge it by every method and index of the study.
+
+    Methods that simulate use `threads`. A failure is an outcome with a status and a sentence, so that one case never
+    ends a study.
+    """
+    try:
+        with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return _run(study, case, threads)
+    except FAILURES as error:
+        failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
+        return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, str(error))
+
+
+def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
+    """What linear analysis leaves out of a design if the study makes use of it, and whether springs carry it."""
+    measures = mechanism.measures
+    left_out = linear_graph(mechanism).notes if _LINEAR in study.methods else ()
+    notes = [f"{_prefix(study, _LINEAR)}{note}" for note in left_out]
+    if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
+        notes.append("no spring carries the body, which would sink under its own weight")
+    return notes
+
+
+def _prefix(study: Study, method: str) -> str:
+    """The name of the method before its note, where there are several."""
+    return f"{method}: " if len(study.methods) > 1 else ""
+
+
+def _run(study: Study, case: Case, threads: int) -> Outcome:
+    swept = study.sweep.values[case.point] if study.sweep else None
+    vehicle = study.design(case.layout, swept)
+    fields: dict[str, Any] = {
+        "parameters": {},
+        "active_bounds": {},
+        "ranges": {},
+        "starts": 0,
+        "agreed": 0,
+        "evaluations": 0,
+    }
+    found: Optimum | None = None
+    if study.optimise is not None and vehicle.free_values():
+        method = method_of(study, study.optimise, threads)
+        found = optimise(vehicle, INDEX[case.index](study), method, seed=study.seed)
+        vehicle = vehicle.with_values(found.parameters)
+        fields = {name: getattr(found, name) for name in fields}
+
+    def estimate(method: str, index: str) -> Estimate:
+        if found is not None and (method, index) == (study.optimise, case.index):
+            return found.estimate
+        try:
+            return evaluate(vehicle, INDEX[index](study), method_of(study, method, threads))
+        except FAILURES as error:
+            if len(study.evaluate) == 1:
+                raise
+            return Estimate(np.nan, "", Status(StatusKind.FAILED, str(error)))
+
+    over = found.over_linear if found else None
+    estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
+    own = {method: by_index[case.index] for method, by_index in estimates.items()}
+    worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
+    bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
+    notes = [f"{_prefix(study, m)}{note}" for m, e in own.items() for note in e.notes]
+    return Outcome(
+        case.layout,
+        case.index,
+        case.point,
+        **fields,
+        values={m: {i: e.value for i, e in by_index.items()} for m, by_index in estimates.items()},
+        standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
+        status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
+        message=f"{bad}{worst.message}" if worst.message else "",
+        notes=list(dict.fromkeys([*notes, *design_notes(study, vehicle.mechanism())])),
+        realisations={m: e.realisations for m, e in own.items() if e.realisations},
+        samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
+        over_linear=None if over is None else (-over.percent, over.percent_error),
+    )

@@ -1,0 +1,130 @@
+"""Reading a study file: TOML to a checked `Study`, or one error with a line for every problem."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from inerter.files.common.entries import Amount
+from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
+from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.suggest import nearest, some
+from inerter.files.common.toml import read_tables
+from inerter.files.study.method_problems import method_problems
+from inerter.files.study.shape import SHAPES, StudyFile, SweepRange
+from inerter.files.study.study import Study, Sweep, elements_used
+from inerter.networks.elements import Free
+from inerter.signals.road import Road
+from inerter.units import shown
+from inerter.writing import characters
+
+
+def load_study(path: str | Path) -> Study:
+    """The study in the TOML file at `path`.
+
+    Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
+    """
+    path = Path(path)
+    tables = read_tables(path, "a study file")
+    try:
+        shape = StudyFile.model_validate(tables)
+    except ValidationError as error:
+        raise refusal(path, explain(error, SHAPES)) from None
+    study = _resolve(path, shape)
+    problems = [
+        *layout_problems(study.model, study.elements, study.layouts),
+        *_sweep_problems(study),
+        *_setting_problems(study),
+        *method_problems(study),
+    ]
+    if not problems:
+        problems = list(_free_value_problems(study))
+    if problems:
+        raise refusal(path, problems)
+    return study
+
+
+def _resolve(path: Path, shape: StudyFile) -> Study:
+    vehicle = shape.vehicle.model_dump()
+    model = vehicle.pop("model")
+    layouts = {name: StrutLayout(struts_of(model, entry)) for name, entry in shape.layouts.items()}
+    settings = shape.study
+    baseline = settings.baseline
+    if baseline is None and len(layouts) > 1:
+        baseline = next(iter(layouts))
+    return Study(
+        title=characters(path.stem) if shape.title is None else shape.title,
+        path=path,
+        model=model,
+        vehicle=vehicle,
+        road=Road(roughness=shape.road.roughness, speed=shape.road.speed),
+        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
+        layouts=layouts,
+        indices=settings.indices,
+        conventions=settings.conventions,
+        optimise=settings.optimise,
+        evaluate=settings.evaluate,
+        baseline=baseline,
+        sweep=None if settings.sweep is None else _sweep(*next(iter(settings.sweep.items()))),
+        seed=settings.seed,
+        high_pass=settings.high_pass,
+        realisations=settings.realisations,
+        relative_error=settings.relative_error,
+        force=settings.force,
+        budgets=settings.budgets,
+    )
+
+
+def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
+    if not isinstance(entry, SweepRange):
+        return Sweep(name, tuple(amount.value for amount in entry), entry[0].unit)
+    space = np.geomspace if entry.spacing == "log" else np.linspace
+    values = space(entry.lower.value, entry.upper.value, entry.points)
+    return Sweep(name, tuple(float(value) for value in values), entry.lower.unit)
+
+
+def _sweep_problems(study: Study) -> Iterator[str]:
+    sweep = study.sweep
+    if sweep is None:
+        return
+    place, name = ("study", "sweep", sweep.element), sweep.element
+    if name not in study.elements:
+        hint = nearest(name, study.elements)
+        yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
+        return
+    element = study.elements[name]
+    if isinstance(element.value, Free):
+        yield at(place, f"{name} is free; expected an element with a fixed value. Fix it, or leave the sweep out.")
+    if element.unit != sweep.unit:
+        yield at(place, f"got values in {sweep.unit}, but {name} is in {element.unit}; expected the unit of {name}.")
+    if name not in elements_used(study):
+        yield at(place, f"{name} is in no layout, so a sweep changes nothing; expected an element that a layout uses.")
+
+
+def _setting_problems(study: Study) -> Iterator[str]:
+    if study.baseline is not None and study.baseline not in study.layouts:
+        known = some(study.layouts)
+        hint = nearest(study.baseline, study.layouts)
+        yield at(("study", "baseline"), f"got {shown(study.baseline)}; expected a layout, one of {known}.{hint}")
+    if study.high_pass is not None and "J3" not in study.indices:
+        yield at(
+            ("study", "high_pass"), 'a filter of J3, which is not in indices; expected "J3" there, or no high_pass.'
+        )
+
+
+def _free_value_problems(study: Study) -> Iterator[str]:
+    used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
+    if used and study.optimise is None:
+        yield at(
+            ("study", "optimise"),
+            f'missing, but there are free values, {some(used)}; expected optimise = "norm", or fixed values.',
+        )
+    if not used and study.optimise is not None:
+        yield at(
+            ("study", "optimise"),
+            f"got {shown(study.optimise)}, but no layout has a free value; expected one such as "
+            f'c = {{ from = "100 N s/m", to = "100 kN s/m" }} in [elements], or no optimise.',
+        )

@@ -1,0 +1,106 @@
+"""What is wrong with how a study file asks for its numbers: settings and elements that a method cannot do with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from inerter.files.common.problems import at
+from inerter.files.common.suggest import nearest, some
+from inerter.files.study.shape import AVERAGING, FORCED
+from inerter.files.study.study import Study, elements_used
+from inerter.networks.elements import Friction, Gap
+from inerter.units import shown
+
+_BLIND = "norm"  # the method that sees neither friction nor gaps
+_NO_GAPS = "statistical-linearisation"
+
+
+def method_problems(study: Study) -> Iterator[str]:
+    """One line for each."""
+    yield from _road_problems(study)
+    yield from _force_problems(study)
+    yield from _gap_problems(study)
+    yield from _budget_problems(study)
+
+
+def budget_method(study: Study) -> str:
+    """The first method of `evaluate` that sees friction, else the first."""
+    return next((method for method in study.evaluate if method != _BLIND), study.evaluate[0])
+
+
+def _road_problems(study: Study) -> Iterator[str]:
+    given = [name for name in ("realisations", "relative_error") if getattr(study, name) is not None]
+    if len(given) == 2:
+        yield at(
+            ("study", "relative_error"),
+            f"got {study.relative_error} beside realisations = {study.realisations}; expected one of the two: how many "
+            f"roads, or how small an error they must reach.",
+        )
+    elif given and not set(AVERAGING) & set(study.methods):
+        yield at(
+            ("study", given[0]),
+            f"no method averages over roads; expected {_either(AVERAGING)} in evaluate, or no {given[0]}.",
+        )
+
+
+def _force_problems(study: Study) -> Iterator[str]:
+    concerned = [method for method in study.methods if method in FORCED] if "J5" in study.indices else []
+    nonlinear = _layouts_with(study, (Friction, Gap))
+    if study.force is None and concerned and nonlinear:
+        yield at(
+            ("study", "force"),
+            f"missing, but {concerned[0]} takes J5 of {some(nonlinear)}, where friction or gaps make it depend on "
+            f'the size of the force; expected its amplitude, such as force = "1 kN".',
+        )
+    if study.force is not None and not concerned:
+        yield at(
+            ("study", "force"),
+            f'the amplitude of the force of J5 for {_either(FORCED)}; expected "J5" in indices and one of them in '
+            f"evaluate, or no force.",
+        )
+
+
+def _gap_problems(study: Study) -> Iterator[str]:
+    gaps = _layouts_with(study, (Gap,))
+    key = "optimise" if study.optimise == _NO_GAPS else "evaluate"
+    if _NO_GAPS in study.methods and gaps:
+        yield at(
+            ("study", key),
+            f"got {shown(_NO_GAPS)}, which has no answer for gaps, and {some(gaps)} has one; expected another "
+            f"method, such as {shown(AVERAGING[0])}, or layouts without gaps.",
+        )
+
+
+def _budget_problems(study: Study) -> Iterator[str]:
+    place = ("study", "budgets")
+    if study.budgets and study.sweep is not None:
+        yield at(place, "given beside a sweep; expected one of the two.")
+    if study.budgets and study.baseline is None:
+        yield at(place, "there is but one layout; expected another to compare it with, or no budgets.")
+        return
+    used = elements_used(study)
+    for name in study.budgets:
+        if name not in study.elements:
+            hint = nearest(name, study.elements)
+            yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
+        elif not set(used.get(name, ())) - {study.baseline}:
+            yield at(place, f"no layout but the baseline has {name}; expected an element of a layout that is compared.")
+        elif isinstance(study.elements[name], Friction | Gap) and budget_method(study) == _BLIND:
+            kind = type(study.elements[name]).__name__.lower()
+            yield at(
+                place,
+                f"{name} is a {kind}, which linear analysis does not see; expected a method that does in evaluate, "
+                f"such as {shown(AVERAGING[0])}.",
+            )
+
+
+def _layouts_with(study: Study, kinds: tuple[type, ...]) -> list[str]:
+    used = elements_used(study)
+    concerned = {
+        layout for n, layouts in used.items() if isinstance(study.elements.get(n), kinds) for layout in layouts
+    }
+    return [layout for layout in study.layouts if layout in concerned]
+
+
+def _either(words: tuple[str, ...]) -> str:
+    return " or ".join(shown(word) for word in words)

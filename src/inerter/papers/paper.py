@@ -1,0 +1,65 @@
+"""What a paper is to all that does not know it: one row, whose work is loaded when it is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from inerter.files.study.running import StudyResult
+
+
+class Reproduction(Protocol):
+    """What was recomputed of a paper, of which only the studies are looked into by others."""
+
+    @property
+    def studies(self) -> Mapping[str, StudyResult]:
+        """Results of the studies that are a part of it, by their names; a failure of one is one of the paper."""
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A paper whose results can be recomputed.
+
+    `recompute`, `write`, `data` and `text` name functions, as "package.module:function", of the module that does it, so
+    that the row itself loads nothing.
+    """
+
+    name: str
+    title: str
+    parts: tuple[str, ...]  # each of which can be recomputed alone
+    claims: Mapping[int, str]  # what the paper says, by number
+    figures: Mapping[str, str]  # the caption of each, by the name of its file
+    examples: tuple[str, ...]  # options after its name, and what they do
+    recompute: str
+    write: str
+    data: str
+    text: str
+
+    def reproduce(self, folder: Path, *, only: Sequence[str] = (), **settings: Any) -> Reproduction:
+        """Recompute it, or some of its parts, into `folder`, with tables, figures and a page.
+
+        `settings` are `jobs`, `resume`, `force` and `progress`, as `run_study` takes them, but that `progress` is told
+        the name of the piece of work, steps done, and all steps.
+
+        Raises `StudyError` as `run_study` does, or for an unknown part; `WorkError` as `run_study` does.
+        """
+        found: Reproduction = _loaded(self.recompute)(folder, only=only, finish=_loaded(self.write), **settings)
+        return found
+
+    def as_data(self, found: Reproduction) -> dict[str, Any]:
+        """What was recomputed as plain rows."""
+        tables: dict[str, Any] = _loaded(self.data)(found)
+        return tables
+
+    def as_text(self, found: Reproduction) -> str:
+        """What was recomputed as text of 80 columns."""
+        return str(_loaded(self.text)(found))
+
+
+def _loaded(name: str) -> Callable[..., Any]:
+    function: Callable[..., Any] = resolve_name(name)
+    return function

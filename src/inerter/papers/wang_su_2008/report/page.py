@@ -1,0 +1,141 @@
+"""The reproduction of a paper as files, figures and a page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from functools import partial
+from operator import call
+from pathlib import Path
+
+from inerter.figures.networks import draw_networks
+from inerter.files.common.folder import FIGURES, REPORT
+from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
+from inerter.networks.parser import network
+from inerter.papers.wang_su_2008.origins import origins
+from inerter.papers.wang_su_2008.paper import NETWORKS, PAPER
+from inerter.papers.wang_su_2008.report import figures as drawn
+from inerter.papers.wang_su_2008.report.data import csv_text, method_points, tables
+from inerter.papers.wang_su_2008.report.tables import (
+    budgets_table,
+    compared_table,
+    designs_table,
+    optima_table,
+    rig_table,
+    simulated_table,
+)
+from inerter.papers.wang_su_2008.report.text import agreement_of
+from inerter.papers.wang_su_2008.reproduce import Reproduction
+from inerter.papers.wang_su_2008.rig import SIMULATED
+from inerter.papers.wang_su_2008.rows import VERDICTS
+from inerter.papers.wang_su_2008.source import study
+from inerter.report.page import PageFigure, environment, inline
+from inerter.work.pool import Crew, crewed
+from inerter.writing import write_text
+
+Drawing = Callable[[], list[Path]]
+_DRAWN = {
+    "S1": "k | c",
+    "S2": "k | c | b",
+    "S3": "k | c - b",
+    "Ball screw": "(k_s | c_s) - eps - (b | f)",
+    "S3 with a ball screw": "k | c - (k_s | c_s) - eps - (b | f)",
+}
+_KINDS: dict[str, Callable[[float, str], Element]] = {
+    "k": Spring,
+    "c": Damper,
+    "b": Inerter,
+    "k_s": Spring,
+    "c_s": Damper,
+    "f": Friction,
+    "eps": Gap,
+}
+_METHOD_TITLES = {
+    "statistical-linearisation": "Statistical linearisation",
+    "expected-value": "Expected value (Method 2)",
+    "approximate-linear": "Approximated linear model (Method 1)",
+}
+
+
+def write_reproduction(found: Reproduction, folder: Path, jobs: int | Executor | Crew = 1) -> None:
+    """Write the tables as CSV, the figures, and a page that shows all of it, into `folder`."""
+    for name, rows in tables(found).items():
+        if rows:
+            write_text(folder / f"{name}.csv", csv_text(rows))
+    with crewed(jobs) as crew:
+        list(crew.spread(call, _figures(found, folder / FIGURES)))
+    write_text(folder / REPORT, _page(found, folder))
+
+
+def _figures(found: Reproduction, folder: Path) -> list[Drawing]:
+    """The figures for which there are numbers, as calls that draw them; those that take longest first."""
+    figures: list[Drawing] = []
+    if found.rig is not None:
+        figures.append(partial(drawn.draw_rig, found.rig, folder))
+    if found.methods:
+        figures.append(partial(drawn.draw_methods, method_points(found), _METHOD_TITLES, folder))
+    if found.figure11 is not None:
+        figures.append(partial(drawn.draw_figure_11, found.figure11, folder))
+    if found.curves is not None and "figure13" in found.parts:
+        figures.append(partial(drawn.draw_figure_13, found.curves, folder))
+    if found.curves is not None and "figure14" in found.parts:
+        figures.append(partial(drawn.draw_figure_14, found.curves, folder))
+    if "figure12" in found.parts:
+        figures.append(partial(drawn.draw_figure_12, study("table1").road, folder))
+    return [*figures, partial(draw_networks, _networks(), folder, NETWORKS)]
+
+
+def _networks() -> dict[str, Network]:
+    elements = {name: kind(1.0, name) for name, kind in _KINDS.items()}
+    return {title: network(text, **elements) for title, text in _DRAWN.items()}
+
+
+def _page(found: Reproduction, folder: Path) -> str:
+    figures = {}
+    for name, caption in PAPER.figures.items():
+        path = folder / FIGURES / f"{name}.svg"
+        if path.exists():
+            figures[name] = PageFigure(inline(path.read_text(encoding="utf-8"), name, caption), caption)
+    linear = found.linear
+    return (
+        environment(__package__)
+        .get_template("reproduction.html")
+        .render(
+            title=PAPER.title,
+            agreement=agreement_of(linear.compared) if linear else "",
+            summary=_summary(found),
+            linear=[compared_table(linear.compared, number) for number in (1, 2, 3)] if linear else [],
+            simulated=[simulated_table(found, number) for number in (1, 2, 3)],
+            designs=[designs_table(linear.found, number) for number in (1, 2)] if linear else [],
+            origins=origins(found),
+            claims=found.claims,
+            optima=optima_table(found),
+            budgets=budgets_table(found),
+            rig=rig_table(found),
+            rig_notes=[SIMULATED, *found.rig.notes, *found.rig.bands] if found.rig else [],
+            figures=figures,
+        )
+    )
+
+
+def _summary(found: Reproduction) -> list[str]:
+    """What was found, in a few sentences."""
+    lines = []
+    rows = list(found.rows.values())
+    if rows:
+        counts = {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
+        said = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
+        lines.append(f"Of {len(rows)} simulated rows of the tables: {said}.")
+    if found.claims:
+        verdicts = dict.fromkeys(claim.verdict for claim in found.claims)
+        said = "; ".join(
+            f"{verdict}: {', '.join(str(c.number) for c in found.claims if c.verdict == verdict)}"
+            for verdict in verdicts
+        )
+        lines.append(f"Claims by number, {said}.")
+    if found.optima:
+        name, numbers = min(found.optima.items(), key=lambda item: float(item[1]["percent"]))
+        lines.append(
+            f"A design that knows its friction gains up to {-numbers['percent']:.1f} % on the best linear one ({name})."
+        )
+    return lines

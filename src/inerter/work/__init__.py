@@ -1,0 +1,1 @@
+"""Running pieces of work, and what is kept of them, whatever they compute."""

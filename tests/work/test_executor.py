@@ -1,0 +1,109 @@
+"""Another way to run pieces of work comes in where the crew is, and gives the same."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+from pickle import dumps, loads
+from shutil import copytree
+from typing import Any
+
+import pytest
+
+import inerter as it
+from inerter.work.pool import crewed
+
+STUDY = """
+[vehicle]
+model = "quarter-car"
+sprung_mass = "250 kg"
+unsprung_mass = "35 kg"
+tyre_stiffness = "150 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "20 kN/m"
+c = { from = "100 N s/m", to = "10 kN s/m" }
+b = "30 kg"
+[layouts]
+S1 = "k | c"
+S2 = "k | c | b"
+[study]
+indices = ["J1", "J3"]
+optimise = "norm"
+budgets = ["b"]
+"""
+
+
+class Elsewhere(Executor):
+    """Runs copies of the pieces, each of them twice, as a cluster may that lost a result."""
+
+    def __init__(self) -> None:
+        self.run = 0
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **settings: Any) -> Future[Any]:
+        self.run += 1
+        first, again = (dumps(loads(dumps(function))(*arguments, **settings)) for _ in range(2))
+        assert first == again
+        future: Future[Any] = Future()
+        future.set_result(loads(first))
+        return future
+
+
+def test_an_executor_of_ones_own_gives_the_same_results(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    study, executor = it.load_study(tmp_path / "study.toml"), Elsewhere()
+    one = it.run_study(study, tmp_path / "one")
+    other = it.run_study(study, tmp_path / "other", jobs=executor)
+    assert one.computed == other.computed == 4
+    assert executor.run == 2  # the first of each index is worked on here, so that it is compiled
+    assert one.data.identical(other.data)
+    written = {path.name for path in (tmp_path / "one").iterdir()} - {".inerter", "journal.jsonl"}
+    assert {"summary.csv", "results.nc", "budgets.csv"} <= written
+    for name in written:
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "other" / name).read_bytes(), name
+
+
+def test_what_the_journal_has_is_not_run_again(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    study, executor = it.load_study(tmp_path / "study.toml"), Elsewhere()
+    it.run_study(study, tmp_path / "out")
+    assert it.run_study(study, tmp_path / "out", jobs=executor, resume=True).computed == 0
+    assert executor.run == 0
+
+
+def test_a_folder_of_others_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    with pytest.raises(it.InerterError, match="not empty"):
+        it.run_study(it.load_study(tmp_path / "study.toml"), tmp_path)
+
+
+def test_an_executor_that_is_given_does_all_and_goes_on() -> None:
+    executor = Elsewhere()
+    with crewed(executor) as crew:
+        crew.begin(int)
+        assert sorted(crew.spread(abs, range(-5, 0))) == [1, 2, 3, 4, 5]
+        with crewed(crew) as same:
+            assert same is crew
+    assert executor.run == 6
+    with ThreadPoolExecutor(1) as threads:
+        for _ in range(2):
+            with crewed(threads) as crew:
+                assert list(crew.spread(abs, [-1])) == [1]
+        assert threads.submit(abs, -2).result() == 2
+
+
+def test_the_documented_lines_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = Path(__file__).parents[2]
+    text = (root / "docs" / "study-file.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    copytree(root / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    exec(block, {})
+    assert float(capsys.readouterr().out) == pytest.approx(2.4281, abs=5e-5)  # Wang and Su (2008), Table 1, J1 case 7
+    assert (tmp_path / "out" / "summary.csv").exists()

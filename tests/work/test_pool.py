@@ -1,0 +1,91 @@
+"""A crew: processes that work through one list after another."""
+
+from __future__ import annotations
+
+import os
+import time
+from multiprocessing import active_children
+
+import pytest
+
+from inerter.errors import WorkError
+from inerter.work.pool import Crew, crewed
+
+PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
+KILL = "__import__('os').kill(__import__('os').getpid(), 9)"
+
+
+def evaluated(items: list[str]) -> list[object]:
+    with Crew(2) as crew:
+        crew.begin(os.getpid)
+        return list(crew.spread(eval, items))
+
+
+def test_one_process_is_this_one() -> None:
+    with Crew(1) as crew:
+        crew.begin(os.getpid)
+        assert set(crew.spread(eval, [PROCESS] * 3)) == {os.getpid()}
+        assert not active_children()
+
+
+def test_short_work_is_not_worth_a_process() -> None:
+    with Crew(2) as crew:
+        assert list(crew.spread(abs, range(-3, 0))) == [3, 2, 1]
+        assert not active_children()
+
+
+def test_processes_stay_for_the_next_list_and_end_with_the_crew() -> None:
+    with Crew(2) as crew:
+        crew.begin(os.getpid)
+        assert len(active_children()) == 1  # as many as there is work for
+        assert sorted(crew.spread(abs, range(-50, 0))) == list(range(1, 51))
+        there = {child.pid for child in active_children()}
+        assert len(there) == 2
+        for _ in range(2):
+            assert set(crew.spread(eval, [PROCESS] * 20)) <= there
+        with crewed(crew) as same:
+            assert same is crew
+        assert active_children()
+    assert not active_children()
+
+
+def test_the_first_of_each_kind_is_worked_on_here() -> None:
+    with Crew(2) as crew:
+        crew.begin(os.getpid)
+        found = list(crew.spread(eval, [PROCESS, f" {PROCESS}", PROCESS, PROCESS], kind=len, here=lambda item: item))
+    assert found[:2] == [PROCESS, f" {PROCESS}"]
+    assert os.getpid() not in found[2:]
+    assert len(found) == 4
+
+
+def test_a_killed_process_is_told() -> None:
+    with pytest.raises(WorkError, match="--resume"):
+        evaluated([KILL, PROCESS])
+    assert not active_children()
+
+
+def test_an_error_does_not_wait_for_what_is_under_way() -> None:
+    start = time.monotonic()
+    with pytest.raises(ZeroDivisionError):
+        evaluated(["1 / 0", "__import__('time').sleep(60)", "__import__('time').sleep(60)"])
+    assert time.monotonic() - start < 30.0
+
+
+def test_a_process_that_does_not_heed_its_end_is_not_waited_for() -> None:
+    """As one that Ctrl-C finds in a state in which it cannot end by itself."""
+    deaf = "__import__('signal').signal(15, __import__('signal').SIG_IGN), __import__('time').sleep(60)"
+    start = time.monotonic()
+    with pytest.raises(ZeroDivisionError):
+        evaluated([deaf, "__import__('time').sleep(1) or 1 / 0"])
+    assert time.monotonic() - start < 30.0
+    assert not active_children()
+
+
+def test_what_is_not_asked_for_any_more_is_not_begun() -> None:
+    with Crew(2) as crew:
+        crew.begin(os.getpid)
+        results = crew.spread(eval, ["1", *["__import__('time').sleep(0.5)"] * 200])
+        assert next(results) == 1
+        results.close()  # type: ignore[attr-defined]
+        start = time.monotonic()
+    assert time.monotonic() - start < 20.0  # all would take 50 s

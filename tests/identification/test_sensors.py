@@ -39,7 +39,7 @@ def experiment(motion: NDArray[np.float64], step: float, noise: float, random: n
     at = motion + step * random.uniform(0.0, 1.0)
     taken = step * np.rint((at + noise * random.standard_normal(at.size)) / step)
     known = float(np.hypot(noise, step / np.sqrt(12.0)))
-    time, force = INTERVAL * np.arange(motion.size), np.gradient(motion)
+    time, force = np.asarray(INTERVAL * np.arange(motion.size, dtype=np.float64)), np.gradient(motion)
     return experiment_of(it.Record(time, taken, force, source="encoder", displacement_noise=known))
 
 

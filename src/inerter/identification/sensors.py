@@ -86,8 +86,23 @@ def _errors(experiment: Experiment, moved: Matrix, random: np.random.Generator) 
     inferred = taken / math.sqrt(1.0 - min(2.0 * motion.bandwidth * record.interval, 0.8))
     noise = inferred if record.displacement_noise is None else record.displacement_noise
     read = moved + math.sqrt(max(noise**2 - step**2 / 12.0, 0.0)) * random.standard_normal(moved.size)
-    rounded = step * np.rint(read / step) if step > 0.0 else read
-    return np.asarray(rounded - moved)
+    if step > 0.0:
+        between = _between_steps(experiment, moved, step, random)
+        read = step * np.rint((read + between) / step) - between
+    return np.asarray(read - moved)
+
+
+def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: np.random.Generator) -> Matrix:
+    """How far off each sample [m] the table may truly have been when it was read.
+
+    Where it starts, a smoothed motion is what was read: it lies on a step of the encoder, and would be read once more
+    without an error. Later it goes through many steps, and the filter has told where between them it is.
+    """
+    gone = np.abs(moved - moved[0]) > step
+    left = int(np.argmax(gone)) if gone.any() else moved.size
+    memory = math.ceil(1.0 / (experiment.motion.bandwidth * experiment.record.interval))
+    start = np.arange(moved.size) < max(left, memory)
+    return np.where(start, step * random.spawn(1)[0].uniform(-0.5, 0.5), 0.0)
 
 
 def _usual_rms(values: Matrix) -> float:

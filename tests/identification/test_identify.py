@@ -2,6 +2,7 @@ import math
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rigs import BALL_SCREW, PAPER, device, fit_test
@@ -76,11 +77,14 @@ def test_two_records_share_parameters_and_have_their_own_offsets():
         assert fit.parameters[name].value == pytest.approx(PAPER[name], rel=0.02)
 
 
-def test_gain_and_delay_of_the_sensor():
-    model = (it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100, 2e4, name="cs"))) - (
-        it.Inerter(113.0) | it.Friction(it.free(0, 100, name="f"))
-    )
-    record = fit_test(seed=5, duration=3.0, sensors={"force_gain": 1.05, "force_delay": 0.004})
+@pytest.mark.parametrize("kind", sampled(["rigid", "elastic"], ["rigid"]))
+def test_gain_and_delay_of_the_sensor(kind):
+    flywheel = it.Inerter(113.0) | it.Friction(it.free(0, 100, name="f"))
+    shaft = it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100, 2e4, name="cs"))
+    model = flywheel if kind == "rigid" else shaft - flywheel
+    true = it.Rig(model).with_values({name: PAPER[name] for name in it.Rig(model).free_values()})
+    rig = it.VirtualRig(true.device, seed=5, force_gain=1.05, force_delay=0.004)
+    record = rig.run(it.cosine(amplitude=1e-3, frequency=3.0), duration=3.0)
     fit = it.identify([record], model, seed=0, gain=True, delay=True, starts=16)
     assert fit.parameters["sensor gain"].value == pytest.approx(1.05, rel=2e-3)
     assert fit.parameters["sensor delay"].value == pytest.approx(0.004, abs=2e-4)

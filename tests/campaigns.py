@@ -1,11 +1,24 @@
-"""Which parts of a campaign are run with the marker `campaign`; all of them are with `campaign or marathon`."""
+"""Which members of a family are always tested, and which with the marker `campaign` or `marathon`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
 import pytest
+
+
+def sampled(members: Iterable[Any], always: Collection[Any]) -> list[Any]:
+    """Parameters of which these are always tested, and the others in a campaign; a tuple is several parameters."""
+    members = list(members)
+    assert all(member in members for member in always)
+    return [
+        pytest.param(
+            *(member if isinstance(member, tuple) else (member,)),
+            marks=[] if member in always else [pytest.mark.campaign],
+        )
+        for member in members
+    ]
 
 
 def in_parts(parts: Sequence[Any], kept: int) -> list[Any]:

@@ -14,6 +14,7 @@ from math import sin
 from pathlib import Path
 
 import pytest
+from campaigns import sampled
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TABLE = "time [s],displacement [mm],force [N]\n" + "".join(
@@ -139,7 +140,9 @@ def trouble(name: str, after: float, home: Path, patience: float) -> Iterator[st
     (home / "new.csv").unlink(missing_ok=True)
 
 
-@pytest.mark.parametrize("name", ["run", "sweep", "simulate", "identify", "rig", "check", "reproduce"])
+@pytest.mark.parametrize(
+    "name", sampled(["run", "sweep", "simulate", "identify", "rig", "check", "reproduce"], ["sweep"])
+)
 def test_an_interrupt_is_one_sentence_and_leaves_nothing(name: str, home: Path) -> None:
     after = random.Random(name).uniform(0.3, 2.0)
     assert list(trouble(name, after, home, 6.0)) == []  # a machine may be busy

@@ -64,13 +64,27 @@ def bench() -> it.Record:
 
 
 @pytest.fixture(scope="session")
-def fitted(bench: it.Record, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def fits() -> list[it.Fit]:
+    """What the command has found for bench.csv, once it has run."""
+    return []
+
+
+@pytest.fixture(scope="session")
+def fitted(bench: it.Record, fits: list[it.Fit], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with bench.csv, rig.toml and the results of the command in out/."""
     folder = tmp_path_factory.mktemp("identify")
+    real = identification_run.identify
+
+    def kept(*arguments: object, **settings: object) -> it.Fit:
+        fits.append(real(*arguments, **settings))  # type: ignore[arg-type]
+        return fits[-1]
+
     it.write_record(bench, folder / "bench.csv")
     (folder / "rig.toml").write_text(CONFIG, encoding="utf-8")
     arguments = [str(folder / "bench.csv"), "--config", str(folder / "rig.toml"), "-o", str(folder / "out"), "--json"]
-    assert call(["identify", *arguments]) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(identification_run, "identify", kept)
+        assert call(["identify", *arguments]) == 0
     return folder
 
 
@@ -130,13 +144,12 @@ def test_the_elements_can_be_simulated_as_they_are(fitted: Path) -> None:
 
 
 def test_a_fit_that_is_not_ok_is_written_and_returns_1(
-    fitted: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    fitted: Path, fits: list[it.Fit], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real = identification_run.identify
     bad = it.Status(it.StatusKind.INACCURATE, "the model explains 12.0 % of the force only")
 
     def poor(*arguments: object, **settings: object) -> it.Fit:
-        fit = real(*arguments, **settings)  # type: ignore[arg-type]
+        (fit,) = fits
         untold = {n: Told(False, f"{n}: cannot be told, since ...") for n in fit.parameters}
         parameters = {n: replace(p, value=float("nan")) for n, p in fit.parameters.items()}
         return replace(fit, status=bad, identifiable=untold, parameters=parameters)
@@ -202,11 +215,12 @@ def test_a_folder_is_replaced_on_demand_only(fitted: Path, capsys: pytest.Captur
 
 
 def test_an_interruption_keeps_the_fit(
-    fitted: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    fitted: Path, fits: list[it.Fit], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
+    monkeypatch.setattr(identification_run, "identify", lambda *arguments, **settings: fits[0])
     monkeypatch.setattr("inerter.cli.identify.write_identification", stop)
     folder = fitted / "stopped"
     arguments = [str(fitted / "bench.csv"), "--config", str(fitted / "rig.toml"), "-o", str(folder)]

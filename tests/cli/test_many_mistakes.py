@@ -7,31 +7,12 @@ import random
 from pathlib import Path
 
 import pytest
+from study_text import ELEMENTS, study_text
 
 from inerter.cli.main import call
 
-STUDY = """
-[vehicle]
-model = "quarter-car"
-sprung_mass = "250 kg"
-unsprung_mass = "35 kg"
-tyre_stiffness = "150 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "{k} N/m"
-c = "{c} N s/m"
-b = "{b} kg"
-{elements}
-[layouts]
-S1 = "k | c"
-S2 = "k | c - b"
-{layouts}
-[study]
-indices = ["J1", "J3", "J5"]
-{settings}
-"""
+LAYOUTS = 'S1 = "k | c"\nS2 = "k | c - b"'
+INDICES = 'indices = ["J1", "J3", "J5"]'
 MISTAKES = {
     "layouts": [
         'L{i} = "k | q{i}"',
@@ -53,7 +34,11 @@ def study(draw: random.Random, count: int) -> str:
         part: "\n".join(draw.choice(lines).format(i=f"{long}{i}") for i in range(count if draw.random() < 0.6 else 0))
         for part, lines in MISTAKES.items()
     }
-    return STUDY.format(k=2e4, c=1e3, b=30.0, **parts)
+    return study_text(
+        f"{INDICES}\n{parts['settings']}",
+        elements=f"{ELEMENTS}\n{parts['elements']}",
+        layouts=f"{LAYOUTS}\n{parts['layouts']}",
+    )
 
 
 @pytest.mark.parametrize("seed", [*range(3), *(pytest.param(n, marks=pytest.mark.marathon) for n in range(10, 60))])
@@ -76,7 +61,8 @@ def beyond_reason(seed: int, tmp_path: Path, capsys: pytest.CaptureFixture[str])
     values = {name: 10.0 ** draw.uniform(-300, 300) if draw.random() < 0.7 else 1e3 for name in "kcb"}
     if seed == 0:
         values["k"] = 1e151
-    path.write_text(STUDY.format(**values, elements="", layouts="", settings=""), encoding="utf-8")
+    elements = 'k = "{k} N/m"\nc = "{c} N s/m"\nb = "{b} kg"'.format(**values)
+    path.write_text(study_text(INDICES, elements=elements, layouts=LAYOUTS), encoding="utf-8")
     code = call(["run", str(path), "-j", "1", "-o", str(tmp_path / f"{seed}")])
     out, err = capsys.readouterr()
     assert code in (0, 1), err

@@ -7,34 +7,20 @@ import os
 import shlex
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import pytest
+from campaigns import sampled
+from study_text import study_text
 
 from inerter.cli.main import call
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COMMAND = f"{shlex.quote(sys.executable)} -c 'from inerter.cli.start import main; main()'"
 
-
-TITLE = 'title = "Größe ☃"\n'
-STUDY = f"""{TITLE}\
-[vehicle]
-model = "quarter-car"
-sprung_mass = "250 kg"
-unsprung_mass = "35 kg"
-tyre_stiffness = "150 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "20 kN/m"
-c = "1 kN s/m"
-[layouts]
-S1 = "k | c"
-[study]
-indices = ["J1"]
-"""
+TITLE = 'title = "Größe ☃"'
+STUDY = study_text('indices = ["J1"]', layouts='S1 = "k | c"', title=TITLE)
 
 
 @pytest.fixture
@@ -67,12 +53,8 @@ ENDS = {
 RUN, SIMULATE = "run study.toml -j 1 -o out", "simulate rattle.toml -o out"
 
 
-SAMPLE = [(ENDS[name], RUN) for name in ("no reader at all", "nothing open")]
-REST = [(line, command) for line in ENDS.values() for command in (RUN, SIMULATE) if (line, command) not in SAMPLE]
-
-
 @pytest.mark.parametrize(
-    ("line", "arguments"), [*SAMPLE, *(pytest.param(*each, marks=pytest.mark.campaign) for each in REST)]
+    ("line", "arguments"), sampled(product(ENDS.values(), (RUN, SIMULATE)), [(ENDS["no reader at all"], RUN)])
 )
 def test_results_are_whole_whoever_listens(line: str, arguments: str, home: Path) -> None:
     code, out, err = shell(line.format(arguments), home)
@@ -94,14 +76,9 @@ SAID = {  # the exit code, and what is in the text
 }
 
 
-@pytest.mark.parametrize(
-    "line", [next(iter(SAID)), *(pytest.param(x, marks=pytest.mark.campaign) for x in [*SAID][1:])]
-)
-@pytest.mark.parametrize(
-    "environment", [POOR["C"], pytest.param(POOR["ascii"], marks=pytest.mark.campaign)], ids=["C", "ascii"]
-)
-def test_a_terminal_that_knows_few_characters(line: str, environment: dict[str, str], home: Path) -> None:
-    code, out, err = shell(line, home, **environment)
+@pytest.mark.parametrize(("line", "terminal"), sampled(product(SAID, POOR), [(next(iter(SAID)), "C")]))
+def test_a_terminal_that_knows_few_characters(line: str, terminal: str, home: Path) -> None:
+    code, out, err = shell(line, home, **POOR[terminal])
     assert code == SAID[line][0]
     assert "Traceback" not in out + err
     assert SAID[line][1] in out + err

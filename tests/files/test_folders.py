@@ -9,11 +9,13 @@ import random
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 import pytest
+from campaigns import sampled
 from limits import file_size
 from world import PARTS, RIG_FILE, SIMULATION_FILE, STUDY, cheap, files_of, inputs, is_whole, results_of
 
@@ -248,8 +250,11 @@ def test_no_right_to_write_is_a_wrong_request(home: Path, capsys: pytest.Capture
         assert "cannot be written (Permission denied)" in refused(RUN, home, capsys)
 
 
-@pytest.mark.parametrize("command", [RUN, SIMULATE, REPRODUCE], ids=lambda c: c[0])
-@pytest.mark.parametrize("again", [False, True], ids=["new", "force"])
+@pytest.mark.parametrize(
+    ("command", "again"),
+    sampled(product([RUN, SIMULATE, REPRODUCE], [False, True]), [(RUN, True), (SIMULATE, False)]),
+    ids=lambda value: value[0] if isinstance(value, list) else ("new", "force")[value],
+)
 def test_a_full_disk_is_one_sentence_and_old_results_stay(
     command: list[str], again: bool, home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -346,8 +351,16 @@ LONG = [pytest.mark.marathon, pytest.mark.timeout(7200)]
 EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=LONG)], ids=["some", "every"])
 
 
-@EVERY
-@pytest.mark.parametrize("command", [RUN, SIMULATE, REPRODUCE], ids=lambda c: c[0])
+def kills(first: list[str], *others: list[str]) -> pytest.MarkDecorator:
+    """Some steps of the first command always, of the others in a campaign, and every step of all in a marathon."""
+    some = [pytest.param(first, False), *(pytest.param(c, False, marks=pytest.mark.campaign) for c in others)]
+    parts = [*some, *(pytest.param(c, True, marks=LONG) for c in (first, *others))]
+    return pytest.mark.parametrize(
+        ("command", "every"), parts, ids=lambda value: value[0] if isinstance(value, list) else ("some", "every")[value]
+    )
+
+
+@kills(RUN, SIMULATE, REPRODUCE)
 def test_a_kill_at_a_step_of_force_leaves_old_or_new_results(command: list[str], every: bool, home: Path) -> None:
     """And a further command finishes; what is the user's stays in either case."""
     assert call(command) == 0
@@ -373,8 +386,7 @@ def test_a_kill_at_a_step_of_force_leaves_old_or_new_results(command: list[str],
         assert not list(home.rglob(".inerter-*"))
 
 
-@EVERY
-@pytest.mark.parametrize("command", [RUN, REPRODUCE], ids=lambda c: c[0])
+@kills(RUN, REPRODUCE)
 def test_a_kill_at_a_step_can_be_resumed(command: list[str], every: bool, home: Path) -> None:
     count = steps_of(command)
     whole = without_journals(results_of(home / "out"))

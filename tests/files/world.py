@@ -13,6 +13,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from unittest.mock import patch
 
+from study_text import study_text
+
 from inerter.files.common.listing import MARK, digest, listing
 from inerter.files.identification.running import RESIDUALS, Identified
 from inerter.files.study.cases import Case, Outcome
@@ -21,25 +23,7 @@ from inerter.files.study.running import run_study
 from inerter.report.identification import write_fit
 from inerter.writing import write_text
 
-STUDY = """
-[vehicle]
-model = "quarter-car"
-sprung_mass = "250 kg"
-unsprung_mass = "35 kg"
-tyre_stiffness = "150 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "20 kN/m"
-c = "1 kN s/m"
-b = "30 kg"
-[layouts]
-S1 = "k | c"
-S2 = "k | c | b"
-[study]
-indices = ["J1", "J3"]
-"""
+STUDY = study_text('indices = ["J1", "J3"]')
 RIG = """
 [elements]
 k = "10 kN/m"

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.signal
 import scipy.stats
+from campaigns import sampled
 from strategies import paper_half_car, paper_quarter_car
 
 import inerter as it
@@ -218,7 +219,7 @@ def test_what_cannot_be_simulated_says_so():
     assert it.evaluate(gap, J1, TWO).status.kind in ("ok", "inaccurate")
 
 
-@pytest.mark.parametrize("index", [J1, J3], ids=["J1", "J3"])
+@pytest.mark.parametrize("index", sampled([J1, J3], [J1]), ids=["J1", "J3"])
 def test_a_resonance_between_the_lines_of_the_road_asks_for_a_longer_one(index):
     """And where the longest does not resolve it either, there is no value; play that rattles on has one of its own."""
     soft = paper_quarter_car(k | Damper(300.0) | Friction(20.0))
@@ -337,7 +338,7 @@ def test_free_values_are_refused():
         it.evaluate(paper_quarter_car(k | Friction(it.free(1.0, 2.0, "f"))), J1, TWO)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", sampled(range(6), range(2)))
 def test_a_fast_wheel_is_not_smoothed_by_the_knots_of_the_road(seed):
     """With a friction that does next to nothing the value is the norm, whatever the wheel's frequency."""
     rng = np.random.default_rng([4, seed])

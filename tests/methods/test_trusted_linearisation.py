@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from campaigns import in_parts
+from campaigns import in_parts, sampled
 from strategies import paper_half_car
 from white_noise import ROAD, drawn
 
@@ -41,11 +41,12 @@ def judged(car):
     return trusted
 
 
-@pytest.mark.parametrize(
-    "car", [drawn(4).vehicle, drawn(12).vehicle, half_car(0)], ids=["screw", "locking", "half car"]
-)
-def test_ok_means_within_three_per_cent(car):
-    judged(car)
+CARS = {"screw": lambda: drawn(4).vehicle, "locking": lambda: drawn(12).vehicle, "half car": lambda: half_car(0)}
+
+
+@pytest.mark.parametrize("name", sampled(CARS, ["screw"]))
+def test_ok_means_within_three_per_cent(name):
+    judged(CARS[name]())
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+from itertools import product
 
 import numpy as np
 import pytest
+from campaigns import sampled
 
 from inerter.files.study.registry import INDEX
 from inerter.files.study.running import check_study
@@ -45,7 +47,10 @@ def test_table_3_repeats_table_2(row: PrintedRow) -> None:
     assert same.parameters == row.parameters
 
 
-@pytest.mark.parametrize("row", DESIGNS, ids=name)
+ALWAYS = [row for row in DESIGNS if row.table == 1 or row.layout in ("S1", "S3-soft")]
+
+
+@pytest.mark.parametrize("row", sampled(DESIGNS, ALWAYS), ids=name)
 def test_designs_are_found_from_scratch(row: PrintedRow) -> None:
     """At or below the printed value, to its printed digits, from the widest bounds and with no hint."""
     vehicle = source(row).design(row.layout)
@@ -56,8 +61,12 @@ def test_designs_are_found_from_scratch(row: PrintedRow) -> None:
     assert best.value <= float(row.printed) + 0.5 * row.last_digit + 1e-9 * best.value
 
 
-@pytest.mark.parametrize("layout", ["S1", "S2-soft", "S3", "S3-hard"])
-@pytest.mark.parametrize("index", ["J1", "J3", "J5"])
+@pytest.mark.parametrize(
+    ("layout", "index"),
+    sampled(
+        product(["S1", "S2-soft", "S3", "S3-hard"], ["J1", "J3", "J5"]), [("S3", "J1"), ("S1", "J3"), ("S1", "J5")]
+    ),
+)
 def test_seeds_agree_on_the_half_car(layout: str, index: str) -> None:
     half = study("table2")
     values = [optimise(half.design(layout), INDEX[index](half), Norm("paper2008"), seed=seed).value for seed in (1, 2)]

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from campaigns import sampled
 
 from inerter.errors import StudyError
 from inerter.files.common.folder import Intent, claimed
@@ -119,10 +120,10 @@ def test_resolved_study_gives_the_same_results(tmp_path: Path) -> None:
     assert (tmp_path / "one" / "summary.csv").read_bytes() == (tmp_path / "two" / "summary.csv").read_bytes()
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT], ids=["kill -9", "Ctrl-C"])
-@pytest.mark.parametrize(
-    ("points", "processes"), [(20, 1), pytest.param(100, 2, marks=pytest.mark.campaign)], ids=["one", "two processes"]
-)
+INTERRUPTED = [(how, *size) for how in (signal.SIGINT, signal.SIGKILL) for size in ((20, 1), (100, 2))]
+
+
+@pytest.mark.parametrize(("how", "points", "processes"), sampled(INTERRUPTED, INTERRUPTED[:1]))
 def test_interrupted_sweep_resumes_to_the_same_bytes(
     tmp_path: Path, how: signal.Signals, points: int, processes: int
 ) -> None:

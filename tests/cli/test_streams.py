@@ -105,6 +105,7 @@ def test_results_are_written_where_a_command_writes_any(
         assert capsys.readouterr().err == "inerter: standard output: No space left on device.\n"
 
 
+@pytest.mark.campaign
 def test_a_name_that_is_no_text(home: Path) -> None:
     name = os.fsencode(home) + b"/caf\xe9.toml"
     os.rename(os.fsencode(home / "study.toml"), name)

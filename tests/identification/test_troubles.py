@@ -123,6 +123,7 @@ def test_a_rigid_device_is_fitted_down_to_the_noise_of_the_cell() -> None:
         assert abs(p.value - value) < p.interval[1] - p.interval[0]
 
 
+@pytest.mark.campaign
 def test_a_known_fixture_is_taken_away_and_an_unknown_one_is_spoken_of() -> None:
     case = replace(RIGID, sensors=replace(RIGID.sensors, fixture=4.0))
     known = fitted(case, 2)
@@ -135,6 +136,7 @@ def test_a_known_fixture_is_taken_away_and_an_unknown_one_is_spoken_of() -> None
     assert any(note.startswith("b: holds what moves with the table") for note in unknown.notes)
 
 
+@pytest.mark.campaign
 def test_known_noise_is_what_a_residual_is_judged_by() -> None:
     """Of a load cell that is said to be much better than it is, a right model leaves too much."""
     short = replace(RIGID, duration=2.0)

@@ -1,9 +1,11 @@
 """Vehicles whose tyres keep a share of the road's shape, three axles under a rigid body for one: by compiled code."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from nodal import Nodal
 from quadrature import h2_by_quadrature
 
@@ -109,8 +111,9 @@ USUAL = {
 }  # share of designs of which compiled code is sure: it bounds each delay's error
 
 
-@pytest.mark.parametrize("conventions", USUAL)
-@pytest.mark.parametrize("index", INDICES)
+@pytest.mark.parametrize(
+    ("index", "conventions"), sampled(product(INDICES, USUAL), [("J1", "exact"), ("J3", "paper2008")])
+)
 def test_compiled_norms_are_those_without_rounding(index, conventions):
     assert check_family(21, 8, conventions, index) >= USUAL[conventions]
 
@@ -119,7 +122,7 @@ def test_compiled_norms_are_those_without_rounding(index, conventions):
 @pytest.mark.parametrize("conventions", USUAL)
 @pytest.mark.parametrize("index", INDICES)
 def test_compiled_norms_of_many_vehicles_are_those_without_rounding(index, conventions):
-    assert check_family(22, 100, conventions, index) >= USUAL[conventions]
+    assert check_family(22, 60, conventions, index) >= USUAL[conventions]
 
 
 @pytest.mark.parametrize("conventions", USUAL)

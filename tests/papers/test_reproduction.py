@@ -305,13 +305,8 @@ def test_tasks_give_numbers_that_json_has() -> None:
     assert numbers["seconds"] > 0.0
 
 
-@pytest.mark.parametrize("every", [5, pytest.param(1, marks=pytest.mark.campaign)])
-def test_one_table_from_the_command_line(
-    every: int, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_table_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Its rows in text, CSV and page; a second run with --resume computes nothing anew."""
-    names = rows.names(1)[::every]
-    monkeypatch.setattr(rows, "names", lambda table: names)
     folder = tmp_path / "paper"
     arguments = ["reproduce", "wang-su-2008", "--only", "table1", "--only", "figure12", "-o", str(folder), "-j", "1"]
     assert call(arguments) == 0
@@ -319,7 +314,7 @@ def test_one_table_from_the_command_line(
     assert max(map(len, text.splitlines())) <= 80
     with (folder / "simulated-rows.csv").open(encoding="utf-8") as stream:
         found = list(csv.DictReader(stream))
-    assert [f"{row['index']} {row['case']}" for row in found] == names
+    assert len(found) == 33
     verdicts = {row["verdict"] for row in found}
     assert verdicts <= {
         "agrees to the printed digits",

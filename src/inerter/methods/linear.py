@@ -47,7 +47,8 @@ CONVENTIONS = {
         Conventions(
             "paper2008",
             "As for the printed numbers of Wang and Su (2008), a fifth-order Padé approximant stands for the delay "
-            "from one axle to the next, and where the road arrives at two axles tyre loads are taken over s + 2 pi rad/s.",
+            "from one axle to the next, and where the road arrives at two axles tyre loads are taken over "
+            "s + 2 pi rad/s.",
             pade_order=5,
             corner=2.0 * math.pi,
             hold=1e-3,

@@ -41,6 +41,16 @@ def test_nothing_outside_papers_names_one(name: str) -> None:
     assert [path for path in outside if any(word in path.read_text(encoding="utf-8") for word in known)] == []
 
 
+@pytest.mark.parametrize("name", PAPERS)
+def test_what_shows_results_has_no_word_of_a_paper(name: str) -> None:
+    """Elsewhere an author is named as the source of a formula."""
+    author = name.partition("-")[0]
+    for package in ("cli", "report", "figures", "files", "work"):
+        sources = [path for path in (SOURCES / package).rglob("*") if path.suffix in (".py", ".html", ".css")]
+        assert sources
+        assert [path for path in sources if author in path.read_text(encoding="utf-8").lower()] == []
+
+
 def test_the_papers_are_listed_where_none_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["reproduce"]) == 0
     told = capsys.readouterr().out

@@ -28,6 +28,7 @@ class Conventions:
     """
 
     name: str
+    sentence: str  # which tells them in a report
     pade_order: int | None
     corner: float | None  # [rad/s]
     hold: float | None  # [s]
@@ -36,8 +37,22 @@ class Conventions:
 CONVENTIONS = {
     row.name: row
     for row in (
-        Conventions("exact", pade_order=None, corner=None, hold=None),
-        Conventions("paper2008", pade_order=5, corner=2.0 * math.pi, hold=1e-3),
+        Conventions(
+            "exact",
+            "The delay from one axle to the next is exact, and no filter is added to what the indices define.",
+            pade_order=None,
+            corner=None,
+            hold=None,
+        ),
+        Conventions(
+            "paper2008",
+            "As for the printed numbers of Wang and Su (2008), a fifth-order Padé approximant stands for the delay "
+            "from one axle to the next, and where the road arrives at two axles tyre loads are taken over "
+            "s + 2 pi rad/s.",
+            pade_order=5,
+            corner=2.0 * math.pi,
+            hold=1e-3,
+        ),
     )
 }
 

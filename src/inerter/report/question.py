@@ -12,6 +12,7 @@ import xarray as xr
 from inerter.figures.labels import capital, index_title, indices
 from inerter.files.common.shape import UNITS
 from inerter.files.study.study import Study
+from inerter.methods.linear import CONVENTIONS
 from inerter.networks.elements import Element, Free
 from inerter.units import ELEMENT_UNITS, format_quantity
 
@@ -27,13 +28,6 @@ _METHODS = {
     ),
     "approximate-linear": (
         "norms of gains that the design as it is shows on random inputs, output over input, frequency by frequency"
-    ),
-}
-_CONVENTIONS = {
-    "exact": "The delay from one axle to the next is exact, and no filter is added to what the indices define.",
-    "paper2008": (
-        "As for the printed numbers of Wang and Su (2008), a fifth-order Padé approximant stands for the delay from "
-        "one axle to the next, and where the road arrives at two axles tyre loads are taken over s + 2 pi rad/s."
     ),
 }
 
@@ -97,7 +91,7 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         )
         if study.optimise != "norm":
             yield f"What was made smallest is the value by {study.optimise}: {_METHODS[study.optimise]}."
-    yield _CONVENTIONS.get(study.conventions, f"Conventions: {study.conventions}.")
+    yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."
 
 

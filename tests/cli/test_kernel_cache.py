@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 KERNEL = """
-from inerter.kernels import typed
+from inerter.kernels.declare import kernel
 
 
-@typed("float64(float64)")
+@kernel("twice", "float64(float64)")
 def doubled(x):
     return 2.0 * x
 """

@@ -11,8 +11,8 @@ from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.linear import compare
 from inerter.papers.wang_su_2008.source import PrintedRow, linear_rows, study
+from inerter.study.checking import check_study
 from inerter.study.registry import INDEX
-from inerter.study.run import check_study
 from inerter.study.values import Study
 
 ROWS = linear_rows()

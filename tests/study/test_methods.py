@@ -18,9 +18,10 @@ from inerter.optimisation.optimise import optimise
 from inerter.study import registry
 from inerter.study.budgets import BudgetOutcome, budget_cases, budgets_csv
 from inerter.study.cases import Case, Outcome, run_case
+from inerter.study.checking import check_study
 from inerter.study.file import load_study
 from inerter.study.registry import INDEX, METHOD
-from inerter.study.run import StudyResult, check_study, run_study
+from inerter.study.run import StudyResult, run_study
 from inerter.study.values import StrutLayout, Study
 
 TEXT = """

@@ -19,10 +19,11 @@ from inerter.errors import StudyError
 from inerter.files.common.folder import Intent, claimed
 from inerter.methods.method import evaluate
 from inerter.study.cases import Outcome, cases
+from inerter.study.checking import check_study
 from inerter.study.file import load_study
 from inerter.study.journal import finished, journal_of
 from inerter.study.registry import INDEX, METHOD
-from inerter.study.run import NAMES, check_study, run_study
+from inerter.study.run import NAMES, run_study
 
 SWEEP = """
 title = "Soft and stiff springs"

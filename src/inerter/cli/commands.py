@@ -22,10 +22,8 @@ from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
 from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
-from inerter.study.budgets import budget_cases
 from inerter.study.file import load_study
-from inerter.study.run import FIGURES, REPORT, SUMMARY, StudyResult, check_study, run_study, study_notes
-from inerter.study.suggest import some
+from inerter.study.run import FIGURES, REPORT, SUMMARY, StudyResult, run_study
 
 _MOST = 20  # designs that are told one by one
 _JSON = {"improvement_error": "improvement_error_percent"}
@@ -43,8 +41,17 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
 
     kept = _kept(("run", str(study)), folder, jobs, as_json=as_json)
     items = "designs and budgets" if loaded.budgets else "designs"
-    with interruptible(lambda: kept), progress(study.stem, items) as callback:
-        result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback, finish=show)
+    with interruptible(lambda: kept), progress(study.stem, items) as shown:
+        result = run_study(
+            loaded,
+            folder,
+            jobs=processes,
+            resume=resume,
+            force=force,
+            progress=shown.cases,
+            compiling=shown.kernels,
+            finish=show,
+        )
     _say(f"report: {folder / REPORT}")
     if as_json:
         print(_as_json(result))
@@ -55,23 +62,6 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
     return _judge(result)
-
-
-def check(study: Path) -> int:
-    """Check a study file; returns the exit code."""
-    loaded = load_study(study)
-    check_study(loaded)
-    points = len(loaded.sweep.values) if loaded.sweep else 1
-    count = len(loaded.layouts) * len(loaded.indices) * points
-    budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
-    swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
-    print(
-        f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
-        f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
-    )
-    for note in study_notes(loaded):
-        print(f"Note: {note}.")
-    return 0
 
 
 def reproduce(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import xarray as xr
 from inerter.errors import StudyError
 from inerter.files.common.folder import Intent, Results, claimed
 from inerter.files.common.journal import Journal
+from inerter.kernels.prepare import prepare
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
@@ -22,6 +22,7 @@ from inerter.papers.wang_su_2008.linear import Linear
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import KEY, study
+from inerter.simulation.event_driven import KERNELS
 from inerter.study.run import FIGURES, NAMES, REPORT, StudyResult, run_study
 from inerter.study.workers import Crew, crewed
 
@@ -162,7 +163,7 @@ def reproduce(
 
 def _warm_up() -> None:
     """Go through some quick tasks, which compile what simulations need, while others compile what the studies do."""
-    import_module("inerter.simulation.event_driven")  # first what the linear studies do not compile themselves
+    prepare(KERNELS)  # first what the linear studies do not compile themselves
     for part, name in (("table1", "J5 4"), ("table1", "J1 4"), ("table3", "J1 3"), ("table3", "J5 3")):
         work(Task(part, name))
 

@@ -18,7 +18,7 @@ def _homes() -> dict[str, str]:
 
 
 _HOME = _homes()
-__all__ = sorted([*_HOME, "__version__"])
+__all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605 -- made of the stub
 
 
 def __getattr__(name: str) -> Any:

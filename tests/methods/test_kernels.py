@@ -18,13 +18,14 @@ from inerter import (
     RideComfort,
     Road,
     Spring,
+    StatisticalLinearisation,
     StatusKind,
     TyreLoad,
     evaluate,
     evaluate_many,
     free,
 )
-from inerter.kernels import cache
+from inerter.kernels import cache, gain, h2, harmonic
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())
@@ -218,3 +219,21 @@ def test_the_cache_folder_is_where_the_environment_says(tmp_path, monkeypatch):
     folder = cache.cache_folder.__wrapped__(module)
     assert folder.is_relative_to(tmp_path)
     assert cache.source_hash(module) in folder.name
+
+
+@pytest.mark.parametrize("conventions", ["exact", "paper2008"])
+def test_kernels_are_called_with_the_types_that_they_are_prepared_for(conventions):
+    strut = k | c - (b | Friction(10.0))
+    for car in (paper_quarter_car(strut), paper_half_car(strut, strut)):
+        for index in (*INDICES[:2], LoadCarrying(amplitude=100.0)):
+            for method in (Norm(conventions), StatisticalLinearisation(conventions)):
+                objective = method.objective(car, index)
+                point = np.array([3000.0, 100.0])
+                objective.values(np.array([point, 2.0 * point]))
+                active = objective.active(point)
+                if active is None:
+                    objective.value_and_gradient(point)
+                else:
+                    objective.components(point, active)
+    for kernel in (h2.norms, gain.peaks_of, gain.gains, harmonic.gains):
+        assert len(kernel.ready().signatures) == 1, kernel.title

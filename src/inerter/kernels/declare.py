@@ -42,11 +42,6 @@ class Kernel:
                 raise KeyboardInterrupt from None
             raise
 
-    @property
-    def is_ready(self) -> bool:
-        """Whether this process has it."""
-        return self._compiled is not None
-
     def ready(self) -> Any:
         """The compiled function: for a kernel with a signature, compiled or read from the cache by now."""
         if self._compiled is None:

@@ -16,6 +16,7 @@ from inerter.kernels.declare import Kernel
 
 Told = Callable[[str, int, int], None]  # title of the kernel that is begun, its number from 1, how many there are
 _ALONE = Lock()
+_SEEN: set[Kernel] = set()  # which this process need not look for again
 _MOST = 4  # processes: there are few kernels, and the longest takes as long as all others
 _HELPER = "from inerter.kernels.prepare import help_out; help_out()"
 
@@ -26,12 +27,13 @@ def prepare(kernels: Iterable[Kernel], progress: Told | None = None) -> None:
     Other processes help with it, and what they do this one reads from the cache later. Should one fail, a kernel is
     compiled where it is called. `progress` is called when a kernel is begun; without it one line says what goes on.
     """
-    wanted = [kernel for kernel in dict.fromkeys(kernels) if not kernel.is_ready]
+    wanted = [kernel for kernel in dict.fromkeys(kernels) if kernel not in _SEEN]
     if wanted:
         with _ALONE:
             missing = [kernel for kernel in wanted if not is_kept(kernel)]
             if missing:
                 _compile(missing, progress)
+            _SEEN.update(wanted)
 
 
 def _compile(missing: list[Kernel], progress: Told | None) -> None:

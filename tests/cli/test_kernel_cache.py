@@ -12,10 +12,10 @@ import pytest
 from campaigns import sampled
 
 KERNEL = """
-from inerter.kernels import typed
+from inerter.kernels.declare import kernel
 
 
-@typed("float64(float64)")
+@kernel("twice", "float64(float64)")
 def doubled(x):
     return 2.0 * x
 """
@@ -110,3 +110,54 @@ def test_files_of_the_cache_that_were_cut_short_are_made_anew(tmp_path: Path, te
         out, err = compile_with(cache, temporary)
         assert (out, err) == ("42.0\n", "")
     assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))
+
+
+SEVERAL = """
+from inerter.kernels.declare import kernel
+
+
+@kernel("twice", "float64(float64)")
+def doubled(x):
+    return 2.0 * x
+
+
+@kernel("thrice", "float64(float64)")
+def tripled(x):
+    return 3.0 * x
+
+
+@kernel("half", "float64(float64)")
+def halved(x):
+    return 0.5 * x
+"""
+PREPARED = """
+from inerter.kernels.prepare import prepare
+from small import doubled, halved, tripled
+
+prepare([doubled, tripled, halved, doubled], lambda *told: print(*told))
+print("ready")
+prepare([doubled, tripled, halved], lambda *told: print(*told))
+print(doubled(1.0), tripled(1.0), halved(1.0))
+"""
+
+
+@pytest.mark.parametrize("helper", ["inerter.kernels.prepare", "there.is.no.such.module"])
+def test_kernels_that_are_missing_are_compiled_beforehand_and_each_is_told_once(tmp_path: Path, helper: str) -> None:
+    (tmp_path / "small.py").write_text(SEVERAL, encoding="utf-8")
+    program = PREPARED.replace(
+        "prepare([",
+        f"import inerter.kernels.prepare as m; m._HELPER = m._HELPER.replace(m.__name__, {helper!r})\nprepare([",
+        1,
+    )
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    found = [
+        subprocess.run(
+            [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True, timeout=280
+        )
+        for _ in range(2)
+    ]
+    assert [done.stderr for done in found] == ["", ""]
+    lines = found[0].stdout.splitlines()
+    assert lines[:3] == ["twice 1 3", "thrice 2 3", "half 3 3"]
+    assert lines[3:] == ["ready", "2.0 3.0 0.5"]
+    assert found[1].stdout.splitlines() == ["ready", "2.0 3.0 0.5"]

@@ -20,13 +20,14 @@ from inerter import (
     RideComfort,
     Road,
     Spring,
+    StatisticalLinearisation,
     StatusKind,
     TyreLoad,
     evaluate,
     evaluate_many,
     free,
-    kernels,
 )
+from inerter.kernels import cache, gain, h2, harmonic
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())
@@ -206,22 +207,40 @@ def test_what_has_no_finite_value_is_nan_and_does_not_hide_what_has():
 
 
 def test_the_cache_folder_changes_with_every_source_that_a_module_rests_on(tmp_path):
-    source = Path(kernels.__file__).parent
+    source = Path(cache.__file__).parent
     folder = tmp_path / "kernels"
     shutil.copytree(source, folder, ignore=shutil.ignore_patterns("__pycache__"))
-    original = kernels.source_hash(folder / "h2.py")
-    assert original == kernels.source_hash(source / "h2.py")
-    for name, matters in {"h2": True, "linalg": True, "__init__": True, "gain": False}.items():
+    original = cache.source_hash(folder / "h2.py")
+    assert original == cache.source_hash(source / "h2.py")
+    for name, matters in {"h2": True, "linalg": True, "compiler": True, "gain": False}.items():
         path = folder / f"{name}.py"
         text = path.read_text()
         path.write_text(text + "\n")
-        assert (kernels.source_hash(folder / "h2.py") != original) == matters
+        assert (cache.source_hash(folder / "h2.py") != original) == matters
         path.write_text(text)
 
 
 def test_the_cache_folder_is_where_the_environment_says(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    module = Path(kernels.__file__).with_name("h2.py")
-    folder = kernels.cache_folder.__wrapped__(module)
+    module = Path(cache.__file__).with_name("h2.py")
+    folder = cache.cache_folder.__wrapped__(module)
     assert folder.is_relative_to(tmp_path)
-    assert kernels.source_hash(module) in folder.name
+    assert cache.source_hash(module) in folder.name
+
+
+@pytest.mark.parametrize("conventions", ["exact", "paper2008"])
+def test_kernels_are_called_with_the_types_that_they_are_prepared_for(conventions):
+    strut = k | c - (b | Friction(10.0))
+    for car in (paper_quarter_car(strut), paper_half_car(strut, strut)):
+        for index in (*INDICES[:2], LoadCarrying(amplitude=100.0)):
+            for method in (Norm(conventions), StatisticalLinearisation(conventions)):
+                objective = method.objective(car, index)
+                point = np.array([3000.0, 100.0])
+                objective.values(np.array([point, 2.0 * point]))
+                active = objective.active(point)
+                if active is None:
+                    objective.value_and_gradient(point)
+                else:
+                    objective.components(point, active)
+    for kernel in (h2.norms, gain.peaks_of, gain.gains, harmonic.gains):
+        assert len(kernel.ready().signatures) == 1, kernel.title

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from campaigns import sampled
 
+from inerter.files.study.checking import check_study
 from inerter.files.study.registry import INDEX
-from inerter.files.study.running import check_study
 from inerter.files.study.study import Study
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise

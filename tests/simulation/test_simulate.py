@@ -17,8 +17,8 @@ import pytest
 from scipy.io import loadmat
 
 import inerter as it
-from inerter import kernels
 from inerter.errors import SimulationError
+from inerter.kernels import compiler
 from inerter.kernels.events import over_columns
 from inerter.kernels.flow import first_root
 
@@ -238,10 +238,10 @@ def test_a_changed_kernel_is_compiled_again(tmp_path):
     """A copy of the package whose flow kernel is changed must not run what the cache holds of the original."""
     probe = textwrap.dedent(
         """
-        from inerter.kernels import typed
+        from inerter.kernels.declare import kernel
         from inerter.kernels.flow import first_root, value_at
 
-        @typed("UniTuple(float64, 2)(float64[::1], float64[::1], float64[::1])")
+        @kernel("probe", "UniTuple(float64, 2)(float64[::1], float64[::1], float64[::1])")
         def probe(line, falling, ends):
             return value_at(line, 2, 2.0), first_root(falling, 2, ends)
         """
@@ -292,6 +292,6 @@ def test_threads_that_compile_at_once_do_not_see_each_others_settings(monkeypatc
     before = numba.config.CACHE_DIR
     monkeypatch.setattr(numba, "njit", slow)
     with ThreadPoolExecutor(4) as pool:
-        list(pool.map(kernels.compiled, [first_root.py_func, over_columns.py_func] * 4))
+        list(pool.map(compiler.compiled, [first_root.function, over_columns.function] * 4))
     assert kept == [True] * 8
     assert before == numba.config.CACHE_DIR

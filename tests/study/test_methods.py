@@ -14,9 +14,10 @@ from inerter.files.common.layouts import StrutLayout
 from inerter.files.study import registry
 from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv
 from inerter.files.study.cases import Case, Outcome, run_case
+from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.registry import INDEX, METHOD
-from inerter.files.study.running import StudyResult, check_study, run_study
+from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate

@@ -19,10 +19,11 @@ from campaigns import sampled
 from inerter.errors import StudyError
 from inerter.files.common.folder import Intent, claimed
 from inerter.files.study.cases import Outcome, cases
+from inerter.files.study.checking import check_study
 from inerter.files.study.journal import finished, journal_of
 from inerter.files.study.loading import load_study
 from inerter.files.study.registry import INDEX, METHOD
-from inerter.files.study.running import NAMES, check_study, run_study
+from inerter.files.study.running import NAMES, run_study
 from inerter.methods.method import evaluate
 
 SWEEP = """

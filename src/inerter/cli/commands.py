@@ -18,10 +18,8 @@ from inerter.cli.progress import progress, steps
 from inerter.errors import StatusKind, StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
-from inerter.files.common.suggest import some
-from inerter.files.study.budgets import budget_cases
 from inerter.files.study.loading import load_study
-from inerter.files.study.running import SUMMARY, StudyResult, check_study, run_study, study_notes
+from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.budgets import budget_lines
@@ -45,8 +43,17 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
 
     kept = _kept(("run", str(study)), folder, jobs, as_json=as_json)
     items = "designs and budgets" if loaded.budgets else "designs"
-    with interruptible(lambda: kept), progress(study.stem, items) as callback:
-        result = run_study(loaded, folder, jobs=processes, resume=resume, force=force, progress=callback, finish=show)
+    with interruptible(lambda: kept), progress(study.stem, items) as shown:
+        result = run_study(
+            loaded,
+            folder,
+            jobs=processes,
+            resume=resume,
+            force=force,
+            progress=shown.cases,
+            compiling=shown.kernels,
+            finish=show,
+        )
     _say(f"report: {folder / REPORT}")
     if as_json:
         print(_as_json(result))
@@ -57,23 +64,6 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
     return _judge(result)
-
-
-def check(study: Path) -> int:
-    """Check a study file; returns the exit code."""
-    loaded = load_study(study)
-    check_study(loaded)
-    points = len(loaded.sweep.values) if loaded.sweep else 1
-    count = len(loaded.layouts) * len(loaded.indices) * points
-    budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
-    swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
-    print(
-        f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
-        f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
-    )
-    for note in study_notes(loaded):
-        print(f"Note: {note}.")
-    return 0
 
 
 def papers() -> int:

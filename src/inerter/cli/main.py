@@ -112,7 +112,7 @@ def check(study: Path, /) -> int:
     study
         The study file (TOML).
     """
-    from inerter.cli.commands import check as command
+    from inerter.cli.check import check as command
 
     return command(study)
 

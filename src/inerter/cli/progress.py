@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from rich.console import Console
 from rich.progress import (
@@ -23,13 +24,24 @@ from rich.progress import (
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
 from inerter.files.study.running import Progress as Report
+from inerter.kernels.prepare import Told
+
+
+class Shown(NamedTuple):
+    """What shows how far a study is."""
+
+    cases: Report  # how many cases are done, and which one was last
+    kernels: Told  # which kernel is compiled before that
 
 
 @contextmanager
-def progress(what: str, items: str = "designs") -> Iterator[Report]:
-    """A callback that shows how many cases are done, and which one was last; `items` says what there is to find."""
+def progress(what: str, items: str = "designs") -> Iterator[Shown]:
+    """Callbacks that show how far the work is; `items` says what there is to find."""
     if not sys.stderr.isatty():
-        yield lambda done, total, outcome: _line(what, items, done, total, outcome)
+        yield Shown(
+            lambda done, total, outcome: _line(what, items, done, total, outcome),
+            lambda title, number, total: print(_kernel(what, title, number, total), file=sys.stderr, flush=True),
+        )
         return
     columns = (
         TextColumn("{task.description}"),
@@ -46,7 +58,10 @@ def progress(what: str, items: str = "designs") -> Iterator[Report]:
             name = f"{what}: {outcome.layout} {outcome.index}" if outcome else what
             bar.update(task, completed=done, total=total, description=name)
 
-        yield show
+        def begun(title: str, number: int, total: int) -> None:
+            bar.update(task, completed=number - 1, total=total, description=_kernel(what, title, number, total))
+
+        yield Shown(show, begun)
 
 
 @contextmanager
@@ -106,6 +121,10 @@ class _Every:
         if time.monotonic() - self.last > 10.0:
             self.last = time.monotonic()
             print(f"{self.what}: {100 * done:.0f} % done", file=sys.stderr, flush=True)
+
+
+def _kernel(what: str, title: str, number: int, total: int) -> str:
+    return f"{what}: compiling kernels {number} of {total}: {title}"
 
 
 def _line(what: str, items: str, done: int, total: int, outcome: Outcome | BudgetOutcome | None) -> None:

@@ -10,14 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment
 from inerter.identification.guess import Chain
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.kernels.declare import kernel, part
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, free
 from inerter.networks.parser import written
 from inerter.units import format_quantity
@@ -179,8 +180,8 @@ def _level(chain: Chained, z: Matrix, v: Matrix) -> Matrix:
     )
 
 
-@numba.njit(cache=True)
-def _march(z, v, interval, parts, numbers):  # type: ignore[no-untyped-def]
+@kernel("force of a device")
+def _march(z: Any, v: Any, interval: float, parts: int, numbers: Any) -> Any:
     ks, cs, gap, b, f, c, rise, speed, tilt, bend, skew = numbers
     bias = skew * f
     h = interval / parts
@@ -221,8 +222,8 @@ def _march(z, v, interval, parts, numbers):  # type: ignore[no-untyped-def]
     return force
 
 
-@numba.njit(cache=True)
-def _slid(push, level, inertia):  # type: ignore[no-untyped-def]
+@part()
+def _slid(push: float, level: float, inertia: float) -> float:
     """The velocity to which a push leads against friction of this level; zero where it holds."""
     if push > level:
         return (push - max(level, 0.0)) / inertia

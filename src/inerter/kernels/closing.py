@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import part
+from inerter.kernels.declare import part
 from inerter.kernels.linalg import copy, factor, solve, solve_rows, solve_transposed
 from inerter.kernels.twofold import add_multiple
 
 Array = Any
+DESCRIPTOR = f"Tuple(({3 * 'float64[:,:,::1], '}{3 * 'float64[:,::1], '}{3 * 'float64[:,:,::1], '}))"  # its type
 
 
 @part(borrowing=True)

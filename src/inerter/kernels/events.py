@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import float64, int64, types
 
-from inerter.kernels import compiled, compiling_beside, part, typed
 from inerter.kernels.arrays import ENTRY, FRICTION, GUARD, KIND, NA, NR, OUTPUT, OUTPUTS, OWN_POSITION, SEEN, K, N
+from inerter.kernels.declare import kernel, part
 from inerter.kernels.flow import first_root, input_sizes, inputs_from, knot_numbers, series, slope_at, value_at
 from inerter.kernels.march import march_at
 
@@ -22,7 +21,6 @@ ORDERS = 6  # derivatives that are looked at to see on which side of its limit a
 STATE, SCALE, GUESS, CLOCK, NUMBERS, LINE, ENERGY = range(7)  # rows of `work`, then those of these sizes
 RESIDUAL, POLYNOMIAL, U, SIZE, INPUT_SIZE, X = 7, 8, 11, 19, 19 + ORDERS, 19 + 2 * ORDERS
 ROWS = X + 32
-MODES_READY = compiling_beside("modes")  # which this module does not need yet
 _ROUNDING = 1e-13  # relative to the largest state so far
 _MET = 1e-9  # the same where a guard has just been met
 PIECES = 1e4  # of a segment: with more, a run would take hours
@@ -86,6 +84,23 @@ def mode_number(number: Array, trial: Array) -> int:
     return int(number[code])
 
 
+def _signature(types: Any) -> Any:
+    """The type of `integrate`."""
+    ints, int_table = types.int64[::1], types.int64[:, ::1]
+    floats, table, tables = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
+    mechanics, modes = (ints, int_table, floats, table), (ints, int_table, tables, tables, tables, floats)
+    history = (ints, ints, table, ints, table, table)
+    return types.int64(
+        types.int64,
+        tables,
+        types.NamedTuple((table, int_table, ints, *mechanics, *modes), Work),
+        types.NamedTuple((floats, table, table, table, table, *history, table, table), Record),
+        types.float64,
+        types.int64,
+    )
+
+
+@kernel("motion from event to event", _signature, borrowing=True)
 def integrate(address: int, steps: Array, now: Work, record: Record, h: float, stop: int) -> int:
     """Integrate up to knot `stop`, whole steps by the march at an address.
 
@@ -166,7 +181,11 @@ def _sample(states: Array, visited: Array, slot: int, mode: int, work: Array, n:
             states[slot, i] = work[STATE, i]
 
 
-@typed("void(float64[:,::1], int64[::1], float64[:,::1], float64[:,::1], float64[::1])", borrowing=True)
+@kernel(
+    "outputs of a motion",
+    "void(float64[:,::1], int64[::1], float64[:,::1], float64[:,::1], float64[::1])",
+    borrowing=True,
+)
 def evaluate(rows: Array, visited: Array, states: Array, inputs: Array, out: Array) -> None:
     """An output at all samples: each mode's row over the state, the inputs and 1."""
     n, nu = states.shape[1], inputs.shape[1]
@@ -646,22 +665,3 @@ def _account(
                 energy[c] += weight * force * branch_road[b, c] * u[nr + c]
         for f in range(nf):
             energy[nr + f] += weight * u[3 * nr + f] * over_columns(maps[first + 2 * branches + f], x, u, n, nu)
-
-
-_FLOATS, _TABLE, _TABLES = float64[::1], float64[:, ::1], float64[:, :, ::1]
-_INTS, _INT_TABLE = int64[::1], int64[:, ::1]
-_MECHANICS, _MODES = (_INTS, _INT_TABLE, _FLOATS, _TABLE), (_INTS, _INT_TABLE, _TABLES, _TABLES, _TABLES, _FLOATS)
-_HISTORY = (_INTS, _INTS, _TABLE, _INTS, _TABLE, _TABLE)
-_tuple: Any = types.NamedTuple
-integrate = compiled(  # now, while another process compiles the kernels of modes
-    integrate,
-    types.int64(
-        types.int64,
-        _TABLES,
-        _tuple((_TABLE, _INT_TABLE, _INTS, *_MECHANICS, *_MODES), Work),
-        _tuple((_FLOATS, _TABLE, _TABLE, _TABLE, _TABLE, *_HISTORY, _TABLE, _TABLE), Record),
-        types.float64,
-        types.int64,
-    ),
-    borrowing=True,
-)

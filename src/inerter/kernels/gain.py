@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled, part
-from inerter.kernels.closing import close, close_twofold, pull_back, twofold_space
+from inerter.kernels.closing import DESCRIPTOR, close, close_twofold, pull_back, twofold_space
+from inerter.kernels.declare import kernel, part
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, merge, solve, solve_rows, solve_transposed, sort
 from inerter.kernels.twofold import add_product
@@ -70,7 +70,7 @@ def gain_at(system: Array, lost: Array, scale: Array, omega: float) -> float:
     return gain if size <= _SMALL * gain and unsure <= _ACCURATE * gain else np.nan
 
 
-@compiled
+@kernel("gradients of a gain", f"(float64[::1], {DESCRIPTOR}, float64[::1])")
 def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
     """|G(j omega)| and its gradient over the values p (frequencies, values) at each of `omegas`."""
     A, B, C, D, T, factors, good = close(p, descriptor)
@@ -247,7 +247,7 @@ def peaks(system: Array, lost: Array) -> Any:
     return omegas[:number], found[:number]
 
 
-@compiled
+@kernel("peaks of a gain", f"(float64[:,::1], {DESCRIPTOR}, UniTuple(float64[:,::1], 2))")
 def peaks_of(points: Array, descriptor: Array, twofold: Array) -> Any:
     """`peaks` at each row of `points`: frequencies and values (designs, order + 2), those of each design in a row.
 

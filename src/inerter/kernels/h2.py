@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled, part
-from inerter.kernels.closing import close_twofold, pull_back, twofold_space
+from inerter.kernels.closing import DESCRIPTOR, close_twofold, pull_back, twofold_space
+from inerter.kernels.declare import kernel, part
 from inerter.kernels.linalg import copy, exponential, factor, matmul, solve, solve_transposed
 from inerter.kernels.twofold import add_multiple
 
@@ -517,7 +517,11 @@ def gradient_in(
     return pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D)
 
 
-@compiled
+@kernel(
+    "r.m.s. norms",
+    f"(float64[:,::1], {DESCRIPTOR}, UniTuple(float64[:,::1], 2), Tuple((float64[::1], Tuple((complex128[::1], "
+    "complex128[::1], float64)), Tuple((int64[::1], float64[:,::1])))), float64, float64[::1])",
+)
 def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, corner: float, weights: Array) -> Any:
     """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each norm is right.
 

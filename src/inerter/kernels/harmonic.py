@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import compiled, part
-from inerter.kernels.closing import close
+from inerter.kernels.closing import DESCRIPTOR, close
+from inerter.kernels.declare import kernel, part
 from inerter.kernels.gain import farthest, frequencies, resolve
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, merge, solve, sort
@@ -377,7 +377,10 @@ def peaks(
     return omegas[:number], found[:number], fine
 
 
-@compiled
+@kernel(
+    "harmonic balance",
+    f"(float64[::1], float64[::1], int64[::1], {DESCRIPTOR}, float64, float64, float64[::1])",
+)
 def gains(
     row: Array,
     limit: Array,

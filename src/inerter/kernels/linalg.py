@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import part
+from inerter.kernels.declare import part
 
 Array = Any  # compiled code is typed when it is compiled
 

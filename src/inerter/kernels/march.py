@@ -7,37 +7,31 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import types
-from numba.core import cgutils
-from numba.experimental import function_type
-from numba.extending import intrinsic
 
-from inerter.kernels import compiled, part
 from inerter.kernels.arrays import SHARP
+from inerter.kernels.declare import instruction, kernel, part
 
-_FLOATS, _INTS = types.Array(types.float64, 1, "C"), types.Array(types.int64, 1, "C")
-_TABLE = types.Array(types.float64, 2, "C")
-SIGNATURE = types.int64(
-    _TABLE,  # steps of the mode: a line each column, then the jump of the state with each input
-    _TABLE,  # limits of the guards
-    _FLOATS,  # state, changed in place
-    _FLOATS,  # work space: columns, rows, the state before a jump
-    _TABLE,  # values of the inputs at the knots
-    _TABLE,  # slopes
-    _TABLE,  # values from the left
-    _TABLE,  # slopes from the left
-    _INTS,  # sample number at each knot, or -1
-    _TABLE,  # samples of the state
-    _INTS,  # modes at the samples
-    _TABLE,  # squared outputs: their sums, and the last that were added
-    types.float64,  # step
-    types.int64,  # number of the mode
-    types.int64,  # first segment
-    types.int64,  # last
-    types.int64,  # first segment whose squares count
+_ARGUMENTS = (
+    "float64[:,::1]",  # steps of the mode: a line each column, then the jump of the state with each input
+    "float64[:,::1]",  # limits of the guards
+    "float64[::1]",  # state, changed in place
+    "float64[::1]",  # work space: columns, rows, the state before a jump
+    "float64[:,::1]",  # values of the inputs at the knots
+    "float64[:,::1]",  # slopes
+    "float64[:,::1]",  # values from the left
+    "float64[:,::1]",  # slopes from the left
+    "int64[::1]",  # sample number at each knot, or -1
+    "float64[:,::1]",  # samples of the state
+    "int64[::1]",  # modes at the samples
+    "float64[:,::1]",  # squared outputs: their sums, and the last that were added
+    "float64",  # step
+    "int64",  # number of the mode
+    "int64",  # first segment
+    "int64",  # last
+    "int64",  # first segment whose squares count
 )
-
-_SIZES = (types.int64,) * 6 + (types.boolean, types.Array(types.int64, 1, "C", readonly=True))
+_SIZES = (*("int64",) * 6, "boolean", "Array(int64, 1, 'C', readonly=True)")
+SIGNATURE = f"int64({', '.join(_ARGUMENTS)})"
 
 
 @dataclass(frozen=True)
@@ -48,9 +42,15 @@ class March:
     address: int
 
 
-def _march_at(typing: Any, address: Any) -> Any:
+@instruction
+def march_at(typing: Any, address: Any) -> Any:
     """The march at an address: to pass the function itself runs Python code within the call, which Ctrl-C can break."""
-    kind: Any = types.FunctionType(SIGNATURE)
+    from numba import types  # the compiler asks, and so is there
+    from numba.core import cgutils
+
+    from inerter.kernels.compiler import parsed
+
+    kind: Any = types.FunctionType(parsed(SIGNATURE))
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         struct_of: Any = cgutils.create_struct_proxy
@@ -59,9 +59,6 @@ def _march_at(typing: Any, address: Any) -> Any:
         return function._getvalue()
 
     return kind(types.int64), generate
-
-
-march_at: Any = intrinsic(_march_at)
 
 
 def padded(rows: int) -> int:
@@ -75,7 +72,7 @@ def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp
     return n + inputs + 1, padded(rows), padded(elements)
 
 
-@part(SIGNATURE.return_type(*SIGNATURE.args, *_SIZES), borrowing=True, inside=True)
+@part(f"int64({', '.join((*_ARGUMENTS, *_SIZES))})", borrowing=True, inside=True)
 def go_on(  # type: ignore[no-untyped-def]
     steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
     h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
@@ -176,6 +173,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
     _, rows, _ = lines_of(n, inputs, elements, outputs, jumps, sharp)
     numbers = np.array(used or (0,), np.int64)
 
+    @kernel("march", SIGNATURE, fused=True, borrowing=True)
     def march(  # type: ignore[no-untyped-def]
         steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
         h, mode, first, stop, settled,
@@ -185,6 +183,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
             h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
         )  # fmt: skip
 
-    function = compiled(march, SIGNATURE, fused=True, borrowing=True)
-    address_of: Any = function_type._get_wrapper_address
-    return March(function, int(address_of(function, SIGNATURE)))
+    from inerter.kernels.compiler import address_of  # Numba takes a third of a second
+
+    function = march.ready()  # type: ignore[attr-defined]
+    return March(function, address_of(function, SIGNATURE))

@@ -20,7 +20,6 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels import part, typed
 from inerter.kernels.arrays import (
     DAMPERS,
     ENTRY,
@@ -40,6 +39,7 @@ from inerter.kernels.arrays import (
     K,
     N,
 )
+from inerter.kernels.declare import kernel, part
 from inerter.kernels.linalg import factor, solve
 
 Array = Any
@@ -320,9 +320,10 @@ def unwatched(maps: Array, guard: int, n: int, limits: Array) -> None:
             limits[e, 0], limits[e, 1] = -np.inf, np.inf
 
 
-@typed(
+@kernel(
+    "modes of motion",
     "boolean(int64[::1], float64[:,::1], float64[:,::1], float64[:,::1], int64[:,::1], float64[::1], float64[:,::1], "
-    "int64[::1], float64[:,::1], float64[:,::1], float64[:,::1])"
+    "int64[::1], float64[:,::1], float64[:,::1], float64[:,::1])",
 )
 def build(
     sizes: Array,
@@ -635,7 +636,7 @@ def growth(maps: Array, n: int) -> float:
     return float(np.exp(logarithm))
 
 
-@typed("float64(int64[::1], int64[::1], float64[:,::1], float64[:,::1], float64)")
+@kernel("steps of a mode", "float64(int64[::1], int64[::1], float64[:,::1], float64[:,::1], float64)")
 def discretise(sizes: Array, used: Array, maps: Array, steps: Array, h: float) -> float:
     """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
 

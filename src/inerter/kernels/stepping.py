@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels import compiled, part
+from inerter.kernels.declare import kernel, part
 
 Array = Any  # compiled code is typed when it is compiled
 
@@ -255,7 +255,7 @@ def move(inertia: Array, moved: Array, h: float, known: Array, at: int) -> None:
         known[i] += h * known[at + i]
 
 
-@compiled
+@kernel("time stepping")
 def march(
     predict: Array,
     G: Array,

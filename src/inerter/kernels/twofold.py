@@ -4,24 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import types
-from numba.extending import intrinsic
-
-from inerter.kernels import part
+from inerter.kernels.declare import instruction, part
 
 Array = Any
 
 
-def _fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
+@instruction
+def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
     """Compile a b + c with one rounding."""
+    from numba import types  # the compiler asks, and so is there
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.fma(*arguments)
 
     return types.float64(types.float64, types.float64, types.float64), code
-
-
-fused: Any = intrinsic(_fused)
 
 
 @part(borrowing=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +25,10 @@ from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, cor
 from inerter.methods.method import Estimate, Objective
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Friction, Gap
 from inerter.norms.hinf import Peak
+from inerter.simulation.event_driven import KERNELS
 from inerter.systems.descriptor import close
 from inerter.systems.graph import full_graph
 from inerter.systems.piecewise import piecewise
@@ -135,6 +138,10 @@ class ApproximateLinear:
             estimates = self.estimates(design, indices)
             result[i] = [estimate.value if estimate.status.ok else np.nan for estimate in estimates]
         return result
+
+    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+        """The compiled code of simulations, and of the methods that tell where a search begins."""
+        return (*StatisticalLinearisation().kernels(question, search=True), *KERNELS) if search else KERNELS
 
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:
         """The index as a function of the free values: one estimate a point, on the same realisations everywhere."""

@@ -213,6 +213,13 @@ class CompiledQuestion:
         return weight * gains, weight * gradients
 
 
+def kernels_of(question: Question) -> tuple[Any, ...]:
+    """The compiled code that values of the question and their gradients call."""
+    if question.combination is Combination.PEAK_GAIN:
+        return gain_kernels.peaks_of, gain_kernels.gains
+    return (h2_kernels.norms,)
+
+
 def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tuple[float, float]]) -> Array:
     """Central differences of the value by relative steps, those of the stencil with their weights."""
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from numbers import Integral
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds, worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.simulation.event_driven import KERNELS
 from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
@@ -142,6 +144,11 @@ class ExpectedValue:
         seeds = realisation_seeds(self.seed, 0, count + _MORE)
         changes = change(seeds)
         return changes[:count], changes[count:]
+
+    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+        """The compiled code of simulations, and of the methods that tell where to look."""
+        quick = StatisticalLinearisation().kernels(question, search=search)
+        return (*quick, *KERNELS) if search or question.combination is Combination.PEAK_GAIN else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         question, conventions = index.question(vehicle.mechanism()), CONVENTIONS[self.conventions]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
-import scipy.optimize
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status

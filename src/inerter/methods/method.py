@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -76,6 +76,15 @@ class Controlled(Protocol):
 
     def controls(self, vehicle: Vehicle, index: Index, count: int) -> tuple[Array, Array] | None:
         """What is known of the first `count` samples, and of many more; None if nothing is."""
+        ...
+
+
+@runtime_checkable
+class Compiled(Protocol):
+    """A method that calls compiled code."""
+
+    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+        """What it calls for an estimate, or for a search: what takes longest to compile first."""
         ...
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError
-from inerter.indices.index import Index
+from inerter.indices.index import Index, Question
+from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Objective
 from inerter.systems.descriptor import close
@@ -42,16 +44,12 @@ class Norm:
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
         """The indices (designs, indices) at many values of the free values, compiled."""
-        from inerter.methods.compiled_norm import evaluate_problems
-
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
         return evaluate_problems(mechanism, [index.question(mechanism) for index in indices], conventions, points)
 
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:
         """The index as a function of the free values, compiled, with its gradient."""
-        from inerter.methods.compiled_norm import CompiledQuestion
-
         mechanism = vehicle.mechanism()
         problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
         idle = [name for name in vehicle.free_values() if name not in problem.descriptor.variables]
@@ -61,3 +59,7 @@ class Norm:
                 f"closes gaps and drops what carries no force then. Fix it, or choose a method that sees it."
             )
         return CompiledQuestion(problem)
+
+    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+        """The compiled code that a search calls; one design is valued without."""
+        return kernels_of(question) if search else ()

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.index import Combination, Index
+from inerter.indices.index import Combination, Index, Question
+from inerter.kernels import harmonic
+from inerter.methods.compiled_norm import kernels_of
+from inerter.methods.describing_function import HarmonicBalance, harmonic_balance
 from inerter.methods.equivalent import check_gaps, check_outputs, has_friction
+from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.method import Estimate, Objective
 from inerter.methods.norm import Norm
 from inerter.vehicle.cars import Vehicle
-
-if TYPE_CHECKING:
-    from inerter.methods.describing_function import HarmonicBalance
-    from inerter.methods.gaussian_closure import GaussianClosure
 
 Array = NDArray[np.float64]
 
@@ -67,6 +67,12 @@ class StatisticalLinearisation:
         closure.check_idle()
         return closure
 
+    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+        """The compiled code that it calls; a search of a design without friction calls that of `Norm`."""
+        if question.combination is Combination.PEAK_GAIN:
+            return (*(kernels_of(question) if search else ()), harmonic.gains)
+        return kernels_of(question)
+
     def _many(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array:
         closure = self._closure(vehicle, index)
         if closure is None:
@@ -83,9 +89,5 @@ class StatisticalLinearisation:
             return None
         check_outputs(mechanism, [weighted.output for weighted in question.outputs])
         if question.combination is Combination.PEAK_GAIN:
-            from inerter.methods.describing_function import harmonic_balance
-
             return harmonic_balance(mechanism, question)
-        from inerter.methods.gaussian_closure import GaussianClosure
-
         return GaussianClosure(mechanism, question, CONVENTIONS[self.conventions])

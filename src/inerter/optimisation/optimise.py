@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from numbers import Integral
 
 import numpy as np
-import scipy.spatial
-import scipy.stats
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, Status, StatusKind

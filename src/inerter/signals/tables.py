@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from inerter.errors import SignalError
 from inerter.signals.arguments import Array, real_vector
@@ -70,7 +70,7 @@ def coefficients(time: Array, value: Array, hold: str, derivative: object, perio
 def _slopes(time: Array, value: Array, derivative: object, periodic: bool) -> Array:
     if derivative is None:
         try:
-            spline = CubicSpline(time, value, bc_type="periodic" if periodic else "not-a-knot")
+            spline = scipy.interpolate.CubicSpline(time, value, bc_type="periodic" if periodic else "not-a-knot")
         except (ValueError, np.linalg.LinAlgError):
             return np.full_like(value, np.nan)
         return np.asarray(spline(time, 1), dtype=float)

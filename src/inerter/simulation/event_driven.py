@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,8 @@ from inerter.errors import OK, SimulationError, Status, StatusKind
 from inerter.kernels import events as kernel
 from inerter.kernels.arrays import ENTRY, ETA, GUARD, SEEN, Mechanics, Modes
 from inerter.kernels.march import March, lines_of, march_of
+from inerter.kernels.modes import build, discretise
+from inerter.kernels.prepare import prepare
 from inerter.networks.elements import Damper, Gap
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.threads import check_wanted
@@ -71,9 +74,6 @@ class Integration:
 
     def build(self, states: NDArray[np.int64]) -> bool:
         """Add the mode in which the nonlinear elements are in these states."""
-        kernel.MODES_READY()
-        from inerter.kernels.modes import build, discretise
-
         if self.count == self.modes.reach.shape[0]:
             more = (np.concatenate([array, np.zeros_like(array)]) for array in self.modes[1:])
             self.modes = Modes(self.modes.number, *more)
@@ -159,6 +159,7 @@ _FAILURES = {
     kernel.STIFF: "something answers more than 10 000 times faster than the step (a damper on a small inertance, "
     "most often); take a step of that order, or leave out what is so fast",
 }
+KERNELS: tuple[Any, ...] = (build, kernel.integrate, discretise, kernel.evaluate)
 _SINGULAR = "the forces in a combination of slip, stick and contact are not determined"
 
 
@@ -180,6 +181,7 @@ def start(
 
     Raises `SimulationError` if there are more frictions and gaps than combinations of their states can be numbered.
     """
+    prepare(KERNELS)
     if len(system.nonlinear) > MOST_ELEMENTS:
         raise SimulationError(
             f"The event-driven integrator takes up to {MOST_ELEMENTS} frictions and gaps, got {len(system.nonlinear)}. "

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache, wraps
 
 import numpy as np
-import scipy.linalg
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError

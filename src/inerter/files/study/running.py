@@ -6,26 +6,21 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import xarray as xr
 
-from inerter.errors import InerterError, StatusKind
+from inerter.errors import StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
-from inerter.files.common.problems import at, refusal
-from inerter.files.common.suggest import some
 from inerter.files.study import journal as journals
 from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
-from inerter.files.study.cases import Case, Outcome, cases, design_notes, run_case
-from inerter.files.study.registry import INDEX, METHOD
+from inerter.files.study.cases import Case, Outcome, cases, run_case
+from inerter.files.study.checking import check_study, kernels
 from inerter.files.study.results import dataset, summary_csv
 from inerter.files.study.study import Study, write_resolved
-from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.networks.parser import names
-from inerter.optimisation.optimise import check_variables
-from inerter.vehicle.cars import Vehicle
+from inerter.kernels.prepare import Told, prepare
 from inerter.work.origin import versions
 from inerter.work.pool import Crew, crewed
 from inerter.writing import write_netcdf, write_text
@@ -63,54 +58,6 @@ class StudyResult:
         return lines
 
 
-def check_study(study: Study) -> None:
-    """Assemble every layout for every index at every swept value, so that what is ill-posed shows before any work.
-
-    Raises `StudyError` with a line for every layout that cannot be analysed.
-    """
-    problems = []
-    for layout in study.layouts:
-        for swept in study.sweep.values if study.sweep else (None,):
-            try:
-                _check_design(study, study.design(layout, swept))
-            except InerterError as error:
-                problems.append(at(("layouts", layout), str(error)))
-                break
-    if problems:
-        raise refusal(study.path, problems)
-
-
-def _check_design(study: Study, vehicle: Vehicle) -> None:
-    mechanism = vehicle.mechanism()
-    questions = [INDEX[name](study).question(mechanism) for name in study.indices]
-    if "norm" in study.methods:
-        for question in questions:
-            linear_problem(mechanism, question, CONVENTIONS[study.conventions])
-    else:
-        from inerter.systems.piecewise import piecewise  # loads the compiler
-
-        free = vehicle.free_values().items()
-        piecewise(vehicle.with_values({name: (value.lower * value.upper) ** 0.5 for name, value in free}))
-    if study.optimise is not None and vehicle.free_values():
-        check_variables(vehicle)
-        method = METHOD[study.optimise](replace(study, relative_error=None))  # which would take simulations
-        for name in study.indices:
-            method.objective(vehicle, INDEX[name](study))
-
-
-def study_notes(study: Study) -> list[str]:
-    """What a person should know before the work: elements that nothing uses, and what linear analysis leaves out."""
-    notes: dict[str, list[str]] = {}
-    for layout in study.layouts:
-        for note in design_notes(study, study.design(layout).mechanism()):
-            notes.setdefault(note, []).append(layout)
-    used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
-    unused = [name for name in study.elements if name not in used]
-    return [f"{some(layouts)}: {note}" for note, layouts in notes.items()] + (
-        [f"no layout uses {some(unused)}"] if unused else []
-    )
-
-
 def run_study(
     study: Study,
     folder: str | Path | Results,
@@ -119,6 +66,7 @@ def run_study(
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, outcome: None,
+    compiling: Told | None = None,
     finish: Callable[[StudyResult, Path], object] = lambda result, folder: None,
 ) -> StudyResult:
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
@@ -127,7 +75,8 @@ def run_study(
     `concurrent.futures`) or a crew, which goes on afterwards. With more than one process, a script that calls this
     needs the line `if __name__ == "__main__":`, because processes are started afresh and import it. `progress` is told
     how many designs and budgets are done, how many there are, and the last one. `finish` may add files to the results,
-    in the folder that it is given.
+    in the folder that it is given. What the work needs of compiled code is compiled first, if it is not yet;
+    `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
 
     Every finished case is in the journal at once. With `resume`, cases in the journal are not computed again, and the
     results are the same, byte for byte, as those of an undisturbed run. With `force`, the results that the folder holds
@@ -139,7 +88,7 @@ def run_study(
     """
     check_study(study)
     with _into(study, folder, resume, force) as results, crewed(jobs) as crew:
-        done, budgets, computed = _computed(study, results, crew, progress)
+        done, budgets, computed = _computed(study, results, crew, progress, compiling)
         found = tuple(budgets[case] for case in budget_cases(study))
         data = dataset(study, done)
         write_text(results.draft / RESOLVED, write_resolved(study))
@@ -164,7 +113,7 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
 
 
 def _computed(
-    study: Study, results: Results, crew: Crew, progress: Progress
+    study: Study, results: Results, crew: Crew, progress: Progress, compiling: Told | None
 ) -> tuple[journals.Done, journals.Budgets, int]:
     """All cases and budgets, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
@@ -172,6 +121,8 @@ def _computed(
     done, budgets = journals.finished(journal.path, before)
     everything, further = cases(study), budget_cases(study)
     pending = [case for case in everything if case not in done]
+    if pending:
+        prepare(kernels(study), compiling)
     total, computed = len(everything) + len(further), len(pending)
     progress(len(done) + len(budgets), total, None)
     results.list_journal(journals.NAME)

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import xarray as xr
 from inerter.errors import StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.study.running import NAMES, StudyResult, run_study
+from inerter.kernels.prepare import prepare
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
@@ -24,6 +24,7 @@ from inerter.papers.wang_su_2008.paper import PAPER, PARTS
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
+from inerter.simulation.event_driven import KERNELS
 from inerter.work.journal import Journal
 from inerter.work.pool import Crew, crewed
 
@@ -162,7 +163,7 @@ def reproduce(
 
 def _warm_up() -> None:
     """Go through some quick tasks, which compile what simulations need, while others compile what the studies do."""
-    import_module("inerter.simulation.event_driven")  # first what the linear studies do not compile themselves
+    prepare(KERNELS)  # first what the linear studies do not compile themselves
     for part, name in (("table1", "J5 4"), ("table1", "J1 4"), ("table3", "J1 3"), ("table3", "J5 3")):
         work(Task(part, name))
 

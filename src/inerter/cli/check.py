@@ -1,0 +1,27 @@
+"""What `inerter check` does, in calls of the library: only what it needs is loaded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from inerter.files.common.suggest import some
+from inerter.files.study.budgets import budget_cases
+from inerter.files.study.checking import check_study, study_notes
+from inerter.files.study.loading import load_study
+
+
+def check(study: Path) -> int:
+    """Check a study file; returns the exit code."""
+    loaded = load_study(study)
+    check_study(loaded)
+    points = len(loaded.sweep.values) if loaded.sweep else 1
+    count = len(loaded.layouts) * len(loaded.indices) * points
+    budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
+    swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
+    print(
+        f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
+        f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
+    )
+    for note in study_notes(loaded):
+        print(f"Note: {note}.")
+    return 0

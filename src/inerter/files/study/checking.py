@@ -1,0 +1,78 @@
+"""What can be known of a study before any work: whether every design can be analysed, and what to know of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from inerter.errors import InerterError
+from inerter.files.common.problems import at, refusal
+from inerter.files.common.suggest import some
+from inerter.files.study.cases import design_notes
+from inerter.files.study.registry import INDEX, METHOD
+from inerter.files.study.study import Study
+from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.methods.method import Compiled
+from inerter.networks.parser import names
+from inerter.optimisation.optimise import check_variables
+from inerter.systems.piecewise import piecewise
+from inerter.vehicle.cars import Vehicle
+
+
+def check_study(study: Study) -> None:
+    """Assemble every layout for every index at every swept value, so that what is ill-posed shows before any work.
+
+    Raises `StudyError` with a line for every layout that cannot be analysed.
+    """
+    problems = []
+    for layout in study.layouts:
+        for swept in study.sweep.values if study.sweep else (None,):
+            try:
+                _check_design(study, study.design(layout, swept))
+            except InerterError as error:
+                problems.append(at(("layouts", layout), str(error)))
+                break
+    if problems:
+        raise refusal(study.path, problems)
+
+
+def _check_design(study: Study, vehicle: Vehicle) -> None:
+    mechanism = vehicle.mechanism()
+    questions = [INDEX[name](study).question(mechanism) for name in study.indices]
+    if "norm" in study.methods:
+        for question in questions:
+            linear_problem(mechanism, question, CONVENTIONS[study.conventions])
+    else:
+        free = vehicle.free_values().items()
+        piecewise(vehicle.with_values({name: (value.lower * value.upper) ** 0.5 for name, value in free}))
+    if study.optimise is not None and vehicle.free_values():
+        check_variables(vehicle)
+        method = METHOD[study.optimise](replace(study, relative_error=None))  # which would take simulations
+        for name in study.indices:
+            method.objective(vehicle, INDEX[name](study))
+
+
+def study_notes(study: Study) -> list[str]:
+    """What a person should know before the work: elements that nothing uses, and what linear analysis leaves out."""
+    notes: dict[str, list[str]] = {}
+    for layout in study.layouts:
+        for note in design_notes(study, study.design(layout).mechanism()):
+            notes.setdefault(note, []).append(layout)
+    used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
+    unused = [name for name in study.elements if name not in used]
+    return [f"{some(layouts)}: {note}" for note, layouts in notes.items()] + (
+        [f"no layout uses {some(unused)}"] if unused else []
+    )
+
+
+def kernels(study: Study) -> list[Any]:
+    """The compiled code that the work calls, what takes longest to compile first."""
+    found: list[Any] = []
+    design = study.design(next(iter(study.layouts)))
+    for name in study.methods:
+        method = METHOD[name](study)
+        if isinstance(method, Compiled):
+            for index in study.indices:
+                question = INDEX[index](study).question(design.mechanism())
+                found += method.kernels(question, search=name == study.optimise)
+    return list(dict.fromkeys(found))

@@ -1,0 +1,79 @@
+"""What a command loads: only what it needs, and nothing is compiled or started by an import."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "examples"
+STUDIES = sorted(path.name for path in EXAMPLES.glob("*.toml") if "[study]" in path.read_text(encoding="utf-8"))
+HEAVY = {
+    *("numba", "llvmlite", "matplotlib", "pandas", "xarray", "h5netcdf", "h5py", "jinja2", "rich.progress"),
+    *("scipy.optimize", "scipy.stats", "scipy.signal", "scipy.interpolate", "scipy.spatial"),
+}
+LIBRARIES = HEAVY | {"numpy", "scipy", "pydantic", "pint"}
+COMMAND = """
+import sys, json
+from inerter.cli.main import call
+code = call(sys.argv[1:])
+sys.stdout.flush()
+print(json.dumps([code, sorted(sys.modules)]), file=sys.stderr)
+"""
+EVERYTHING = """
+import json, multiprocessing, pkgutil, subprocess, sys, threading
+from importlib import import_module
+import inerter
+
+started = []
+
+def refuse(process, command=(), *args, **options):
+    started.append(command[:1] if isinstance(command, (list, tuple)) else command)
+    raise OSError("no process today")  # which a library that looks for fonts takes well
+
+subprocess.Popen.__init__ = multiprocessing.Process.start = refuse
+names = [found.name for found in pkgutil.walk_packages(inerter.__path__, "inerter.")]
+for name in names:
+    if name != "inerter.kernels.compiler":
+        import_module(name)
+print(json.dumps([names, "numba" in sys.modules, threading.active_count(), started]))
+"""
+
+
+def loaded_by(*arguments: str) -> set[str]:
+    """Names of the modules that the command has loaded at its end."""
+    done = subprocess.run(
+        [sys.executable, "-c", COMMAND, *arguments], capture_output=True, text=True, cwd=ROOT, check=True, timeout=280
+    )
+    code, modules = json.loads(done.stderr.splitlines()[-1])
+    assert code == 0
+    return set(modules)
+
+
+@pytest.mark.parametrize("arguments", [("--help",), ("--version",), ("run", "--help"), ("reproduce", "--help")])
+def test_help_loads_no_library_of_numbers(arguments: tuple[str, ...]) -> None:
+    assert not loaded_by(*arguments) & LIBRARIES
+
+
+@pytest.mark.parametrize("study", STUDIES)
+def test_check_loads_nothing_that_only_the_work_needs(study: str) -> None:
+    assert len(STUDIES) >= 4
+    assert not loaded_by("check", str(EXAMPLES / study)) & HEAVY
+
+
+def test_an_import_compiles_nothing_and_starts_nothing(tmp_path: Path) -> None:
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", EVERYTHING], capture_output=True, text=True, env=environment, check=True, timeout=280
+    )
+    names, compiler, threads, started = json.loads(done.stdout)
+    assert {"inerter.kernels.events", "inerter.identification.laws", "inerter.cli.commands"} <= set(names)
+    assert not compiler
+    assert threads == 1
+    assert not [command for command in started if not command or command[0] == sys.executable]
+    assert not list(tmp_path.glob("inerter*"))

@@ -9,8 +9,9 @@ from pydantic import PlainValidator
 
 from inerter.errors import UnitError
 from inerter.networks.elements import NAME
+from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.study.suggest import nearest
-from inerter.units import format_quantity, parse_element, parse_quantity, shown
+from inerter.units import format_quantity, parse_quantity, shown
 
 MOST_POINTS = 10_000
 _LONGEST_EXPRESSION = 500
@@ -81,7 +82,7 @@ def fixed_amount(text: Any) -> Amount:
 def amount(text: Any) -> Amount:
     """The value of an element."""
     unit, value = parse_element(text)
-    if value < 0.0 or (value == 0.0 and unit not in ("N", "m")):  # no friction, no play: an element that is not there
+    if value < 0.0 or (value == 0.0 and not kinds_by_unit()[unit].may_vanish):
         raise UnitError(
             f"Got {shown(text)}: not positive; expected more than 0 {unit}. "
             f"To leave the element out, drop its branch from the layouts."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from inerter.errors import NetworkError, StudyError
-from inerter.networks.elements import ELEMENT_TYPES, Element, Free, Value
+from inerter.networks.elements import Element, Free
+from inerter.networks.elements.registry import kinds_by_unit
 from inerter.networks.parser import names, network
 from inerter.signals.road import Road
 from inerter.study.entries import Amount
@@ -28,7 +29,6 @@ __all__ = ["StrutLayout", "Study", "Sweep", "load_study", "write_resolved"]
 
 _LARGEST = 1_000_000  # bytes
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
-_KINDS: dict[str, Callable[[Value, str], Element]] = {kind.unit: kind for kind in ELEMENT_TYPES}
 
 
 def load_study(path: str | Path) -> Study:
@@ -134,8 +134,8 @@ def struts_of(model: str, entry: Axles | str) -> dict[str, str]:
 def element_of(name: str, entry: Range | Amount) -> Element:
     """The element that the unit of its value tells."""
     if isinstance(entry, Range):
-        return _KINDS[entry.lower.unit](Free(entry.lower.value, entry.upper.value, name), name)
-    return _KINDS[entry.unit](entry.value, name)
+        return kinds_by_unit()[entry.lower.unit].of(Free(entry.lower.value, entry.upper.value, name), name)
+    return kinds_by_unit()[entry.unit].of(entry.value, name)
 
 
 def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:

@@ -1,0 +1,147 @@
+"""What all elements have in common: a value with a unit, a name, and the roles in which others meet them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from inerter.checks import is_number
+from inerter.errors import NetworkError
+from inerter.networks.elements.algebra import Complex, Network
+from inerter.networks.elements.drawing import BOX, Line
+from inerter.networks.elements.roles import Field, Linear, Statistical, Switch
+from inerter.networks.elements.values import Free, Value, check_name
+
+
+class Element(Network):
+    """One value with a unit, an optional name, and what it is to whom.
+
+    A kind of element is a frozen dataclass whose fields are its value, what else it is made of (`more`), and `name`.
+    Its class attributes are its roles. A kind whose law is none of `Linear`, or whose modes are none of `Switch`,
+    overrides `as_linear` or `as_piecewise`.
+    """
+
+    # to the parser
+    key: ClassVar[str]  # the kind in words
+    symbol: ClassVar[str]
+    quantity: ClassVar[str]
+    unit: ClassVar[str]
+    sentence: ClassVar[str]
+    example: ClassVar[str]  # of a value with its unit
+    more: ClassVar[tuple[Field, ...]] = ()  # numbers beside the value, all positive
+    # to analysis
+    linear: ClassVar[Linear]
+    switch: ClassVar[Switch | None] = None
+    statistical: ClassVar[Statistical] = Statistical.ITSELF
+    # to design
+    may_vanish: ClassVar[bool] = False  # a friction or a gap of zero is an element that is not there
+    tried: ClassVar[tuple[float, float] | None] = None  # where a budget is looked for if the value is zero
+    # to the drawing
+    drawing: ClassVar[tuple[Line, ...]] = BOX
+    name: str | None
+
+    def __post_init__(self) -> None:
+        check_name(self.name)
+        value = self.value
+        number = value.lower if isinstance(value, Free) else value
+        what = f"{self.quantity.replace('_', ' ').capitalize()}" + (f" of {self.name!r}" if self.name else "")
+        if not is_number(number):
+            raise NetworkError(f"{what} must be a finite number of {self.unit} or free(lower, upper), got {value!r}.")
+        self._check_more()
+        if isinstance(value, Free):
+            if number == 0.0 and not self.may_vanish:
+                raise NetworkError(
+                    f"{what} must be positive, but its lower bound is 0 {self.unit}. Give a small positive bound; "
+                    f"to leave the element out, drop its branch from the network."
+                )
+            return
+        if number < 0.0 or (number == 0.0 and not self.may_vanish):
+            raise NetworkError(
+                f"{what} must be positive, got {self.symbol} = {number:g} {self.unit}. "
+                f"To leave the element out, drop its branch from the network."
+            )
+        object.__setattr__(self, self.quantity, float(number))
+
+    def _check_more(self) -> None:
+        for field in self.more:
+            number = getattr(self, field.name)
+            if not is_number(number) or number <= 0.0:
+                what = field.name.replace("_", " ").capitalize()
+                raise NetworkError(f"{what} must be a positive number of {field.unit}, got {number!r}.")
+
+    @classmethod
+    def fields(cls) -> tuple[Field, ...]:
+        """All numbers that it is made of, the value first."""
+        return (Field(cls.quantity, cls.unit, cls.sentence), *cls.more)
+
+    @classmethod
+    def of(cls, value: Value, name: str | None = None, **more: float) -> Element:
+        """An element of this kind."""
+        given: dict[str, Any] = {cls.quantity: value, "name": name, **more}
+        return cls(**given)
+
+    @property
+    def value(self) -> Value:
+        """The element's one number, in SI units, or the `Free` that stands for it."""
+        return getattr(self, self.quantity)  # type: ignore[no-any-return]
+
+    @property
+    def gain(self) -> float:
+        """What its law multiplies beside the value, such as the square of a transmission."""
+        return 1.0
+
+    @property
+    def coefficient(self) -> float:
+        """The number in its law, where the value is one: a stiffness, damping, inertance, force or half-width."""
+        value = self.value
+        assert not isinstance(value, Free)
+        return value * self.gain
+
+    @property
+    def label(self) -> str:
+        """Its name, else the name of its free value, else its symbol."""
+        if self.name is not None:
+            return self.name
+        value = self.value
+        return value.name if isinstance(value, Free) and value.name is not None else self.symbol
+
+    def with_value(self, value: Value) -> Element:
+        """The same element with another value."""
+        changes: dict[str, Any] = {self.quantity: value}
+        return replace(self, **changes)  # type: ignore[type-var]
+
+    def elements(self) -> Iterator[Element]:
+        yield self
+
+    def as_linear(self) -> Network:
+        """What linear analysis takes in its place; its value may be free."""
+        return self
+
+    def as_piecewise(self) -> Network:
+        """What simulation takes in its place, of elements whose laws are linear or switch; its value is a number."""
+        return self
+
+    @property
+    def plain(self) -> bool:
+        """Whether its value is the one coefficient of its one law."""
+        return self.gain == 1.0 and self.as_linear() is self and type(self).as_piecewise is Element.as_piecewise
+
+    def fraction(self, s: Complex) -> tuple[Complex, Complex]:
+        view = self.as_linear()
+        if view is not self:
+            return view.fraction(s)
+        zero, one = np.full_like(s, 0.0), np.full_like(s, 1.0)
+        match self.linear:
+            case Linear.STIFFNESS:
+                return np.full_like(s, self.coefficient), s
+            case Linear.DAMPING:
+                return np.full_like(s, self.coefficient), one
+            case Linear.MASS:
+                return np.full_like(s, self.coefficient) * s, one
+            case Linear.OPEN:
+                return zero, one
+            case Linear.CLOSED:
+                return one, zero

@@ -24,7 +24,6 @@ from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, cor
 from inerter.methods.method import Estimate, Objective
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
-from inerter.networks.elements import Friction, Gap
 from inerter.norms.hinf import Peak
 from inerter.systems.descriptor import close
 from inerter.systems.graph import full_graph
@@ -274,7 +273,7 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
 def _is_nonlinear(mechanism: Mechanism) -> bool:
     """Whether there is a friction or a gap that is not zero."""
     elements = (branch.element for branch in full_graph(mechanism).branches)
-    return any(isinstance(e, Friction | Gap) and isinstance(e.value, float | int) and e.value > 0.0 for e in elements)
+    return any(e.acts and isinstance(e.value, float | int) for e in elements)
 
 
 def _inertia_felt(mechanism: Mechanism, name: str) -> float:

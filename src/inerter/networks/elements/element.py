@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from inerter.checks import is_number
-from inerter.errors import NetworkError
+from inerter.errors import DesignError, NetworkError
 from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, Line
-from inerter.networks.elements.roles import Field, Linear, Statistical, Switch
+from inerter.networks.elements.roles import Field, Guard, Linear, Statistical, Switch
 from inerter.networks.elements.values import Free, Value, check_name
 
 
@@ -95,10 +95,23 @@ class Element(Network):
 
     @property
     def coefficient(self) -> float:
-        """The number in its law, where the value is one: a stiffness, damping, inertance, force or half-width."""
+        """The number in its law: a stiffness, damping, inertance, force or half-width.
+
+        Raises `DesignError` if its value is free.
+        """
         value = self.value
-        assert not isinstance(value, Free)
+        if isinstance(value, Free):
+            raise DesignError(f"The value of {self.label!r} is still free. Fix it with with_values(...).")
         return value * self.gain
+
+    @property
+    def acts(self) -> bool:
+        """Whether it switches, by a value that is not zero or still to be chosen."""
+        return self.switch is not None and self.value != 0.0
+
+    def switches_by(self, guard: Guard) -> bool:
+        """Whether it switches under this guard."""
+        return self.switch is not None and self.switch.guard is guard
 
     @property
     def label(self) -> str:
@@ -117,17 +130,25 @@ class Element(Network):
         yield self
 
     def as_linear(self) -> Network:
-        """What linear analysis takes in its place; its value may be free."""
+        """What linear analysis takes in its place, also where its value is free."""
         return self
 
     def as_piecewise(self) -> Network:
-        """What simulation takes in its place, of elements whose laws are linear or switch; its value is a number."""
+        """What simulation takes in its place: elements whose laws are linear, or switch.
+
+        Raises `DesignError` if its value is free and parts of it cannot be.
+        """
         return self
+
+    @property
+    def is_switching(self) -> bool:
+        """Whether simulation takes it as it is."""
+        return type(self).as_piecewise is Element.as_piecewise
 
     @property
     def plain(self) -> bool:
         """Whether its value is the one coefficient of its one law."""
-        return self.gain == 1.0 and self.as_linear() is self and type(self).as_piecewise is Element.as_piecewise
+        return self.gain == 1.0 and self.is_switching and type(self).as_linear is Element.as_linear
 
     def fraction(self, s: Complex) -> tuple[Complex, Complex]:
         view = self.as_linear()

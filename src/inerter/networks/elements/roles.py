@@ -50,6 +50,10 @@ class Switch:
     middle: str
     upper: str
 
+    def always_holds(self, value: float) -> bool:
+        """Whether an element of this value holds its length whenever nothing forces it: with a gap, if it is closed."""
+        return value > 0.0 if self.guard is Guard.FORCE else value == 0.0
+
     @property
     def states(self) -> dict[int, str]:
         """The names of the states by their numbers."""

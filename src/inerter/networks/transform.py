@@ -24,7 +24,7 @@ def map_elements(network: Network, change: Callable[[Element], Network]) -> Netw
 
 
 def unfolded(network: Network, view: Callable[[Element], Network]) -> Network:
-    """The network with each element replaced by what it is in a `view`, such as `Element.as_piecewise`.
+    """The network with each element replaced by what it is in a `view`, such as `to_simulation`.
 
     A single part without a name takes the label of the element that it stands for, parts of several the label before
     their own. Elements that are themselves stay the same objects.
@@ -38,6 +38,16 @@ def unfolded(network: Network, view: Callable[[Element], Network]) -> Network:
         return unfolded(map_elements(seen, lambda part: _named_after(element.label, part, alone)), view)
 
     return map_elements(network, change)
+
+
+def to_analysis(element: Element) -> Network:
+    """What linear analysis takes in the place of an element."""
+    return element.as_linear()
+
+
+def to_simulation(element: Element) -> Network:
+    """What simulation takes in the place of an element; raises `DesignError` if that depends on a free value."""
+    return element.as_piecewise()
 
 
 def _named_after(label: str, part: Element, alone: bool) -> Element:
@@ -117,7 +127,7 @@ def linearise(network: Network) -> Linearised:
     Elements that carry no force any more, because they are in series with a friction, or that cannot move, because
     they are beside a closed gap, are named in `idle`.
     """
-    network = unfolded(network, Element.as_linear)
+    network = unfolded(network, to_analysis)
     before = list(network.elements())
     kept, rigid = _linear(network)
     after = Counter(id(element) for element in kept.elements()) if kept is not None else Counter()

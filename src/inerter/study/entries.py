@@ -11,6 +11,7 @@ from inerter.errors import UnitError
 from inerter.networks.elements import NAME
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.study.suggest import nearest
+from inerter.study.told_kind import ToldKind, names_kind, told_kind
 from inerter.units import format_quantity, parse_quantity, shown
 
 MOST_POINTS = 10_000
@@ -69,8 +70,10 @@ def yes_or_no(value: Any) -> bool:
     return value
 
 
-def fixed_amount(text: Any) -> Amount:
-    """The value of an element where there is nothing to optimise."""
+def fixed_amount(text: Any) -> Amount | ToldKind:
+    """An element where there is nothing to optimise."""
+    if names_kind(text):
+        return told_kind(text, free=False)
     if isinstance(text, dict):
         raise ValueError(
             'Got a range; a simulation needs one value. Write one, such as "3 kN s/m", perhaps the best that '

@@ -21,6 +21,7 @@ from inerter.study.method_problems import method_problems
 from inerter.study.problems import at, explain, refusal
 from inerter.study.schema import Axles, Range, StudyFile, SweepRange
 from inerter.study.suggest import nearest, some
+from inerter.study.told_kind import ToldKind
 from inerter.study.values import MOUNTS, StrutLayout, Study, Sweep, elements_used, write_resolved
 from inerter.units import shown
 from inerter.writing import characters
@@ -131,8 +132,10 @@ def struts_of(model: str, entry: Axles | str) -> dict[str, str]:
     return entry.model_dump() if isinstance(entry, Axles) else dict.fromkeys(MOUNTS[model], entry)
 
 
-def element_of(name: str, entry: Range | Amount) -> Element:
-    """The element that the unit of its value tells."""
+def element_of(name: str, entry: Range | Amount | ToldKind) -> Element:
+    """The element that its entry, or else the unit of its value, tells."""
+    if isinstance(entry, ToldKind):
+        return entry.element(name)
     if isinstance(entry, Range):
         return kinds_by_unit()[entry.lower.unit].of(Free(entry.lower.value, entry.upper.value, name), name)
     return kinds_by_unit()[entry.unit].of(entry.value, name)

@@ -13,7 +13,8 @@ from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
 from inerter.simulation.trajectory import Trajectory
 from inerter.study.signal_kinds import KINDS, unit_of
-from inerter.study.values import StrutLayout, as_toml, element_entry, in_si
+from inerter.study.told_kind import entry_of
+from inerter.study.values import StrutLayout, as_toml, in_si
 from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
 
 
@@ -119,7 +120,7 @@ class SimulationRequest:
             "title": self.title,
             "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
             **({"road": road} if road else {}),
-            "elements": {name: element_entry(element) for name, element in self.elements.items()},
+            "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "signal": self.signal.resolved(),
             "simulation": {

@@ -24,6 +24,7 @@ from inerter.study.entries import (
     text,
     whole,
 )
+from inerter.study.told_kind import ToldKind, names_kind, told_kind
 from inerter.units import shown
 
 MODELS = ("quarter-car", "half-car")
@@ -157,8 +158,10 @@ class RoadShape(Shape):
 
 
 ElementEntry = Annotated[
-    Annotated[Range, Tag("<range>")] | Annotated[Amount, PlainValidator(amount), Tag("<fixed>")],
-    Discriminator(lambda value: "<range>" if isinstance(value, dict) else "<fixed>"),
+    Annotated[Range, Tag("<range>")]
+    | Annotated[Amount, PlainValidator(amount), Tag("<fixed>")]
+    | Annotated[ToldKind, PlainValidator(told_kind), Tag("<kind>")],
+    Discriminator(lambda value: "<kind>" if names_kind(value) else "<range>" if isinstance(value, dict) else "<fixed>"),
 ]
 
 

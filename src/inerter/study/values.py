@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
-from inerter.networks.elements import Element, Free
+from inerter.networks.elements import Element
 from inerter.networks.parser import names, network
 from inerter.signals.road import Road
 from inerter.study.schema import UNITS
 from inerter.study.suggest import nearest
+from inerter.study.told_kind import entry_of
 from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
 
 MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear"), "rig": ("device",)}
@@ -106,7 +107,7 @@ class Study:
             "title": self.title,
             "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
             "road": {key: in_si(key, getattr(self.road, key)) for key in ("speed", "roughness")},
-            "elements": {name: element_entry(element) for name, element in self.elements.items()},
+            "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "study": self._settings(),
         }
@@ -163,14 +164,6 @@ def as_toml(tables: Mapping[str, Any]) -> str:
 def in_si(key: str, value: float) -> str:
     """The text of a quantity, in the SI unit of its key."""
     return f"{value!r} {UNITS[key]}"  # repr is the shortest text that reads back as the same number
-
-
-def element_entry(element: Element) -> str | dict[str, str]:
-    """How a file says an element's value or range."""
-    value = element.value
-    if isinstance(value, Free):
-        return {"from": f"{value.lower!r} {element.unit}", "to": f"{value.upper!r} {element.unit}"}
-    return f"{value!r} {element.unit}"
 
 
 def _toml(value: object) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element, Free, Network, Parallel, Series
-from inerter.networks.transform import linearise, map_elements, unfolded
+from inerter.networks.transform import linearise, map_elements, to_analysis, to_simulation, unfolded
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
@@ -53,7 +53,7 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
     Raises `MechanismError` if a mounted network then carries no force at all, or is rigid.
     """
-    whole = _networks(mechanism, Element.as_linear)
+    whole = _networks(mechanism, to_analysis)
     networks: dict[str, Network] = {}
     notes: list[str] = []
     for mount in mechanism.mounts():
@@ -91,8 +91,8 @@ def switching(mechanism: Mechanism) -> Mechanism:
         return mechanism
     return replace(
         mechanism,
-        struts=tuple(replace(s, network=unfolded(s.network, Element.as_piecewise)) for s in mechanism.struts),
-        tyres=tuple(replace(t, network=unfolded(t.network, Element.as_piecewise)) for t in mechanism.tyres),
+        struts=tuple(replace(s, network=unfolded(s.network, to_simulation)) for s in mechanism.struts),
+        tyres=tuple(replace(t, network=unfolded(t.network, to_simulation)) for t in mechanism.tyres),
     )
 
 

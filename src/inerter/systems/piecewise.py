@@ -99,8 +99,8 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     free = ", ".join(mechanism.free_values())
     if free:
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
-    check_values(mechanism)
     mechanism = switching(mechanism)
+    check_values(mechanism)
     return _system(mechanism, kinematics(mechanism))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -19,9 +18,9 @@ from inerter.networks.elements.values import Free, Value, check_name
 class Element(Network):
     """One value with a unit, an optional name, and what it is to whom.
 
-    A kind of element is a frozen dataclass whose fields are its value, what else it is made of (`more`), and `name`.
-    Its class attributes are its roles. A kind whose law is none of `Linear`, or whose modes are none of `Switch`,
-    overrides `as_linear` or `as_piecewise`.
+    A kind of element is a frozen dataclass whose fields are its value, what else it is made of (`more`), and `name`,
+    in this order; its class attributes are its roles. A kind whose law is none of `Linear`, or whose modes are none of
+    `Switch`, overrides `as_linear` or `as_piecewise`.
     """
 
     # to the parser
@@ -50,7 +49,8 @@ class Element(Network):
         what = f"{self.quantity.replace('_', ' ').capitalize()}" + (f" of {self.name!r}" if self.name else "")
         if not is_number(number):
             raise NetworkError(f"{what} must be a finite number of {self.unit} or free(lower, upper), got {value!r}.")
-        self._check_more()
+        if self.more:
+            self._check_more()
         if isinstance(value, Free):
             if number == 0.0 and not self.may_vanish:
                 raise NetworkError(
@@ -123,8 +123,8 @@ class Element(Network):
 
     def with_value(self, value: Value) -> Element:
         """The same element with another value."""
-        changes: dict[str, Any] = {self.quantity: value}
-        return replace(self, **changes)  # type: ignore[type-var]
+        more = [getattr(self, field.name) for field in self.more] if self.more else []
+        return type(self)(value, *more, self.name)  # type: ignore[call-arg]  # thrice as quick as `replace`
 
     def elements(self) -> Iterator[Element]:
         yield self

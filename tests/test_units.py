@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.errors import UnitError
-from inerter.units import ELEMENT_UNITS, format_quantity, parse_element, parse_quantity, shown
+from inerter.networks.elements.registry import kinds_by_unit, parse_element
+from inerter.units import format_quantity, parse_quantity, shown
 
-UNITS = (*ELEMENT_UNITS, "kg m^2", "m/s", "m^3/cycle", "rad/s")
+UNITS = (*kinds_by_unit(), "kg m^2", "m/s", "m^3/cycle", "rad/s")
 
 
 @pytest.mark.parametrize(
@@ -128,7 +129,7 @@ def test_an_angular_frequency_in_cycles_is_not_taken_for_radians():
 def test_the_unit_of_no_element_is_refused_with_all_five(text):
     with pytest.raises(UnitError) as caught:
         parse_element(text)
-    assert all(f"{unit} ({name}" in str(caught.value) for unit, name in ELEMENT_UNITS.items())
+    assert all(f"{unit} ({kind.key}" in str(caught.value) for unit, kind in kinds_by_unit().items())
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False), st.sampled_from(UNITS))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -12,9 +13,6 @@ from inerter.errors import UnitError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
-
-ELEMENT_UNITS = {"N/m": "spring", "N s/m": "damper", "kg": "inerter", "N": "friction", "m": "gap"}
-_ELEMENT_EXAMPLES = {"N/m": "120 kN/m", "N s/m": "3000 N s/m", "kg": "300 kg", "N": "10 N", "m": "0.1 mm"}
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*")
 _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
@@ -49,21 +47,23 @@ def parse_quantity(text: str, unit: str) -> float:
     return _converted(text, number, given, unit)
 
 
-def parse_element(text: str) -> tuple[str, float]:
-    """The SI unit that tells the kind of element (a key of `ELEMENT_UNITS`), and the value in that unit.
+def parse_one_of(text: str, units: Mapping[str, str], example: str) -> tuple[str, float]:
+    """The one of `units` that is of the kind of unit that `text` has, and the number that it stands for in that unit.
 
-    Raises `UnitError` unless `text` is a finite number followed by a unit of one of the five kinds.
+    `units` goes from a unit to what it is the unit of; `example` is one of them, for messages.
 
-    >>> parse_element("3.2 kN s/m")
+    Raises `UnitError` unless `text` is a finite number followed by a unit of one of these kinds.
+
+    >>> parse_one_of("3.2 kN s/m", {"N/m": "spring", "N s/m": "damper"}, "N/m")
     ('N s/m', 3200.0)
     """
-    number, given = _split(text, f"one of {', '.join(ELEMENT_UNITS)}", "N s/m")
+    number, given = _split(text, f"one of {', '.join(units)}", example)
     kind = _dimension(given)
-    for unit in ELEMENT_UNITS:
+    for unit in units:
         if _dimension(unit) == kind:
             return unit, _converted(text, number, given, unit)
-    kinds = ", ".join(f"{unit} ({name}, such as {_ELEMENT_EXAMPLES[unit]})" for unit, name in ELEMENT_UNITS.items())
-    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no element; expected one of {kinds}.")
+    known = ", ".join(f"{unit} ({what})" for unit, what in units.items())
+    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no element; expected one of {known}.")
 
 
 def format_quantity(value: float, unit: str, digits: int = 4) -> str:

@@ -20,7 +20,6 @@ from inerter.figures.symbols import (
     HALF_HEIGHT,
     HALF_WIDTH,
     LEADING,
-    SYMBOLS,
     TO_LABEL,
     Line,
     Point,
@@ -214,7 +213,7 @@ def _draw(drawing: Schematic, axes: Axes, at: Point) -> Axes:
     x, y = at
     strokes = [*lines, circle(x, y + _TERMINAL, _TERMINAL), circle(x, y - drawing.height - _TERMINAL, _TERMINAL)]
     for one in placed:
-        strokes += [moved(line, one.x, one.y) for line in SYMBOLS[type(one.element)]]
+        strokes += [moved(line, one.x, one.y) for line in one.element.drawing]
         write(axes, one.label, one.x + HALF_WIDTH + TO_LABEL, one.y, ha="left")
     return stroke(strokes, axes)
 

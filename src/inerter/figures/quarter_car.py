@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.axes import Axes
 
-from inerter.figures.symbols import HALF_WIDTH, SYMBOLS, TO_LABEL, Line, Point, moved, stroke, write
+from inerter.figures.symbols import HALF_WIDTH, TO_LABEL, Line, Point, moved, stroke, write
 from inerter.networks.elements import Spring
 
 _STRUT, _WHEEL, _BODY = 16.0, 28.0, 38.0  # half their widths in the drawing of a quarter car
@@ -18,7 +18,7 @@ _ROAD: tuple[Line, ...] = (
 
 def draw_quarter_car(axes: Axes, at: Point = (0.0, 0.0)) -> Axes:
     """Draw the body over the wheel over the road, whose middle is `at`, on axes as for `draw_network`."""
-    lines: list[Line] = [*_ROAD, *(moved(line, 0.0, 20.0) for line in SYMBOLS[Spring])]
+    lines: list[Line] = [*_ROAD, *(moved(line, 0.0, 20.0) for line in Spring.drawing)]
     lines += [_rectangle(_STRUT, 70.0, 100.0), ((0.0, 60.0), (0.0, 70.0)), ((0.0, 100.0), (0.0, 110.0))]
     x, y = at
     write(axes, r"$k_\mathrm{t}$", x + HALF_WIDTH + TO_LABEL, y + 20.0, "left")

@@ -1,4 +1,4 @@
-"""Lines and letters of schematics: the symbols of the elements, their names as formulas, axes that measure in points.
+"""Lines and letters of schematics: the names of elements as formulas, axes that measure in points.
 
 All lengths are in points (1/72 inch), so that symbols, letters and lines keep one scale.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import cache
-from math import cos, pi, sin
 from typing import Literal
 
 from matplotlib.axes import Axes
@@ -18,12 +17,26 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
-from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Spring
+from inerter.networks.elements import ELEMENT_TYPES, Element
+from inerter.networks.elements.drawing import HALF_HEIGHT, HALF_WIDTH, Line, Point, circle
 
-Point = tuple[float, float]
-Line = tuple[Point, ...]
+__all__ = [
+    "HALF_HEIGHT",
+    "HALF_WIDTH",
+    "LEADING",
+    "SYMBOLS",
+    "TO_LABEL",
+    "Line",
+    "Point",
+    "blank_figure",
+    "circle",
+    "moved",
+    "stroke",
+    "symbol",
+    "text_width",
+    "write",
+]
 
-HALF_WIDTH, HALF_HEIGHT = 8.0, 20.0  # of a symbol with its leads
 TO_LABEL = 3.0
 _LINE_WIDTH = 0.9
 _LETTERS, LEADING = 8.0, 9.6  # size of all text; from line to line
@@ -31,45 +44,7 @@ _GREEK = {"eps": r"\varepsilon", "epsilon": r"\varepsilon", "delta": r"\delta"}
 _SHORT_NAME = re.compile(r"([A-Za-z])([A-Za-z]?\d*)|([A-Za-z]+)(\d*)")
 
 
-def circle(x: float, y: float, radius: float, corners: int = 60) -> Line:
-    """A circle as a line."""
-    angles = [2.0 * pi * i / corners for i in range(corners + 1)]
-    return tuple((x + radius * cos(angle), y + radius * sin(angle)) for angle in angles)
-
-
-def _zigzag(turns: int = 7, half_height: float = 12.0, half_width: float = 6.5) -> Line:
-    pitch = 2.0 * half_height / turns
-    peaks = [(half_width * (-1) ** i, half_height - (i + 0.5) * pitch) for i in range(turns)]
-    return ((0.0, HALF_HEIGHT), (0.0, half_height), *peaks, (0.0, -half_height), (0.0, -HALF_HEIGHT))
-
-
-SYMBOLS: dict[type[Element], tuple[Line, ...]] = {
-    Spring: (_zigzag(),),
-    Damper: (  # a piston in a cup
-        ((0.0, 20.0), (0.0, 1.0)),
-        ((-5.5, 1.0), (5.5, 1.0)),
-        ((-8.0, 8.0), (-8.0, -8.0), (8.0, -8.0), (8.0, 8.0)),
-        ((0.0, -8.0), (0.0, -20.0)),
-    ),
-    Inerter: (  # a rod that turns a flywheel in a box
-        ((-8.0, 9.0), (-8.0, -9.0), (8.0, -9.0), (8.0, 9.0), (-8.0, 9.0)),
-        circle(0.0, 0.0, 5.0),
-        circle(0.0, 0.0, 0.4),
-        ((0.0, 20.0), (0.0, 5.0)),
-        ((0.0, -9.0), (0.0, -20.0)),
-    ),
-    Friction: (  # a block that slides along a hatched wall
-        ((0.0, 20.0), (0.0, 7.0)),
-        ((-4.0, 7.0), (-4.0, -7.0), (4.0, -7.0), (4.0, 7.0), (-4.0, 7.0)),
-        ((4.0, 13.0), (4.0, -13.0), (0.0, -13.0), (0.0, -20.0)),
-        *(((4.0, y), (8.0, y + 4.0)) for y in (-13.0, -9.0, -5.0, -1.0, 3.0, 7.0)),
-    ),
-    Gap: (  # a pin between two jaws
-        ((0.0, 20.0), (0.0, 9.0)),
-        ((4.0, 9.0), (-8.0, 9.0), (-8.0, -7.0), (4.0, -7.0)),
-        ((-4.0, 1.0), (8.0, 1.0), (8.0, -12.0), (0.0, -12.0), (0.0, -20.0)),
-    ),
-}
+SYMBOLS: dict[type[Element], tuple[Line, ...]] = {kind: kind.drawing for kind in ELEMENT_TYPES}
 
 
 def blank_figure(width: float, height: float) -> tuple[Figure, Axes]:

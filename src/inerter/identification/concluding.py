@@ -19,7 +19,8 @@ from inerter.identification.problem import Problem
 from inerter.identification.solving import Solution
 from inerter.identification.space import Space
 from inerter.identification.telling import suggestions, told
-from inerter.networks.elements import Element, Free, Friction, Gap, Inerter
+from inerter.networks.elements import Element, Free
+from inerter.networks.elements.roles import Guard, Linear
 from inerter.networks.transform import with_values
 from inerter.units import format_quantity
 
@@ -107,7 +108,7 @@ def _misfit(fit: Fit, best: Explanation | None) -> str:
 def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[Comparison]) -> Iterator[str]:
     """What an offset of the load cell may be instead."""
     kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
-    friction = sum(value for name, value in values.items() if kinds[name] is Friction)
+    friction = sum(v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is Linear.OPEN)
     for c in comparisons:
         if abs(c.offset) > _NOTICED * friction > 0.0:
             size = format_quantity(c.offset, "N", 3)
@@ -120,7 +121,7 @@ def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequ
 def _of_masses(problem: Problem) -> Iterator[str]:
     """What an inertance may be besides."""
     names = zip(problem.space.names, problem.space.kinds, strict=True)
-    free = [name for name, kind in names if kind is Inerter]
+    free = [name for name, kind in names if kind is not None and kind.linear is Linear.MASS]
     if free and any(e.record.fixture_mass is None for e in problem.experiments):
         yield (
             f"{', '.join(free)}: holds what moves with the table between load cell and device, which the records do "
@@ -177,7 +178,7 @@ def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
         force, run = answer
         white = residuals[first : first + e.size][problem.whitenings[n].weight > 0.0]
         first += e.size
-        gaps = {_name_of(b) for b in problem.rig.device.elements() if isinstance(b, Gap)}
+        gaps = {_name_of(b) for b in problem.rig.device.elements() if b.switches_by(Guard.ELONGATION)}
         openings = {g: sum(event.element == g and event.after == "open" for event in run.events) for g in gaps}
         result.append(
             Comparison(

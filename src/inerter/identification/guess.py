@@ -19,7 +19,8 @@ from scipy.optimize import lsq_linear
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Parallel, Series, Spring
+from inerter.networks.elements import Element, Free, Network, Parallel, Series
+from inerter.networks.elements.roles import Linear
 from inerter.records.filtering import low_pass
 
 Matrix = NDArray[np.float64]
@@ -28,6 +29,16 @@ _TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 31)])  # [s] of c/k
 _FORCE_BAND = 200.0  # [Hz] in which contact is looked for
 _SLIGHT = 0.3  # share of the power in the apparent one, with less of which its sign tells nothing
 _WELL, _POORLY = 0.04, 0.6  # relative half-widths of the ranges to look in
+
+
+_PLACES = {  # in a chain, of what is beside an inertia or not
+    (Linear.MASS, True): "inerter",
+    (Linear.OPEN, True): "friction",
+    (Linear.DAMPING, True): "drag",
+    (Linear.DAMPING, False): "damper",
+    (Linear.STIFFNESS, False): "spring",
+    (Linear.CLOSED, False): "gap",
+}
 
 
 @dataclass(frozen=True)
@@ -54,31 +65,16 @@ def chain_of(device: Network) -> Chain | None:
     found: dict[str, Element] = {}
     for part in parts:
         elements = part.parts if isinstance(part, Parallel) else (part,)
-        inertial = any(isinstance(e, Inerter) for e in elements)
+        inertial = any(isinstance(e, Element) and e.linear is Linear.MASS for e in elements)
         for e in elements:
-            role = _role(e, inertial)
-            if role is None or role in found:
+            place = _PLACES.get((e.linear, inertial)) if isinstance(e, Element) and e.plain else None
+            if place is None or place in found:
                 return None
-            found[role] = e  # type: ignore[assignment]
+            found[place] = e  # type: ignore[assignment]
     if "inerter" not in found or ("damper" in found and "spring" not in found):
         return None
     names = ("spring", "damper", "gap", "inerter", "friction", "drag")
     return Chain(*(found.get(name) for name in names))  # type: ignore[arg-type]
-
-
-def _role(element: object, inertial: bool) -> str | None:
-    match element:
-        case Inerter():
-            return "inerter"
-        case Friction():
-            return "friction" if inertial else None
-        case Damper():
-            return "drag" if inertial else "damper"
-        case Spring():
-            return None if inertial else "spring"
-        case Gap():
-            return None if inertial else "gap"
-    return None
 
 
 def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[float, float]]:

@@ -14,7 +14,8 @@ from inerter.identification.given import checked_records, model_of
 from inerter.identification.models import mounted
 from inerter.identification.search import POINTS
 from inerter.identification.solving import Request, Solution, part, solve
-from inerter.networks.elements import Gap, Network
+from inerter.networks.elements import Network
+from inerter.networks.elements.roles import Linear
 from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
 from inerter.vehicle.cars import Rig
@@ -101,7 +102,7 @@ def _checked(records: Record | Sequence[Record], model: Network, check: float, s
 
 def _check_gain(rig: Rig, gain: bool) -> None:
     """A gain of the load cell and the size of every element are one and the same, unless one of them is known."""
-    known = [e for e in rig.device.elements() if not isinstance(e, Gap) and is_number(e.value)]
+    known = [e for e in rig.device.elements() if e.linear is not Linear.CLOSED and is_number(e.value)]
     if gain and not known:
         raise IdentificationError(
             "A gain of the load cell cannot be told from larger springs, dampers, inerters and frictions: fix one of "

@@ -20,6 +20,7 @@ from inerter.networks.elements import (
     check_network,
     free,
 )
+from inerter.networks.elements.roles import Guard
 from inerter.networks.parser import network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.cars import Rig
@@ -87,7 +88,7 @@ def mounted(model: Network) -> Network:
     >>> mounted(Inerter(113.0)) == Inerter(113.0)
     True
     """
-    return MOUNT - model if rigid(model) and any(isinstance(e, Gap) for e in model.elements()) else model
+    return MOUNT - model if rigid(model) and any(e.switches_by(Guard.ELONGATION) for e in model.elements()) else model
 
 
 def unmounted(model: Network) -> Network:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.hypotheses import Hypothesis
-from inerter.networks.elements import Element, Free, Friction, Gap
+from inerter.networks.elements import Element, Free
 from inerter.vehicle.cars import Rig
 
 Matrix = NDArray[np.float64]
@@ -36,7 +36,7 @@ class Space:
     @property
     def nonlinear(self) -> NDArray[np.bool_]:
         """Which unknowns are frictions and gaps."""
-        return np.array([kind is not None and issubclass(kind, Friction | Gap) for kind in self.kinds])
+        return np.array([kind is not None and kind.switch is not None for kind in self.kinds])
 
     @property
     def bounds(self) -> tuple[Matrix, Matrix]:

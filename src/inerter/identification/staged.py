@@ -18,7 +18,8 @@ from inerter.identification.identify import identify
 from inerter.identification.models import MODELS
 from inerter.identification.response import linear_response, model_response
 from inerter.identification.search import POINTS
-from inerter.networks.elements import Element, Free, Inerter, Network, free
+from inerter.networks.elements import Element, Free, Network, free
+from inerter.networks.elements.roles import Linear
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
@@ -186,7 +187,7 @@ def _friction_test(device: Network, record: Record, law: FrictionLaw, shaft_iner
 
 def _response(device: Network, record: Record) -> ResponseCheck:
     measured, model = frequency_response(record), model_response(device, record)
-    inertances = [e for e in device.elements() if isinstance(e, Inerter) and e.label == _INERTANCE]
+    inertances = [e for e in device.elements() if e.linear is Linear.MASS and e.label == _INERTANCE]
     return ResponseCheck(
         measured=measured,
         model=model,

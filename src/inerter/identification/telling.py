@@ -9,10 +9,19 @@ import numpy as np
 from inerter.identification.fit import Comparison, Parameter, Told
 from inerter.identification.intervals import Profile
 from inerter.identification.space import Space
-from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Spring
+from inerter.networks.elements import Element
+from inerter.networks.elements.roles import Linear
 from inerter.units import format_quantity
 
 _WIDE = 3.0  # ends of an interval this far apart, as a ratio, tell an order of magnitude only
+
+
+_CAUSES = {
+    Linear.OPEN: "Friction is lost beside the other forces; move slowly, so that little but friction is left.",
+    Linear.MASS: "The force of inertia is too small; accelerate more.",
+    Linear.STIFFNESS: "It hardly gives way under these forces, or never carries them; excite near its resonance.",
+    Linear.DAMPING: "Its force is small beside that of the spring; excite at a higher frequency.",
+}
 
 
 def told(
@@ -44,19 +53,12 @@ def told(
 def _cause(kind: type[Element] | None, comparisons: Sequence[Comparison]) -> str:
     if kind is None:
         return "The records tell too little of the sensor."
-    if issubclass(kind, Gap):
+    if kind.linear is Linear.CLOSED:
         openings = sum(sum(c.openings.values()) for c in comparisons)
         if openings == 0:
             return "The contact never opens in the best fit; excite it so that the force reverses."
         return f"The contact opens {openings} times, each time for less than the noise shows."
-    if issubclass(kind, Friction):
-        return "Friction is lost beside the other forces; move slowly, so that little but friction is left."
-    if issubclass(kind, Inerter):
-        return "The force of inertia is too small; accelerate more."
-    if issubclass(kind, Spring):
-        return "It hardly gives way under these forces, or never carries them; excite near its resonance."
-    assert issubclass(kind, Damper)
-    return "Its force is small beside that of the spring; excite at a higher frequency."
+    return _CAUSES[kind.linear]
 
 
 def suggestions(
@@ -75,16 +77,16 @@ def suggestions(
         if identifiable[name] or kind is None:
             continue
         upper = parameters[name].interval[1]
-        if issubclass(kind, Gap):
+        if kind.linear is Linear.CLOSED:
             yield (
                 f"{name}: a faster motion in which the force reverses often (now up to {fastest:.3g} Hz and "
                 f"{peak:.3g} N{room}), sampled so that crossing {format_quantity(2.0 * upper, 'm')} takes several "
                 f"samples."
             )
-        elif issubclass(kind, Friction):
+        elif kind.linear is Linear.OPEN:
             slow = format_quantity(max(travel, 1e-3), "m")
             yield f"{name}: a slow cosine, 0.1 Hz and {slow}, without the flywheel."
-        elif issubclass(kind, Inerter):
+        elif kind.linear is Linear.MASS:
             wider = format_quantity(2.0 * travel, "m")
             yield f"{name}: larger accelerations: {wider} at the same frequency, or twice the frequency."
         else:

@@ -26,7 +26,6 @@ from inerter.methods.method import Estimate, Objective
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
-from inerter.networks.elements import Friction, Gap
 from inerter.norms.hinf import Peak
 from inerter.simulation.event_driven import KERNELS
 from inerter.systems.descriptor import close
@@ -281,7 +280,7 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
 def _is_nonlinear(mechanism: Mechanism) -> bool:
     """Whether there is a friction or a gap that is not zero."""
     elements = (branch.element for branch in full_graph(mechanism).branches)
-    return any(isinstance(e, Friction | Gap) and isinstance(e.value, float | int) and e.value > 0.0 for e in elements)
+    return any(e.acts and isinstance(e.value, float | int) for e in elements)
 
 
 def _inertia_felt(mechanism: Mechanism, name: str) -> float:

@@ -17,7 +17,7 @@ from inerter.errors import LinearSystemError, MechanismError
 from inerter.indices.index import Question
 from inerter.methods.equivalent import GAUSSIAN, Equivalent, acts, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
-from inerter.networks.elements import Gap
+from inerter.networks.elements.roles import Guard
 from inerter.norms.h2 import h2
 from inerter.norms.stability import balance
 from inerter.systems.descriptor import close
@@ -44,7 +44,7 @@ def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str
 
 def has_play(system: PiecewiseSystem) -> bool:
     """Whether a gap is not zero, so that no linear design need resemble the motion."""
-    return any(isinstance(branch.element, Gap) and branch.element.value != 0.0 for branch in system.graph.branches)
+    return any(b.element.switches_by(Guard.ELONGATION) and b.element.acts for b in system.graph.branches)
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, IndicatorError
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Spring, Value
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Value
+from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import Descriptor, close, describe
-from inerter.systems.graph import full_graph, linear_graph
+from inerter.systems.graph import full_graph, linear_graph, switching
 from inerter.vehicle.mechanism import Mechanism, Tyre
 
 Array = NDArray[np.float64]
@@ -39,15 +40,16 @@ class Equivalent:
     numbers: tuple[int, ...]  # which of all frictions with a force each of them stands for
     frictions: tuple[str, ...]  # in words, for each damper
     locked: tuple[str, ...]  # in words, those replaced by a rigid link instead
-    forces: tuple[Value, ...]  # of each friction [N]
+    forces: tuple[Value, ...]  # of each friction [N], or the free value that has this one, ...
+    gains: tuple[float, ...]  # ... times its gain
     design: tuple[str, ...]  # free values of the mechanism that it stands for
     scale: float  # a damping typical of the mechanism [N s/m]
 
     def limits(self, points: Array) -> Array:
         """Friction forces (designs, frictions) [N] at each row of `points`, the values of the design."""
         result = np.empty((points.shape[0], len(self.forces)))
-        for i, (force, place) in enumerate(zip(self.forces, self.places, strict=True)):
-            result[:, i] = points[:, place] if isinstance(force, Free) else force
+        for i, (force, gain, place) in enumerate(zip(self.forces, self.gains, self.places, strict=True)):
+            result[:, i] = gain * (points[:, place] if isinstance(force, Free) else force)
         return result
 
     @cached_property
@@ -74,19 +76,20 @@ class Equivalent:
 
 def check_gaps(mechanism: Mechanism) -> None:
     """Raises `IndicatorError` for a gap with play."""
-    for mount in mechanism.mounts():
+    for mount in switching(mechanism).mounts():
         for element in mount.network.elements():
-            if isinstance(element, Gap) and element.value != 0.0:
+            if element.statistical is Statistical.REFUSED and element.value != 0.0:
                 raise IndicatorError(
-                    f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is a gap "
-                    f"with play. Use ExpectedValue() or ApproximateLinear(), which simulate it, or give the gap a "
-                    f"half-width of 0."
+                    f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is a "
+                    f"{element.key} with play. Use ExpectedValue() or ApproximateLinear(), which simulate it, or give "
+                    f"the gap a half-width of 0."
                 )
 
 
 def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
     """Raises `IndicatorError` for the velocity or force of a friction: a damper has its place."""
-    frictions = [branch.label for branch in full_graph(mechanism).branches if isinstance(branch.element, Friction)]
+    branches = full_graph(mechanism).branches
+    frictions = [branch.label for branch in branches if branch.element.statistical is Statistical.DAMPER]
     for name in names:
         if name.rpartition("_")[0] in frictions:
             raise IndicatorError(
@@ -97,7 +100,7 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
 
 def has_friction(mechanism: Mechanism) -> bool:
     """Whether any friction has a force."""
-    return any(acts(element) for mount in mechanism.mounts() for element in mount.network.elements())
+    return any(acts(element) for mount in switching(mechanism).mounts() for element in mount.network.elements())
 
 
 def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = ()) -> Equivalent:
@@ -108,9 +111,10 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
 
     Raises `MechanismError` for what is ill-posed.
     """
+    mechanism = switching(mechanism)
     scale = _typical_damping(mechanism)
     taken = {element.label for mount in mechanism.mounts() for element in mount.network.elements()}
-    found: dict[str, tuple[str, Value]] = {}
+    found: dict[str, tuple[str, Element]] = {}
 
     def changed(mount: str, network: Network) -> Network:
         def damped(element: Element) -> Network:
@@ -119,7 +123,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
             name = f"equivalent_damper_{len(found) + 1}"
             while name in taken:
                 name += "_"
-            found[name] = (f"friction {element.label!r} in {mount!r}", element.value)
+            found[name] = (f"{element.key} {element.label!r} in {mount!r}", element)
             if name in without:
                 return Friction(0.0, element.label)
             if name in locked:
@@ -135,13 +139,15 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     )
     moving = {branch.label for branch in linear_graph(other).branches}
     names = tuple(name for name in found if name in moving)
+    frictions = [found[name][1] for name in names]
     return Equivalent(
         mechanism=other,
         dampers=names,
         numbers=tuple(list(found).index(name) for name in names),
         frictions=tuple(found[name][0] for name in names),
         locked=tuple(words for name, (words, _) in found.items() if name in locked),
-        forces=tuple(found[name][1] for name in names),
+        forces=tuple(e.value if isinstance(e.value, Free) else e.coefficient for e in frictions),
+        gains=tuple(e.gain if isinstance(e.value, Free) else 1.0 for e in frictions),
         design=tuple(mechanism.free_values()),
         scale=scale,
     )
@@ -152,6 +158,7 @@ def slipping_freely(mechanism: Mechanism) -> frozenset[str]:
 
     With a velocity of infinite variance across them, they are zero. Only what is mounted on a road can be reached so.
     """
+    mechanism = switching(mechanism)
     roads = {road.name for road in mechanism.roads}
     on_road = [m for m in mechanism.mounts() if isinstance(m, Tyre) or roads & {*m.upper, *m.lower}]
     if not any(acts(element) for mount in on_road for element in mount.network.elements()):
@@ -174,15 +181,15 @@ def _reached_directly(descriptor: Descriptor) -> list[int]:
 
 def acts(element: Element) -> bool:
     """Whether an element is a friction with a force, or with one still to be chosen."""
-    return isinstance(element, Friction) and element.value != 0.0
+    return element.statistical is Statistical.DAMPER and element.value != 0.0
 
 
 def _typical_damping(mechanism: Mechanism) -> float:
     """Root of the largest stiffness times the largest inertia: the impedance at a natural frequency."""
     elements = [element for mount in mechanism.mounts() for element in mount.network.elements()]
-    springs = [_size(e.value) for e in elements if isinstance(e, Spring)]
+    springs = [e.gain * _size(e.value) for e in elements if e.linear is Linear.STIFFNESS]
     inertias = [coordinate.inertia for coordinate in mechanism.coordinates]
-    dampers = [_size(e.value) for e in elements if isinstance(e, Damper)]
+    dampers = [e.gain * _size(e.value) for e in elements if e.linear is Linear.DAMPING]
     if springs and inertias:
         return math.sqrt(max(springs) * max(inertias))
     return max(dampers, default=1e3)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from inerter.errors import DesignError
-from inerter.networks.elements import Element, Free, Friction, Gap, Network, Parallel, Series
+from inerter.networks.elements import Element, Free, Network, Parallel, Series
+from inerter.networks.elements.roles import Linear
 
 
 def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
@@ -20,6 +21,39 @@ def map_elements(network: Network, change: Callable[[Element], Network]) -> Netw
         case Element():
             return change(network)
     raise TypeError(f"not a network: {network!r}")
+
+
+def unfolded(network: Network, view: Callable[[Element], Network]) -> Network:
+    """The network with each element replaced by what it is in a `view`, such as `to_simulation`.
+
+    A single part without a name takes the label of the element that it stands for, parts of several the label before
+    their own. Elements that are themselves stay the same objects.
+    """
+
+    def change(element: Element) -> Network:
+        seen = view(element)
+        if seen is element:
+            return element
+        alone = isinstance(seen, Element)
+        return unfolded(map_elements(seen, lambda part: _named_after(element.label, part, alone)), view)
+
+    return map_elements(network, change)
+
+
+def to_analysis(element: Element) -> Network:
+    """What linear analysis takes in the place of an element."""
+    return element.as_linear()
+
+
+def to_simulation(element: Element) -> Network:
+    """What simulation takes in the place of an element; raises `DesignError` if that depends on a free value."""
+    return element.as_piecewise()
+
+
+def _named_after(label: str, part: Element, alone: bool) -> Element:
+    if part.name is not None:
+        return part
+    return replace(part, name=label if alone else f"{label}_{part.symbol}")  # type: ignore[type-var]
 
 
 def with_values(network: Network, values: Mapping[str, float]) -> Network:
@@ -70,6 +104,9 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
     return {mount: map_elements(network, name) for mount, network in networks.items()}
 
 
+_LEFT_OUT = (Linear.OPEN, Linear.CLOSED)
+
+
 @dataclass(frozen=True)
 class Linearised:
     """What is left of a network for linear analysis, and what was done to get there.
@@ -90,24 +127,22 @@ def linearise(network: Network) -> Linearised:
     Elements that carry no force any more, because they are in series with a friction, or that cannot move, because
     they are beside a closed gap, are named in `idle`.
     """
+    network = unfolded(network, to_analysis)
     before = list(network.elements())
     kept, rigid = _linear(network)
     after = Counter(id(element) for element in kept.elements()) if kept is not None else Counter()
     dropped = Counter(id(element) for element in before) - after
-    frictions = tuple(e.label for e in before if isinstance(e, Friction))
-    gaps = tuple(e.label for e in before if isinstance(e, Gap))
-    others = {id(e): e for e in before if not isinstance(e, Friction | Gap)}
+    frictions = tuple(e.label for e in before if e.linear is Linear.OPEN)
+    gaps = tuple(e.label for e in before if e.linear is Linear.CLOSED)
+    others = {id(e): e for e in before if e.linear not in _LEFT_OUT}
     idle = tuple(element.label for key, element in others.items() if dropped[key])
     return Linearised(kept, rigid, frictions, gaps, idle)
 
 
 def _linear(network: Network) -> tuple[Network | None, bool]:
-    if isinstance(network, Friction):
-        return None, False
-    if isinstance(network, Gap):
-        return None, True
     if isinstance(network, Element):
-        return network, False
+        left_out = network.linear in _LEFT_OUT
+        return None if left_out else network, network.linear is Linear.CLOSED
     assert isinstance(network, Parallel | Series)
     parts = [_linear(part) for part in network.parts]
     rigid = [r for kept, r in parts if kept is None]

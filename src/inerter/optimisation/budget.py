@@ -15,7 +15,7 @@ from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.indices.index import Index
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Averaging, Method, check_request, evaluate
-from inerter.networks.elements import Element, Friction, Gap
+from inerter.networks.elements import Element
 from inerter.networks.transform import map_elements
 from inerter.units import format_quantity
 from inerter.vehicle.cars import Vehicle
@@ -24,7 +24,6 @@ from inerter.vehicle.mechanism import Mechanism
 _POINTS = 16  # between which crossings are looked for
 _REACH = 1e3  # default bounds lie so many times below and above the present value
 _SLOPE = 0.02  # relative step of the slope's difference
-_FROM_ZERO = {Friction: (0.1, 1e4), Gap: (1e-6, 1e-2)}  # default bounds where the present value is zero
 
 
 @dataclass(frozen=True)
@@ -113,7 +112,7 @@ def budget(
         for (a, left), (b, right) in pairwise(zip(grid, gaps, strict=True))
         if np.isfinite(left + right) and (left < 0.0) != (right < 0.0)
     )
-    wanted = "below" if isinstance(chosen[0], Friction | Gap) else "above"
+    wanted = "below" if chosen[0].may_vanish else "above"
     ends = [c for c in crossings if c.better == wanted]
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
     failed = next((known[at].status for at in grid if not np.isfinite(known[at].difference.value)), OK)
@@ -151,9 +150,7 @@ def _elements(mechanism: Mechanism, parameter: str) -> list[Element]:
     """The elements that a name stands for; raises `DesignError` if there is none, or if they are of several kinds."""
     all_elements = [element for strut in mechanism.struts for element in strut.network.elements()]
     named = [e for e in all_elements if e.label == parameter]
-    kind: list[Element] = [
-        e for e in all_elements if isinstance(e, Friction | Gap) and type(e).__name__.lower() == parameter
-    ]
+    kind: list[Element] = [e for e in all_elements if e.may_vanish and e.key == parameter]
     chosen = named or kind
     if not chosen:
         labels = ", ".join(dict.fromkeys(e.label for e in all_elements))
@@ -189,8 +186,8 @@ def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[f
     present: Any = chosen[0].value
     if not is_number(present):
         raise DesignError(f"The value of {parameter!r} is free; fix it, or give bounds=(lower, upper).")
-    if present == 0.0:
-        return _FROM_ZERO[type(chosen[0])]  # others cannot be zero
+    if present == 0.0 and chosen[0].tried is not None:
+        return chosen[0].tried
     return present / _REACH, present * _REACH
 
 

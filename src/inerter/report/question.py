@@ -14,7 +14,7 @@ from inerter.files.common.shape import UNITS
 from inerter.files.study.study import Study
 from inerter.methods.linear import CONVENTIONS
 from inerter.networks.elements import Element, Free
-from inerter.units import ELEMENT_UNITS, format_quantity
+from inerter.units import format_quantity
 
 _METHODS = {
     "norm": "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain",
@@ -55,9 +55,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
 
 def element_rows(study: Study) -> list[tuple[str, str, str]]:
     """The elements: name, kind, and value or bounds."""
-    return [
-        (name, ELEMENT_UNITS[element.unit], _value(study, name, element)) for name, element in study.elements.items()
-    ]
+    return [(name, element.key, _value(study, name, element)) for name, element in study.elements.items()]
 
 
 def layout_rows(study: Study) -> list[LayoutText]:

@@ -15,7 +15,7 @@ from inerter.kernels.arrays import ENTRY, ETA, GUARD, SEEN, Mechanics, Modes
 from inerter.kernels.march import March, lines_of, march_of
 from inerter.kernels.modes import build, discretise
 from inerter.kernels.prepare import prepare
-from inerter.networks.elements import Damper, Gap
+from inerter.networks.elements.roles import Guard, Linear
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.threads import check_wanted
 from inerter.simulation.trajectory import Ending
@@ -194,7 +194,7 @@ def start(
     roads, channels = len(system.mechanism.roads), table.value.shape[1]
     used = _used(system, table, bool(rows))
     starts = np.cumsum([0, n, k, na + nw + k, nw + k, len(rows), n])
-    dampers = sum(isinstance(b.element, Damper) for b in system.graph.branches)
+    dampers = sum(b.element.linear is Linear.DAMPING for b in system.graph.branches)
     mechanics = Mechanics(
         sizes=np.array([na, nw, roads, n, k, dampers, len(outputs), *starts[1:6]], dtype=np.int64),
         **vars(system.mechanics),
@@ -203,7 +203,7 @@ def start(
     branches = system.graph.branches if account else ()
     samples, channels = table.samples if keep else 0, table.value.shape[1]
     jumps = channels if table.jumps else 0
-    sharp = any(isinstance(element, Gap) for element in system.nonlinear_elements)
+    sharp = any(element.switches_by(Guard.ELONGATION) for element in system.nonlinear_elements)
     columns, followed, swaying = lines_of(n, used.size, k, len(outputs), jumps, sharp)
     work = np.zeros(
         (kernel.ROWS, max(64, columns + followed + swaying + n, nu, 4 * channels, channels + len(branches)))

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.kernels.events import EVENTS, SEGMENT, evaluate
-from inerter.networks.elements import Friction
 from inerter.simulation.energy import energy_of
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
@@ -18,8 +17,6 @@ from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
 Matrix = NDArray[np.float64]
 _ROUNDING = 1e-14  # of a sum, relative to its terms
-_FRICTION = {-1: "slip down", 0: "stick", 1: "slip up"}
-_GAP = {-1: "lower contact", 0: "open", 1: "upper contact"}
 
 
 def trajectory_of(integration: Integration, steady: Repetition | None, label: str) -> Trajectory:
@@ -50,7 +47,8 @@ def _named(system: PiecewiseSystem) -> list[list[tuple[str, dict[int, str]]]]:
     """
     named = []
     for element, group in zip(system.nonlinear_elements, system.nonlinear, strict=True):
-        names = _FRICTION if isinstance(element, Friction) else _GAP
+        assert element.switch is not None
+        names = element.switch.states
         turned = {state: names[-state] for state in names}
         named.append([(system.graph.branches[i].label, names if s > 0.0 else turned) for i, s in group.items()])
     return named

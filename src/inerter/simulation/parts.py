@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
-from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
+from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.graph import Branch, Graph
 from inerter.vehicle.mechanism import Mechanism
 
@@ -119,14 +119,10 @@ def parts_of(mechanism: Mechanism, graph: Graph) -> Parts:
     masses[: len(names)] = [c.inertia for c in mechanism.coordinates]
     E, R = _stack(graph.branches, n, len(mechanism.roads))
     k, c, b = (
-        np.array([_value(branch) if isinstance(branch.element, kind) else 0.0 for branch in graph.branches])
-        for kind in (Spring, Damper, Inerter)
+        np.array([branch.element.coefficient if branch.element.linear is law else 0.0 for branch in graph.branches])
+        for law in (Linear.STIFFNESS, Linear.DAMPING, Linear.MASS)
     )
     return Parts(graph.branches, E, R, ports, k, c, b, masses, _reactions(graph.branches))
-
-
-def _value(branch: Branch) -> float:
-    return float(branch.element.value)  # type: ignore[arg-type]
 
 
 def _stack(rows: tuple[Branch, ...] | tuple[Reaction, ...], nodes: int, roads: int) -> tuple[Matrix, Matrix]:
@@ -138,10 +134,10 @@ def _reactions(branches: tuple[Branch, ...]) -> tuple[Reaction, ...]:
     """One for each gap, and one for each set of frictions between the same two ends; none for a friction of zero."""
     found: list[Reaction] = []
     for i, branch in enumerate(branches):
-        if isinstance(branch.element, Gap):
-            found.append(Reaction(True, _value(branch), branch.nodes, branch.roads, {i: 1.0}))
-        elif isinstance(branch.element, Friction):
-            size = _value(branch)
+        if branch.element.switches_by(Guard.ELONGATION):
+            found.append(Reaction(True, branch.element.coefficient, branch.nodes, branch.roads, {i: 1.0}))
+        elif branch.element.switches_by(Guard.FORCE):
+            size = branch.element.coefficient
             beside = [j for j, other in enumerate(found) if not other.gap and _sense(branch, other)]
             if beside:
                 other = found[beside[0]]

@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
-from inerter.networks.elements import Gap, Spring
+from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import dependencies, independent_rows, null_space
-from inerter.systems.kinematics import value_of
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
@@ -69,8 +68,9 @@ class _Parts:
 
 def _parts(system: PiecewiseSystem, road: Matrix, force: Matrix) -> _Parts:
     branches = system.graph.branches
-    springs, gaps = ([i for i, b in enumerate(branches) if isinstance(b.element, kind)] for kind in (Spring, Gap))
-    values = np.array([value_of(b.element) for b in branches])
+    springs = [i for i, b in enumerate(branches) if b.element.linear is Linear.STIFFNESS]
+    gaps = [i for i, b in enumerate(branches) if b.element.switches_by(Guard.ELONGATION)]
+    values = np.array([b.element.coefficient for b in branches])
     compliance, half_width = np.zeros((2, values.size))
     compliance[springs], half_width[gaps] = 1.0 / values[springs], values[gaps]
     return _Parts(

@@ -25,7 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, LinearSystemError, MechanismError
-from inerter.networks.elements import Damper, Element, Free, Inerter, Spring
+from inerter.networks.elements import Element, Free, Inerter
+from inerter.networks.elements.roles import Linear
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph, full_graph, linear_graph
 from inerter.systems.linear import Fine, LinearSystem, Origin
@@ -184,14 +185,15 @@ class _Equations:
         rows = pairs | {force.name: self._port(force.port) for force in self.mechanism.forces}
         forces = [rows[name] for name in self.inputs if name not in self.road_names]
         self.force_rows = np.array(forces).reshape(len(forces), count)
-        self.springs = [b for b in branches if isinstance(b.element, Spring)]
+        self.springs = [b for b in branches if b.element.linear is Linear.STIFFNESS]
         self.spring_number = {id(branch): i for i, branch in enumerate(self.springs)}
-        inerters = [b for b in branches if isinstance(b.element, Inerter)]
+        inerters = [b for b in branches if b.element.linear is Linear.MASS]
         for branch in inerters:
             if np.any(branch.roads):
                 raise MechanismError(
-                    f"Inerter {branch.label!r} is mounted on the road itself: its force follows the road's "
-                    f"acceleration, which does not exist for a white road velocity. Mount it between moving parts."
+                    f"{branch.element.key.capitalize()} {branch.label!r} is mounted on the road itself: its force "
+                    f"follows the road's acceleration, which does not exist for a white road velocity. Mount it "
+                    f"between moving parts."
                 )
         self.spring_rows = np.array([b.nodes for b in self.springs]).reshape(-1, count)
         self.spring_roads = np.array([b.roads[self.road_columns] for b in self.springs]).reshape(
@@ -201,7 +203,7 @@ class _Equations:
         self.split: Coordinates = find_coordinates(
             self.graph.nodes,
             inertia=np.vstack([masses, *(b.nodes for b in inerters)]),
-            damping=np.array([b.nodes for b in branches if isinstance(b.element, Damper)]).reshape(-1, count),
+            damping=np.array([b.nodes for b in branches if b.element.linear is Linear.DAMPING]).reshape(-1, count),
             springs=self.spring_rows,
             spring_roads=self.spring_roads,
             forces=self.force_rows,
@@ -242,9 +244,9 @@ class _Equations:
         stack = np.zeros((self.k, *array.shape), np.longdouble)
         value = element.value
         if isinstance(value, Free):
-            stack[1 + list(self.variables).index(str(value.name))] = array
+            stack[1 + list(self.variables).index(str(value.name))] = element.gain * array.astype(np.longdouble)
         else:
-            stack[0] = value * array.astype(np.longdouble)
+            stack[0] = element.coefficient * array.astype(np.longdouble)
         return stack
 
     def add_balance(self) -> None:
@@ -258,12 +260,12 @@ class _Equations:
             on = np.zeros(self.e)  # how the element's force acts on each row of the balance
             on[self.a1], on[self.u1], on[self.y], on[self.z] = c.rate(branch.nodes)
             self._add(branch.element, on, self._elongation_rate(branch))
-            if isinstance(branch.element, Inerter):
+            if branch.element.linear is Linear.MASS:
                 momentum = np.zeros(self.e)
                 momentum[self.u0] = on[self.u1]
                 eta, x, _ = self._velocity(branch.nodes)
                 self._add(branch.element, momentum, (eta, x, np.zeros(self.m)))
-            if isinstance(branch.element, Spring) and self.z1.stop > self.z1.start:
+            if branch.element.linear is Linear.STIFFNESS and self.z1.stop > self.z1.start:
                 change = np.zeros(self.e)
                 change[self.z1] = on[self.z]
                 self._add(branch.element, change, self._velocity(branch.nodes, branch.roads))
@@ -281,9 +283,9 @@ class _Equations:
         """Add an element that acts so on the rows of the balance."""
         value, place, on = element.value, 0, on.astype(np.longdouble)
         if isinstance(value, Free):
-            place = 1 + list(self.variables).index(str(value.name))
+            place, on = 1 + list(self.variables).index(str(value.name)), element.gain * on
         else:
-            on = value * on
+            on = element.coefficient * on
         term = np.multiply.outer(on, np.concatenate(to))
         self.balance[place] += term
         self.size[place] += np.abs(term)
@@ -294,12 +296,12 @@ class _Equations:
     def _elongation_rate(self, branch: Branch) -> Rows:
         """What the element's value multiplies: its elongation, velocity or acceleration, as rows on eta, x and u."""
         eta, x, u = self._blank()
-        match branch.element:
-            case Inerter():
+        match branch.element.linear:
+            case Linear.MASS:
                 eta[self.a1], eta[self.u1] = self.split.rate(branch.nodes)[:2]
-            case Damper():
+            case Linear.DAMPING:
                 eta, x, u = self._velocity(branch.nodes, branch.roads)
-            case Spring():
+            case Linear.STIFFNESS:
                 row = np.zeros(len(self.springs))
                 row[self.spring_number[id(branch)]] = 1.0
                 eta, x = self._elongation(row)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import MechanismError
-from inerter.networks.elements import Element, Network, Parallel, Series
-from inerter.networks.transform import linearise, map_elements
+from inerter.errors import DesignError, MechanismError
+from inerter.networks.elements import Element, Free, Network, Parallel, Series
+from inerter.networks.transform import linearise, map_elements, to_analysis, to_simulation, unfolded
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
@@ -53,7 +53,7 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
     Raises `MechanismError` if a mounted network then carries no force at all, or is rigid.
     """
-    whole = _networks(mechanism)
+    whole = _networks(mechanism, to_analysis)
     networks: dict[str, Network] = {}
     notes: list[str] = []
     for mount in mechanism.mounts():
@@ -77,13 +77,42 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
 def full_graph(mechanism: Mechanism) -> Graph:
     """The graph with every element in it, friction and gaps included."""
-    networks = _networks(mechanism)
+    networks = _networks(mechanism, _shaped)
     return _expand(mechanism, networks, _labels(networks), ())
 
 
-def _networks(mechanism: Mechanism) -> dict[str, Network]:
+def switching(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with what simulation takes in the place of its elements; itself, if that is what they are.
+
+    Raises `DesignError` where that depends on a free value.
+    """
+    elements = (element for mount in mechanism.mounts() for element in mount.network.elements())
+    if all(element.as_piecewise() is element for element in elements):
+        return mechanism
+    return replace(
+        mechanism,
+        struts=tuple(replace(s, network=unfolded(s.network, to_simulation)) for s in mechanism.struts),
+        tyres=tuple(replace(t, network=unfolded(t.network, to_simulation)) for t in mechanism.tyres),
+    )
+
+
+def switching_parts(element: Element) -> Iterator[Element]:
+    """The elements that simulation takes in the place of one; a free value may be at its upper bound there."""
+    return unfolded(element, _shaped).elements()
+
+
+def _shaped(element: Element) -> Network:
+    """`Element.as_piecewise`, of a free value at its upper bound where need be: the shape does not depend on it."""
+    try:
+        return element.as_piecewise()
+    except DesignError:
+        assert isinstance(element.value, Free)
+        return element.with_value(element.value.upper).as_piecewise()
+
+
+def _networks(mechanism: Mechanism, view: Callable[[Element], Network]) -> dict[str, Network]:
     """The mounted networks, each element an object of its own: one may be mounted several times."""
-    return {mount.name: map_elements(mount.network, copy) for mount in mechanism.mounts()}
+    return {mount.name: map_elements(unfolded(mount.network, view), copy) for mount in mechanism.mounts()}
 
 
 def _labels(networks: Mapping[str, Network]) -> dict[int, str]:

@@ -17,13 +17,15 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.kernels.arrays import FRICTION, GAP
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Inerter, Network, Spring
+from inerter.networks.elements import Element, Network
+from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import clean, complete, independent_rows, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 
 Matrix = NDArray[np.float64]
+_NUMBER = {Guard.FORCE: FRICTION, Guard.ELONGATION: GAP}  # that the kernels have for it
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +95,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
 
 def _drawn(network: Network) -> tuple[Any, ...]:
     if isinstance(network, Element):
-        return type(network), network.name, value_of(network) > 0.0
+        return type(network), network.name, network.coefficient > 0.0
     return (type(network), *map(_drawn, network.parts))  # type: ignore[attr-defined]
 
 
@@ -112,9 +114,11 @@ def _found(layout: _Layout) -> Kinematics:
     places = _places(mechanism, graph)
     together = _together(branches)
     special = [next(iter(group)) for group in together]
-    dampers, springs = ([i for i, b in enumerate(branches) if isinstance(b.element, k)] for k in (Damper, Spring))
+    laws = (Linear.DAMPING, Linear.STIFFNESS)
+    dampers, springs = ([i for i, b in enumerate(branches) if b.element.linear is law] for law in laws)
     positions = np.hstack([places.nodes @ R, places.nodes @ N, places.roads + places.nodes @ V])
-    names = [[FRICTION if isinstance(branches[i].element, Friction) else GAP, places.own[i]] for i in special]
+    switches = [(branches[i].element.switch, places.own[i]) for i in special]
+    names = [[_NUMBER[switch.guard], own] for switch, own in switches if switch is not None]
     jolted = np.any(np.abs(inertia.roads + inertia.nodes @ V) > 1e-12, axis=0)
     found = Kinematics(
         graph=graph,
@@ -130,7 +134,7 @@ def _found(layout: _Layout) -> Kinematics:
         ports=ports,
         nonlinear=together,
         needs_acceleration=tuple(jolted | _locked_to(rates, special)),
-        moves_elements=tuple(_moved_by(rates, [i for i in special if value_of(branches[i].element) > 0.0])),
+        moves_elements=tuple(_moved_by(rates, [i for i in special if branches[i].element.acts])),
         weighs=weighs,
     )
     _check_locks(found)
@@ -141,10 +145,10 @@ _remembered = lru_cache(maxsize=256)(_found)
 
 
 def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
-    """Gaps, and frictions: those between the same two ends as one, with 1 or -1 for each by how its ends are turned."""
+    """What switches: frictions between the same two ends as one, with 1 or -1 for each by how its ends are turned."""
     groups: list[dict[int, int]] = []
     for i, branch in enumerate(branches):
-        if isinstance(branch.element, Friction | Gap):
+        if branch.element.switch is not None:
             turned = [_turned(branches[next(iter(group))], branch) for group in groups]
             if any(turned):
                 at = int(np.flatnonzero(turned)[0])
@@ -156,7 +160,7 @@ def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
 
 def _turned(first: Branch, other: Branch) -> int:
     """1 or -1 if two frictions that hold are between the same two ends, in the same order or the other one; else 0."""
-    if not all(isinstance(b.element, Friction) and _holds(b.element) for b in (first, other)):
+    if not all(b.element.switches_by(Guard.FORCE) and b.element.acts for b in (first, other)):
         return 0
     row, beside = (np.concatenate([b.nodes, b.roads]) for b in (first, other))
     return 1 if np.array_equal(row, beside) else -1 if np.array_equal(-row, beside) else 0
@@ -172,11 +176,11 @@ class _Inertia:
 
 
 def _inertia(mechanism: Mechanism, graph: Graph) -> _Inertia:
-    inerters = [b for b in graph.branches if isinstance(b.element, Inerter)]
+    inerters = [b for b in graph.branches if b.element.linear is Linear.MASS]
     nodes, roads = _stack(inerters, graph)
     masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     still = np.zeros((len(masses), roads.shape[1]))
-    values = np.array([*(c.inertia for c in mechanism.coordinates), *(value_of(b.element) for b in inerters)])
+    values = np.array([*(c.inertia for c in mechanism.coordinates), *(b.element.coefficient for b in inerters)])
     return _Inertia(np.vstack([masses, nodes]), np.vstack([still, roads]), values)
 
 
@@ -195,7 +199,8 @@ def _places(mechanism: Mechanism, graph: Graph) -> Places:
     """The first independent ones among the elongations of gaps and springs and the displacements of coordinates."""
     branches = graph.branches
     nodes, roads = _stack(branches, graph)
-    placed = [i for kind in (Gap, Spring) for i, b in enumerate(branches) if isinstance(b.element, kind)]
+    gaps = [i for i, b in enumerate(branches) if b.element.switches_by(Guard.ELONGATION)]
+    placed = gaps + [i for i, b in enumerate(branches) if b.element.linear is Linear.STIFFNESS]
     coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     choices = np.vstack([nodes[placed], coordinates])
     choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
@@ -232,8 +237,8 @@ def _velocities(graph: Graph, inertia: _Inertia, ports: Matrix, roads: int) -> t
     Whether there is one, so that R and V depend on values, is told last.
     """
     count = len(graph.nodes)
-    others = [b for b in graph.branches if not isinstance(b.element, Inerter)]
-    holding = [b for b in others if not isinstance(b.element, Friction | Gap) or _holds(b.element)]
+    others = [b for b in graph.branches if b.element.linear is not Linear.MASS]
+    holding = [b for b in others if b.element.switch is None or b.element.switch.always_holds(b.element.coefficient)]
     loose = null_space(np.vstack([inertia.nodes, _stack(holding, graph)[0]]))
     if loose.shape[1]:
         node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]
@@ -258,12 +263,6 @@ def _velocities(graph: Graph, inertia: _Inertia, ports: Matrix, roads: int) -> t
     )
 
 
-def _holds(element: Element) -> bool:
-    """Whether a friction always holds, or a gap is always closed."""
-    value = value_of(element)
-    return value > 0.0 if isinstance(element, Friction) else value == 0.0
-
-
 def _check_locks(found: Kinematics) -> None:
     """Raises `MechanismError` if closing gaps would stop an inertia at once, or if a lock's force is not determined."""
     na, nw = found.motions[0].shape[1], found.motions[1].shape[1]
@@ -271,11 +270,11 @@ def _check_locks(found: Kinematics) -> None:
     special = [found.graph.branches[next(iter(group))] for group in found.nonlinear]
     labels = [branch.label for branch in special]
     H_a, H_w, H_z = np.split(found.moving[ng : ng + k], [na, na + nw], axis=1)
-    gaps = [i for i, branch in enumerate(special) if isinstance(branch.element, Gap)]
+    gaps = [i for i, branch in enumerate(special) if branch.element.switches_by(Guard.ELONGATION)]
     for together in null_space(H_w[gaps].T).T:
         named = [i for i, share in zip(gaps, together, strict=True) if abs(share) > 1e-9]
         across = together @ np.hstack([H_a, H_z])[gaps]
-        if np.any(np.abs(across) > 1e-9) and any(value_of(special[i].element) > 0.0 for i in named):
+        if np.any(np.abs(across) > 1e-9) and any(special[i].element.acts for i in named):
             which = " and ".join(repr(labels[i]) for i in named)
             raise MechanismError(
                 f"Gap {which} has inertia (or a given motion) on both sides and no compliance: closing it would be an "
@@ -295,13 +294,6 @@ def _stack(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
     nodes, roads = len(graph.nodes), next((b.roads.size for b in graph.branches), 0)
     on_nodes = np.array([b.nodes for b in branches]).reshape(len(branches), nodes)
     return on_nodes, np.array([b.roads for b in branches]).reshape(len(branches), roads)
-
-
-def value_of(element: Element) -> float:
-    """The value of an element that has one."""
-    value = element.value
-    assert not isinstance(value, Free)
-    return value
 
 
 def _dense(matrix: Matrix) -> Matrix:

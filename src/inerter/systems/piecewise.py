@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
-from inerter.networks.elements import Damper, Element, Inerter, Spring
-from inerter.systems.graph import Graph
-from inerter.systems.kinematics import Kinematics, kinematics, value_of, with_elements
+from inerter.networks.elements import Element
+from inerter.networks.elements.roles import Linear
+from inerter.systems.graph import Graph, switching
+from inerter.systems.kinematics import Kinematics, kinematics, with_elements
 from inerter.systems.outputs import Output
 from inerter.vehicle.cars import Vehicle, check_vehicle
 from inerter.vehicle.mechanism import Mechanism, check_values
@@ -98,6 +99,7 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     free = ", ".join(mechanism.free_values())
     if free:
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+    mechanism = switching(mechanism)
     check_values(mechanism)
     return _system(mechanism, kinematics(mechanism))
 
@@ -119,7 +121,7 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
     inertias = {c.name: c for c in system.mechanism.coordinates}
     for label, value in values.items():
         if label in elements:
-            old, positive = value_of(elements[label]), value_of(elements[label]) > 0.0
+            old, positive = elements[label].value, elements[label].value != 0.0
         elif label in inertias:
             old, positive = inertias[label].inertia, True
         else:
@@ -129,7 +131,7 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
             allowed = "any positive number" if positive else "nothing else"
             raise DesignError(f"The value of {label!r} is {old:g} and can become {allowed} here, got {value!r}.")
         if label in elements:
-            elements[label] = type(elements[label])(value, elements[label].name)  # type: ignore[call-arg]
+            elements[label] = elements[label].with_value(value)
         else:
             inertias[label] = replace(inertias[label], inertia=value)
     mechanism = copy(system.mechanism)  # which was checked when it was made
@@ -141,11 +143,11 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
 def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
     graph, rates, places = known.graph, known.rates, known.places
     R, _, V = known.motions
-    inerters = (value_of(b.element) for b in graph.branches if isinstance(b.element, Inerter))
+    inerters = (b.element.coefficient for b in graph.branches if b.element.linear is Linear.MASS)
     inertia = np.array([*(c.inertia for c in mechanism.coordinates), *inerters])
     kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
     _check_inertia(kinetic, inertia)
-    resistance = _weighted(graph, Damper, np.hstack(rates[:2]), np.hstack(rates))
+    resistance = _weighted(graph, Linear.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
     return PiecewiseSystem(
         mechanism=mechanism,
         kinematics=known,
@@ -192,7 +194,7 @@ def _mechanics(
     left[:na, :na] = kinetic.T @ momentum[:, :na]
     right = [
         -resistance[:, :na],
-        -_weighted(known.graph, Spring, moving, np.hstack(known.places.elongations)),
+        -_weighted(known.graph, Linear.STIFFNESS, moving, np.hstack(known.places.elongations)),
         -resistance[:, na + nw :],
         -np.vstack([kinetic.T @ momentum[:, na:], np.zeros((nw, kinetic_road.shape[1]))]),
         (known.ports @ np.hstack([R, N])).T,
@@ -203,20 +205,20 @@ def _mechanics(
         rates=known.moving,
         lengths=known.lengths,
         elements=known.elements,
-        limit=np.array([sum(value_of(known.graph.branches[i].element) for i in group) for group in known.nonlinear]),
+        limit=np.array([sum(known.graph.branches[i].element.coefficient for i in group) for group in known.nonlinear]),
     )
 
 
 def _shares(graph: Graph, group: dict[int, int]) -> dict[int, float]:
     """What each branch of a group has of its force: frictions side by side share it by their sizes."""
-    sizes = {i: value_of(graph.branches[i].element) for i in group}
+    sizes = {i: graph.branches[i].element.coefficient for i in group}
     whole = sum(sizes.values())
     return {i: turned * (sizes[i] / whole if len(group) > 1 else 1.0) for i, turned in group.items()}
 
 
-def _weighted(graph: Graph, kind: type[Element], left: Matrix, right: Matrix) -> Matrix:
-    """Sum over the elements of one kind of left row x value x right row."""
-    values = np.array([value_of(b.element) if isinstance(b.element, kind) else 0.0 for b in graph.branches])
+def _weighted(graph: Graph, law: Linear, left: Matrix, right: Matrix) -> Matrix:
+    """Sum over the elements of one law of left row x coefficient x right row."""
+    values = np.array([b.element.coefficient if b.element.linear is law else 0.0 for b in graph.branches])
     return np.ascontiguousarray(left.T @ (values[:, None] * right))
 
 
@@ -254,15 +256,15 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
         on_u[acceleration] += output.acceleration @ system.motions[2]
     for i in np.flatnonzero(output.forces):
         element, share = system.graph.branches[i].element, output.forces[i]
-        value = share * value_of(element)
+        value = share * element.coefficient
         E_a, E_w, E_z = (rows[i] for rows in system.rates)
-        match element:
-            case Spring():
+        match element.linear:
+            case Linear.STIFFNESS:
                 on_x[na:] += value * system.elongations[0][i]
                 on_u[z] += value * system.elongations[1][i]
-            case Damper():
+            case Linear.DAMPING:
                 add_velocity((value * E_a, value * E_w, value * E_z))
-            case Inerter():
+            case Linear.MASS:
                 on_eta[:na] += value * E_a
                 on_u[acceleration] += value * E_z
             case _:

@@ -14,13 +14,12 @@ from fractions import Fraction
 from math import gcd as common
 from typing import Any
 
-from inerter.networks.elements import Damper, Free, Inerter, Spring
+from inerter.networks.elements import Element, Free
 from inerter.systems.graph import Graph
 from inerter.systems.outputs import Output, outputs
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
 from inerter.vehicle.mechanism import Mechanism
 
-_ORDER = {Spring: 0, Damper: 1, Inerter: 2}  # power of s in the dynamic stiffness
 Row = dict[int, int]
 Load = tuple[int | None, Row, str]  # the number of a road, or the force on each node, and the name of the input
 
@@ -79,12 +78,12 @@ class _Nodal:
         levers = [float(x) for b in graph.branches for row in (b.nodes, b.roads) for x in row if x]
         levers += [lever for row in forces.values() for lever in row.values()]
         self.lever_bits = max([_bits(lever) for lever in levers], default=0)
-        numbers = [values[str(v.name)] if isinstance(v := b.element.value, Free) else v for b in graph.branches]
+        numbers = [_coefficient(b.element, values) for b in graph.branches]
         masses = [coordinate.inertia for coordinate in mechanism.coordinates]
-        self.value_bits = max([_bits(value) for value in (*numbers, *masses)], default=0)
+        self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits + 2 * self.lever_bits) for mass in masses]
         self.branches = [
-            (_times(number, self.value_bits), _ORDER[type(b.element)], self.whole(b.nodes), self.whole(b.roads))
+            (_times(number, self.value_bits), b.element.linear.order, self.whole(b.nodes), self.whole(b.roads))
             for b, number in zip(graph.branches, numbers, strict=True)
         ]
         self.forces = {
@@ -188,10 +187,15 @@ def solved(P: list[list[int]], F: list[list[int]]) -> tuple[int, list[list[int]]
     return determinant, X
 
 
-def _bits(value: float) -> int:
+def _coefficient(element: Element, values: Mapping[str, float]) -> Fraction:
+    value = element.value
+    return Fraction(values[str(value.name)] if isinstance(value, Free) else value) * Fraction(element.gain)
+
+
+def _bits(value: float | Fraction) -> int:
     """How many times `value` must be doubled to be whole."""
     return value.as_integer_ratio()[1].bit_length() - 1
 
 
-def _times(value: float, bits: int) -> int:
+def _times(value: float | Fraction, bits: int) -> int:
     return int(Fraction(value) * (1 << bits))

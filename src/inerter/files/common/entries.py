@@ -9,8 +9,10 @@ from pydantic import PlainValidator
 
 from inerter.errors import UnitError
 from inerter.files.common.suggest import nearest
+from inerter.files.common.told_kind import ToldKind, names_kind, told_kind
 from inerter.networks.elements import NAME
-from inerter.units import format_quantity, parse_element, parse_quantity, shown
+from inerter.networks.elements.registry import kinds_by_unit, parse_element
+from inerter.units import format_quantity, parse_quantity, shown
 
 MOST_POINTS = 10_000
 _LONGEST_EXPRESSION = 500
@@ -68,8 +70,10 @@ def yes_or_no(value: Any) -> bool:
     return value
 
 
-def fixed_amount(text: Any) -> Amount:
-    """The value of an element where there is nothing to optimise."""
+def fixed_amount(text: Any) -> Amount | ToldKind:
+    """An element where there is nothing to optimise."""
+    if names_kind(text):
+        return told_kind(text, free=False)
     if isinstance(text, dict):
         raise ValueError(
             'Got a range; a simulation needs one value. Write one, such as "3 kN s/m", perhaps the best that '
@@ -81,7 +85,7 @@ def fixed_amount(text: Any) -> Amount:
 def amount(text: Any) -> Amount:
     """The value of an element."""
     unit, value = parse_element(text)
-    if value < 0.0 or (value == 0.0 and unit not in ("N", "m")):  # no friction, no play: an element that is not there
+    if value < 0.0 or (value == 0.0 and not kinds_by_unit()[unit].may_vanish):
         raise UnitError(
             f"Got {shown(text)}: not positive; expected more than 0 {unit}. "
             f"To leave the element out, drop its branch from the layouts."

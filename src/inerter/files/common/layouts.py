@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,14 +11,15 @@ from inerter.files.common.entries import Amount
 from inerter.files.common.problems import at
 from inerter.files.common.shape import UNITS, Axles, Range
 from inerter.files.common.suggest import nearest, some
-from inerter.networks.elements import ELEMENT_TYPES, Element, Free, Value
+from inerter.files.common.told_kind import ToldKind
+from inerter.networks.elements import Element, Free
+from inerter.networks.elements.registry import kinds_by_unit
 from inerter.networks.parser import names, network
 from inerter.units import shown
 from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
 
 MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear"), "rig": ("device",)}
 _CARS: dict[str, type[QuarterCar | HalfCar | Rig]] = {"quarter-car": QuarterCar, "half-car": HalfCar, "rig": Rig}
-_KINDS: dict[str, Callable[[Value, str], Element]] = {kind.unit: kind for kind in ELEMENT_TYPES}
 
 
 @dataclass(frozen=True)
@@ -45,19 +46,13 @@ def struts_of(model: str, entry: Axles | str) -> dict[str, str]:
     return entry.model_dump() if isinstance(entry, Axles) else dict.fromkeys(MOUNTS[model], entry)
 
 
-def element_of(name: str, entry: Range | Amount) -> Element:
-    """The element that the unit of its value tells."""
+def element_of(name: str, entry: Range | Amount | ToldKind) -> Element:
+    """The element that its entry, or else the unit of its value, tells."""
+    if isinstance(entry, ToldKind):
+        return entry.element(name)
     if isinstance(entry, Range):
-        return _KINDS[entry.lower.unit](Free(entry.lower.value, entry.upper.value, name), name)
-    return _KINDS[entry.unit](entry.value, name)
-
-
-def element_entry(element: Element) -> str | dict[str, str]:
-    """How a file says an element's value or range."""
-    value = element.value
-    if isinstance(value, Free):
-        return {"from": f"{value.lower!r} {element.unit}", "to": f"{value.upper!r} {element.unit}"}
-    return f"{value!r} {element.unit}"
+        return kinds_by_unit()[entry.lower.unit].of(Free(entry.lower.value, entry.upper.value, name), name)
+    return kinds_by_unit()[entry.unit].of(entry.value, name)
 
 
 def in_si(key: str, value: float) -> str:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, PlainValidator, Tag, model_validator
 
 from inerter.files.common.entries import Amount, amount, check_order, element_name, expression, layout_name, positive
+from inerter.files.common.told_kind import ToldKind, names_kind, told_kind
 
 MODELS = ("quarter-car", "half-car")
 RIG = "rig"
@@ -79,8 +80,10 @@ def model_tag(vehicle: Any) -> str:
 
 
 ElementEntry = Annotated[
-    Annotated[Range, Tag("<range>")] | Annotated[Amount, PlainValidator(amount), Tag("<fixed>")],
-    Discriminator(lambda value: "<range>" if isinstance(value, dict) else "<fixed>"),
+    Annotated[Range, Tag("<range>")]
+    | Annotated[Amount, PlainValidator(amount), Tag("<fixed>")]
+    | Annotated[ToldKind, PlainValidator(told_kind), Tag("<kind>")],
+    Discriminator(lambda value: "<kind>" if names_kind(value) else "<range>" if isinstance(value, dict) else "<fixed>"),
 ]
 
 

@@ -19,6 +19,7 @@ from inerter.files.common.entries import (
 )
 from inerter.files.common.shape import Axles, ElementName, Layouts, Shape
 from inerter.files.common.signals import SIGNAL_SHAPES, SignalEntry
+from inerter.files.common.told_kind import ToldKind
 
 
 class RigSettings(Shape):
@@ -46,7 +47,7 @@ class RigFile(Shape):
     """The whole file."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
-    elements: dict[ElementName, Annotated[Amount, PlainValidator(fixed_amount)]] = Field(
+    elements: dict[ElementName, Annotated[Amount | ToldKind, PlainValidator(fixed_amount)]] = Field(
         min_length=1, examples=['a section [elements] with lines such as b = "113 kg"']
     )
     layouts: Layouts = Field(examples=['a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"'])

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from inerter.files.common.layouts import StrutLayout, element_entry, in_si
+from inerter.files.common.layouts import StrutLayout, in_si
 from inerter.files.common.signals import SignalRequest
+from inerter.files.common.told_kind import entry_of
 from inerter.files.common.toml import as_toml
 from inerter.networks.elements import Element
 from inerter.signals.signal import Signal
@@ -82,7 +83,7 @@ class SimulationRequest:
             "title": self.title,
             "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
             **({"road": road} if road else {}),
-            "elements": {name: element_entry(element) for name, element in self.elements.items()},
+            "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "signal": self.signal.resolved(),
             "simulation": {

@@ -13,19 +13,16 @@ from inerter.errors import InerterError, StudyError
 from inerter.files.common.folder import FIGURES, Intent, claimed
 from inerter.files.common.problems import at
 from inerter.files.simulation.request import SimulationRequest, write_simulation
-from inerter.networks.elements import Friction, Gap, Inerter
+from inerter.networks.elements import Element
+from inerter.networks.elements.roles import Linear
 from inerter.simulation.trajectory import Trajectory
-from inerter.systems.graph import full_graph
+from inerter.systems.graph import full_graph, switching
 from inerter.vehicle.mechanism import Mechanism
 from inerter.work.origin import versions
 from inerter.writing import write_netcdf, write_text
 
 TRAJECTORY, DATASET, EVENTS, RESOLVED = "trajectory.csv", "trajectory.nc", "events.csv", "simulation.toml"
 NAMES = (TRAJECTORY, DATASET, EVENTS, RESOLVED, f"{FIGURES}/")
-STATES = {
-    "friction": ("stick", "slip up", "slip down"),
-    "gap": ("open", "upper contact", "lower contact"),
-}
 
 
 @dataclass(frozen=True)
@@ -90,29 +87,30 @@ class SimulationResult:
         found = []
         length = float(self.run.time[-1] - self.run.time[0]) or 1.0
         for strut, label, element in self._placed():
-            if label in self.run.states:
-                kind = "friction" if isinstance(element, Friction) else "gap"
+            if label in self.run.states and element.switch is not None:
+                switch = element.switch
                 shares = {
                     state: sum(end - start for start, end in self.run.intervals(label, state)) / length
-                    for state in STATES[kind]
+                    for state in (switch.middle, switch.upper, switch.lower)
                 }
                 events = sum(event.element == label for event in self.run.events)
-                found.append(Nonlinear(label, kind, strut, events, shares))
+                found.append(Nonlinear(label, element.key, strut, events, shares))
         return tuple(found)
 
     @property
     def unrecorded(self) -> tuple[str, ...]:
         """Frictions and gaps whose events the integrator did not keep."""
         known = self.run.states
-        return tuple(n for _, n, element in self._placed() if isinstance(element, Friction | Gap) and n not in known)
+        return tuple(n for _, n, element in self._placed() if element.switch is not None and n not in known)
 
     def inerters(self, strut: str) -> tuple[str, ...]:
         """The inerters of a strut, by the names that outputs have."""
-        return tuple(n for mount, n, element in self._placed() if mount == strut and isinstance(element, Inerter))
+        return tuple(n for mount, n, element in self._placed() if mount == strut and element.linear is Linear.MASS)
 
-    def _placed(self) -> Iterator[tuple[str, str, object]]:
-        branches = iter(full_graph(self.mechanism).branches)
-        for mount in self.mechanism.mounts():
+    def _placed(self) -> Iterator[tuple[str, str, Element]]:
+        mechanism = switching(self.mechanism)
+        branches = iter(full_graph(mechanism).branches)
+        for mount in mechanism.mounts():
             for _ in mount.network.elements():
                 branch = next(branches)
                 yield mount.name, branch.label, branch.element

@@ -19,6 +19,7 @@ from inerter.files.common.shape import (
     model_tag,
 )
 from inerter.files.common.signals import SIGNAL_SHAPES, SignalEntry
+from inerter.files.common.told_kind import ToldKind
 
 INTEGRATORS = ("event-driven", "time-stepping")
 INITIAL = ("rest", "preload", "periodic")
@@ -79,7 +80,7 @@ class SimulationFile(Shape):
     road: PassedRoad | None = Field(
         default=None, examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"']
     )
-    elements: dict[ElementName, Annotated[Amount, PlainValidator(fixed_amount)]] = Field(
+    elements: dict[ElementName, Annotated[Amount | ToldKind, PlainValidator(fixed_amount)]] = Field(
         min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
     )
     layouts: Layouts

@@ -15,7 +15,7 @@ from inerter.files.study.cases import FAILURES, Case, Outcome
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.registry import INDEX, method_of
 from inerter.files.study.study import Study, elements_used
-from inerter.networks.elements import Free, Friction, Gap
+from inerter.networks.elements import Free
 from inerter.optimisation.budget import Budget, budget
 from inerter.optimisation.threads import one_blas_thread
 
@@ -73,7 +73,7 @@ def budget_cases(study: Study) -> list[BudgetCase]:
 def run_budget(study: Study, case: BudgetCase, outcomes: Mapping[Case, Outcome], threads: int = 1) -> BudgetOutcome:
     """The budget of the design that was found. A failure is an outcome with a status and a sentence."""
     element, method = study.elements[case.parameter], budget_method(study)
-    at_most = isinstance(element, Friction | Gap)
+    at_most = element.may_vanish
 
     def told(found: Budget | None, status: str, message: str) -> BudgetOutcome:
         known = found is not None and bool(np.isfinite(found.value))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from inerter.files.common.problems import at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.shape import AVERAGING, FORCED
 from inerter.files.study.study import Study, elements_used
-from inerter.networks.elements import Friction, Gap
+from inerter.networks.elements import Element
+from inerter.networks.elements.roles import Statistical
+from inerter.systems.graph import switching_parts
 from inerter.units import shown
 
 _BLIND = "norm"  # the method that sees neither friction nor gaps
@@ -45,7 +47,7 @@ def _road_problems(study: Study) -> Iterator[str]:
 
 def _force_problems(study: Study) -> Iterator[str]:
     concerned = [method for method in study.methods if method in FORCED] if "J5" in study.indices else []
-    nonlinear = _layouts_with(study, (Friction, Gap))
+    nonlinear = _layouts_with(study, lambda part: part.switch is not None)
     if study.force is None and concerned and nonlinear:
         yield at(
             ("study", "force"),
@@ -61,7 +63,7 @@ def _force_problems(study: Study) -> Iterator[str]:
 
 
 def _gap_problems(study: Study) -> Iterator[str]:
-    gaps = _layouts_with(study, (Gap,))
+    gaps = _layouts_with(study, lambda part: part.statistical is Statistical.REFUSED)
     key = "optimise" if study.optimise == _NO_GAPS else "evaluate"
     if _NO_GAPS in study.methods and gaps:
         yield at(
@@ -85,20 +87,18 @@ def _budget_problems(study: Study) -> Iterator[str]:
             yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
         elif not set(used.get(name, ())) - {study.baseline}:
             yield at(place, f"no layout but the baseline has {name}; expected an element of a layout that is compared.")
-        elif isinstance(study.elements[name], Friction | Gap) and budget_method(study) == _BLIND:
-            kind = type(study.elements[name]).__name__.lower()
+        elif study.elements[name].switch is not None and budget_method(study) == _BLIND:
             yield at(
                 place,
-                f"{name} is a {kind}, which linear analysis does not see; expected a method that does in evaluate, "
-                f"such as {shown(AVERAGING[0])}.",
+                f"{name} is a {study.elements[name].key}, which linear analysis does not see; expected a method "
+                f"that does in evaluate, such as {shown(AVERAGING[0])}.",
             )
 
 
-def _layouts_with(study: Study, kinds: tuple[type, ...]) -> list[str]:
-    used = elements_used(study)
-    concerned = {
-        layout for n, layouts in used.items() if isinstance(study.elements.get(n), kinds) for layout in layouts
-    }
+def _layouts_with(study: Study, wanted: Callable[[Element], bool]) -> list[str]:
+    """The layouts with an element of which simulation takes such a part."""
+    having = {n for n, element in study.elements.items() if any(map(wanted, switching_parts(element)))}
+    concerned = {layout for n, layouts in elements_used(study).items() if n in having for layout in layouts}
     return [layout for layout in study.layouts if layout in concerned]
 
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
-from inerter.files.common.layouts import StrutLayout, element_entry, in_si
+from inerter.files.common.layouts import StrutLayout, in_si
 from inerter.files.common.suggest import nearest
+from inerter.files.common.told_kind import entry_of
 from inerter.files.common.toml import as_toml
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
@@ -81,7 +82,7 @@ class Study:
             "title": self.title,
             "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
             "road": {key: in_si(key, getattr(self.road, key)) for key in ("speed", "roughness")},
-            "elements": {name: element_entry(element) for name, element in self.elements.items()},
+            "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "study": self._settings(),
         }

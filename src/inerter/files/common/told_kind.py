@@ -1,0 +1,93 @@
+"""An element whose entry names its kind: where two kinds share a unit, or one is made of more than a value."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from inerter.errors import UnitError
+from inerter.files.common.suggest import nearest
+from inerter.networks.elements import Element, Free
+from inerter.networks.elements.registry import kinds, kinds_by_unit
+from inerter.networks.elements.roles import Field
+from inerter.units import parse_quantity, shown
+
+KIND = "kind"
+
+
+class ToldKind(NamedTuple):
+    """A kind of element by its key, its value or the two bounds of it, and its other numbers, all in SI units."""
+
+    kind: str
+    value: float | tuple[float, float]
+    more: dict[str, float]
+
+    def element(self, name: str) -> Element:
+        """The element; a free value has its name."""
+        value = Free(*self.value, name) if isinstance(self.value, tuple) else self.value
+        return kinds()[self.kind].of(value, name, **self.more)
+
+
+def names_kind(entry: Any) -> bool:
+    """Whether an entry is one that names its kind."""
+    return isinstance(entry, dict) and KIND in entry
+
+
+def told_kind(entry: dict[str, Any], *, free: bool = True) -> ToldKind:
+    """What such an entry says, whose value may be a range if it may be `free`.
+
+    Raises ValueError for what is wrong with it.
+    """
+    known, told = kinds(), entry[KIND]
+    if not isinstance(told, str) or told not in known:
+        listed = ", ".join(map(shown, known))
+        raise ValueError(f"Got kind = {shown(told)}: not a kind of element; expected one of {listed}.")
+    kind = known[told]
+    fields = {field.name: field for field in kind.fields()}
+    for key in entry:
+        if key not in (KIND, *fields):
+            raise ValueError(
+                f"Got {shown(key)}: not a key of a {told}; expected {', '.join(fields)}.{nearest(key, fields)}"
+            )
+    for name, field in fields.items():
+        if name not in entry:
+            raise ValueError(f'Got no {name} of the {told}; expected {name} = "1 {field.unit}". {field.sentence}')
+    value, *more = fields.values()
+    amounts = {field.name: _amount(field, entry[field.name], False) for field in more}
+    given = entry[value.name]
+    if not isinstance(given, dict):
+        return ToldKind(told, _amount(value, given, kind.may_vanish), amounts)
+    if not free or set(given) != {"from", "to"}:
+        expected = f'a range {{ from = "1 {value.unit}", to = "2 {value.unit}" }}' if free else "one value"
+        raise ValueError(f"Got a table for {value.name}; expected {expected}.")
+    lower, upper = (_amount(value, given[end], kind.may_vanish) for end in ("from", "to"))
+    if not lower < upper:
+        raise ValueError(f"Got equal or reversed ends of {value.name}; expected from less than to. Swap them.")
+    return ToldKind(told, (lower, upper), amounts)
+
+
+def _amount(field: Field, text: Any, may_vanish: bool) -> float:
+    try:
+        amount = parse_quantity(text, field.unit)
+    except UnitError as error:
+        raise ValueError(f"{field.name}: {error}") from None
+    if amount < 0.0 or (amount == 0.0 and not may_vanish):
+        raise ValueError(f"Got {field.name} = {shown(text)}: not positive; expected more than 0 {field.unit}.")
+    return amount
+
+
+def entry_of(element: Element) -> str | dict[str, Any]:
+    """How a file says an element: by its value or range alone where its unit tells its kind."""
+
+    def said(value: float, unit: str) -> str:
+        return f"{value!r} {unit}"
+
+    value, unit = element.value, element.unit
+    alone: str | dict[str, str]
+    if isinstance(value, Free):
+        alone = {"from": said(value.lower, unit), "to": said(value.upper, unit)}
+    else:
+        alone = said(value, unit)
+    if kinds_by_unit().get(unit) is type(element):
+        return alone
+    more = {field.name: said(getattr(element, field.name), field.unit) for field in element.more}
+    return {KIND: element.key, element.quantity: alone, **more}

@@ -1,0 +1,36 @@
+"""Dry friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from inerter.networks.elements.drawing import Line
+from inerter.networks.elements.element import Element
+from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
+from inerter.networks.elements.values import Value
+
+
+@dataclass(frozen=True)
+class Friction(Element):
+    """Dry (Coulomb) friction: a force of size f against the motion, any force in [-f, f] at rest."""
+
+    force: Value  # [N]
+    name: str | None = None
+    key: ClassVar[str] = "friction"
+    symbol: ClassVar[str] = "f"
+    quantity: ClassVar[str] = "force"
+    unit: ClassVar[str] = "N"
+    sentence: ClassVar[str] = "Size of the force while it slips, and the most that it holds."
+    example: ClassVar[str] = "10 N"
+    linear: ClassVar[Linear] = Linear.OPEN
+    switch: ClassVar[Switch] = Switch(Guard.FORCE, "slip down", "stick", "slip up")
+    statistical: ClassVar[Statistical] = Statistical.DAMPER
+    may_vanish: ClassVar[bool] = True
+    tried: ClassVar[tuple[float, float]] = (0.1, 1e4)
+    drawing: ClassVar[tuple[Line, ...]] = (  # a block that slides along a hatched wall
+        ((0.0, 20.0), (0.0, 7.0)),
+        ((-4.0, 7.0), (-4.0, -7.0), (4.0, -7.0), (4.0, 7.0), (-4.0, 7.0)),
+        ((4.0, 13.0), (4.0, -13.0), (0.0, -13.0), (0.0, -20.0)),
+        *(((4.0, y), (8.0, y + 4.0)) for y in (-13.0, -9.0, -5.0, -1.0, 3.0, 7.0)),
+    )

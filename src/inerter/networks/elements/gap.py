@@ -1,0 +1,35 @@
+"""Backlash."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from inerter.networks.elements.drawing import Line
+from inerter.networks.elements.element import Element
+from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
+from inerter.networks.elements.values import Value
+
+
+@dataclass(frozen=True)
+class Gap(Element):
+    """Backlash: no force while |x| < half_width, rigid contact at -half_width and at +half_width."""
+
+    half_width: Value  # [m]
+    name: str | None = None
+    key: ClassVar[str] = "gap"
+    symbol: ClassVar[str] = "gap"
+    quantity: ClassVar[str] = "half_width"
+    unit: ClassVar[str] = "m"
+    sentence: ClassVar[str] = "How far it moves freely to either side of its middle."
+    example: ClassVar[str] = "0.1 mm"
+    linear: ClassVar[Linear] = Linear.CLOSED
+    switch: ClassVar[Switch] = Switch(Guard.ELONGATION, "lower contact", "open", "upper contact")
+    statistical: ClassVar[Statistical] = Statistical.REFUSED
+    may_vanish: ClassVar[bool] = True
+    tried: ClassVar[tuple[float, float]] = (1e-6, 1e-2)
+    drawing: ClassVar[tuple[Line, ...]] = (  # a pin between two jaws
+        ((0.0, 20.0), (0.0, 9.0)),
+        ((4.0, 9.0), (-8.0, 9.0), (-8.0, -7.0), (4.0, -7.0)),
+        ((-4.0, 1.0), (8.0, 1.0), (8.0, -12.0), (0.0, -12.0), (0.0, -20.0)),
+    )

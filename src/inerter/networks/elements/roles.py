@@ -1,0 +1,69 @@
+"""What an element may be to those who work with it, as a closed vocabulary: they ask these, never for a kind.
+
+An element that is none of these by itself says of which network of others it is made instead (`Element.as_linear`,
+`Element.as_piecewise`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Linear(Enum):
+    """What an element is to linear analysis. Stiffness, damping and mass are numbered by the power of s they have."""
+
+    STIFFNESS = 0
+    DAMPING = 1
+    MASS = 2
+    OPEN = "open"  # transmits no force, and is left out
+    CLOSED = "closed"  # joins its ends rigidly
+
+    @property
+    def order(self) -> int:
+        """Power of s in the dynamic stiffness of what has one."""
+        assert isinstance(self.value, int)
+        return self.value
+
+
+class Guard(Enum):
+    """What a switching element is watched by while it holds, or is loose."""
+
+    FORCE = "force"  # holds its length in state 0 within plus and minus its value; moves against that force else
+    ELONGATION = "elongation"  # loose in state 0 within plus and minus its value; holds at these ends else
+
+
+class Statistical(Enum):
+    """What statistical linearisation makes of an element."""
+
+    ITSELF = "itself"
+    DAMPER = "damper"  # one that takes as much power from a Gaussian velocity, by its value as a force
+    REFUSED = "refused"  # unless its value is zero
+
+
+@dataclass(frozen=True)
+class Switch:
+    """The modes of an element of the piecewise system: what guards them, and their names in states -1, 0 and 1."""
+
+    guard: Guard
+    lower: str
+    middle: str
+    upper: str
+
+    def always_holds(self, value: float) -> bool:
+        """Whether an element of this value holds its length whenever nothing forces it: with a gap, if it is closed."""
+        return value > 0.0 if self.guard is Guard.FORCE else value == 0.0
+
+    @property
+    def states(self) -> dict[int, str]:
+        """The names of the states by their numbers."""
+        return {-1: self.lower, 0: self.middle, 1: self.upper}
+
+
+@dataclass(frozen=True)
+class Field:
+    """A number that an element is made of: its keyword in Python and key in files, SI unit, and what it is."""
+
+    name: str
+    unit: str
+    sentence: str

@@ -1,0 +1,27 @@
+"""The spring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from inerter.networks.elements.drawing import Line, zigzag
+from inerter.networks.elements.element import Element
+from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.values import Value
+
+
+@dataclass(frozen=True)
+class Spring(Element):
+    """Force proportional to elongation: F = k x."""
+
+    stiffness: Value  # [N/m]
+    name: str | None = None
+    key: ClassVar[str] = "spring"
+    symbol: ClassVar[str] = "k"
+    quantity: ClassVar[str] = "stiffness"
+    unit: ClassVar[str] = "N/m"
+    sentence: ClassVar[str] = "Force over elongation."
+    example: ClassVar[str] = "120 kN/m"
+    linear: ClassVar[Linear] = Linear.STIFFNESS
+    drawing: ClassVar[tuple[Line, ...]] = (zigzag(),)

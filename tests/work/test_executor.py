@@ -11,31 +11,16 @@ from shutil import copytree
 from typing import Any
 
 import pytest
+from study_text import study_text
 
 import inerter as it
 from inerter.work.pool import crewed
 
-STUDY = """
-[vehicle]
-model = "quarter-car"
-sprung_mass = "250 kg"
-unsprung_mass = "35 kg"
-tyre_stiffness = "150 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "20 kN/m"
-c = { from = "100 N s/m", to = "10 kN s/m" }
-b = "30 kg"
-[layouts]
-S1 = "k | c"
-S2 = "k | c | b"
-[study]
-indices = ["J1", "J3"]
-optimise = "norm"
-budgets = ["b"]
-"""
+STUDY = study_text(
+    'indices = ["J1", "J3"]\noptimise = "norm"\nbudgets = ["b"]',
+    elements='k = "20 kN/m"\nc = { from = "100 N s/m", to = "10 kN s/m" }\nb = "30 kg"',
+    layouts='S1 = "k | c"\nS2 = "k | c | b"',
+)
 
 
 class Elsewhere(Executor):

@@ -464,7 +464,7 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
         unsure += rounding / total
     if m > 1 or drifts.size > 0:
         unsure += unsure_of_road(matrices, lyapunov, known, result, Q)
-    return terms <= min(_SMALL, limit) and unsure <= _ACCURATE
+    return limit > 0.0 and terms <= min(_SMALL, limit) and unsure <= _ACCURATE
 
 
 @part()
@@ -526,10 +526,10 @@ def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, cor
     """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each norm is right.
 
     The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. Norms that
-    may be off are nan, or what was found with its gradient. `twofold` as
-    in `close_twofold`. `arrivals` = (gaps, (poles, residues, direct), (drifts, walks)): times between an arrival of the
-    road and the next, the Pade approximant (no poles: exact), and the states that only the road moves, if there are
-    any, with their covariance. `corner` > 0 puts a high-pass filter on every output.
+    may be off are nan, or what was found, with its gradient. `twofold` as in `close_twofold`. `arrivals` = (gaps,
+    (poles, residues, direct), (drifts, walks)): times between an arrival of the road and the next, the Pade approximant
+    (no poles: exact), and the states that only the road moves, if there are any, with their covariance. `corner` > 0
+    puts a high-pass filter on every output.
     """
     space = norms_space(descriptor, corner)
     count = points.shape[0]

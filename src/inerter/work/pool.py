@@ -25,7 +25,7 @@ from inerter.writing import undisturbed
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 _SHORT = 3.0  # seconds: to start processes takes about as long
-_PATIENCE = 0.4  # seconds that a process has to end
+_ASKED, _KILLED = 0.4, 10.0  # seconds that a process has to end, and to be gone where it must
 
 
 class Crew:
@@ -114,10 +114,10 @@ class Crew:
 
 def _end(processes: Iterable[BaseProcess]) -> None:
     """End processes, those that do not heed it by force, and wait for none of them for long."""
-    for end in (BaseProcess.terminate, BaseProcess.kill):
+    for end, patience in ((BaseProcess.terminate, _ASKED), (BaseProcess.kill, _KILLED)):
         for process in processes:
             end(process)
-        deadline = time.monotonic() + _PATIENCE
+        deadline = time.monotonic() + patience
         for process in processes:
             process.join(max(deadline - time.monotonic(), 0.0))
 

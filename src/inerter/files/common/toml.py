@@ -7,14 +7,30 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
 
 from inerter.errors import StudyError
-from inerter.files.common.problems import refusal
+from inerter.files.common.problems import Shapes, explain, refusal
+from inerter.files.common.shape import Shape
 
 _LARGEST = 1_000_000  # bytes
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+File = TypeVar("File", bound=Shape)
+
+
+def read_shape(path: Path, what: str, file: type[File], shapes: Shapes) -> File:
+    """A TOML file as the shape of its kind; `what` it should be, and its `shapes` by place, are for messages.
+
+    Raises `StudyError` as `read_tables` does, or with a line for every entry that does not fit.
+    """
+    tables = read_tables(path, what)
+    try:
+        return file.model_validate(tables)
+    except ValidationError as error:
+        raise refusal(path, explain(error, shapes)) from None
 
 
 def read_tables(path: Path, what: str) -> dict[str, Any]:

@@ -7,13 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from inerter.errors import InerterError, StudyError
 from inerter.files.common.layouts import element_of, network_problems
-from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.problems import at, refusal
 from inerter.files.common.suggest import nearest
-from inerter.files.common.toml import read_tables
+from inerter.files.common.toml import read_shape
 from inerter.files.identification.shape import CHOOSE, SHAPES, IdentificationFile
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
@@ -88,11 +86,7 @@ def load_identification(path: str | Path) -> IdentificationRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    tables = read_tables(path, "a configuration for inerter identify")
-    try:
-        shape = IdentificationFile.model_validate(tables)
-    except ValidationError as error:
-        raise refusal(path, explain(error, SHAPES)) from None
+    shape = read_shape(path, "a configuration for inerter identify", IdentificationFile, SHAPES)
     record, settings = shape.record.model_dump(), shape.fit.model_dump()
     roles = ("displacement", "force", "time", "velocity", "acceleration")
     channels = {role: value for role in roles if (value := record.pop(role)) is not None}

@@ -6,15 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from inerter.errors import InerterError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
-from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.problems import at, refusal
 from inerter.files.common.shape import RIG
 from inerter.files.common.signal_kinds import KINDS, MOVED
 from inerter.files.common.signals import SignalRequest, signal_of
-from inerter.files.common.toml import read_tables
+from inerter.files.common.toml import read_shape
 from inerter.files.rig.running import RigRequest
 from inerter.files.rig.shape import SHAPES, RigFile, RigSettings
 from inerter.identification.virtual_rig import VirtualRig
@@ -34,11 +32,7 @@ def load_rig(path: str | Path) -> RigRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    tables = read_tables(path, "a rig file")
-    try:
-        shape = RigFile.model_validate(tables)
-    except ValidationError as error:
-        raise refusal(path, explain(error, SHAPES)) from None
+    shape = read_shape(path, "a rig file", RigFile, SHAPES)
     elements = {name: element_of(name, entry) for name, entry in shape.elements.items()}
     layouts = {name: StrutLayout(struts_of(RIG, entry)) for name, entry in shape.layouts.items()}
     chosen = shape.rig.layout or (next(iter(layouts)) if len(layouts) == 1 else "")

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
-from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.problems import at, refusal
 from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED
 from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.toml import read_tables
+from inerter.files.common.toml import read_shape
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.shape import SHAPES, SimulationFile
 from inerter.simulation.inputs import whole_steps
@@ -28,11 +26,7 @@ def load_simulation(path: str | Path) -> SimulationRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    tables = read_tables(path, "a simulation file")
-    try:
-        shape = SimulationFile.model_validate(tables)
-    except ValidationError as error:
-        raise refusal(path, explain(error, SHAPES)) from None
+    shape = read_shape(path, "a simulation file", SimulationFile, SHAPES)
     request = _resolve(path, shape)
     for check in (_names, _needs, _parts):
         problems = list(check(request))

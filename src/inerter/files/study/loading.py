@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from pydantic import ValidationError
 
 from inerter.files.common.entries import Amount
 from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
-from inerter.files.common.problems import at, explain, refusal
+from inerter.files.common.problems import at, refusal
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.toml import read_tables
+from inerter.files.common.toml import read_shape
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.shape import SHAPES, StudyFile, SweepRange
 from inerter.files.study.study import Study, Sweep, elements_used
@@ -28,11 +27,7 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    tables = read_tables(path, "a study file")
-    try:
-        shape = StudyFile.model_validate(tables)
-    except ValidationError as error:
-        raise refusal(path, explain(error, SHAPES)) from None
+    shape = read_shape(path, "a study file", StudyFile, SHAPES)
     study = _resolve(path, shape)
     problems = [
         *layout_problems(study.model, study.elements, study.layouts),

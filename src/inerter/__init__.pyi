@@ -64,9 +64,7 @@ from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.linear import LinearSystem as LinearSystem
-from inerter.vehicle.cars import HalfCar as HalfCar
-from inerter.vehicle.cars import QuarterCar as QuarterCar
-from inerter.vehicle.cars import Rig as Rig
+from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate
 from inerter.vehicle.mechanism import Force as Force
@@ -76,5 +74,7 @@ from inerter.vehicle.mechanism import RoadInput as RoadInput
 from inerter.vehicle.mechanism import Strut as Strut
 from inerter.vehicle.mechanism import Tyre as Tyre
 from inerter.vehicle.mechanism import Weighted as Weighted
+from inerter.vehicle.quarter_car import QuarterCar as QuarterCar
+from inerter.vehicle.rig import Rig as Rig
 
 __version__: str

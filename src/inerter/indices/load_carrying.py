@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from inerter.checks import check_positive
 from inerter.errors import IndicatorError
+from inerter.fields import quantity
 from inerter.indices.question import Combination, Question
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
@@ -20,7 +21,12 @@ class LoadCarrying:
     Raises `IndicatorError` unless the amplitude is positive.
     """
 
-    amplitude: float | None = None
+    amplitude: float | None = field(
+        default=None,
+        metadata=quantity(
+            "N", "Amplitude of the sinusoidal force of J5.", "1 kN", key="force", words="amplitude of the force"
+        ),
+    )
     symbol = "J5"
     title = "dynamic load carrying"
     unit = "m/N"

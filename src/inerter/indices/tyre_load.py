@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from inerter.checks import check_positive
 from inerter.errors import IndicatorError
+from inerter.fields import quantity
 from inerter.indices.question import Question, on_road
 from inerter.signals.road import Road
 from inerter.vehicle.mechanism import Mechanism
@@ -20,7 +21,10 @@ class TyreLoad:
     """
 
     road: Road
-    high_pass: float | None = None
+    high_pass: float | None = field(
+        default=None,
+        metadata=quantity("rad/s", "Corner of a filter on J3; none if left out.", "1 Hz", words="high-pass filter"),
+    )
     symbol = "J3"
     title = "dynamic tyre load"
     unit = "N"

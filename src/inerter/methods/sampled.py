@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from inerter.errors import StatusKind
 from inerter.indices.question import Index
 from inerter.methods.method import Estimate
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Vehicle, Index], Estimate]

@@ -18,8 +18,8 @@ from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.transform import map_elements
 from inerter.units import format_quantity
-from inerter.vehicle.cars import Vehicle
 from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
 
 _POINTS = 16  # between which crossings are looked for
 _REACH = 1e3  # default bounds lie so many times below and above the present value

@@ -10,7 +10,6 @@ from __future__ import annotations
 import sys
 
 import inerter as it
-from inerter.files.study.registry import INDEX
 from inerter.papers.wang_su_2008.source import linear_rows, study
 
 CLAIM = {"J1": 1e-6, "J3": 1e-6, "J5": 1e-4}
@@ -22,7 +21,7 @@ def main(seeds: int) -> None:
         if row.table == 3:
             continue
         source = study("table1" if row.table == 1 else "table2")
-        vehicle, index = source.design(row.layout), INDEX[row.index](source)
+        vehicle, index = source.design(row.layout), source.index(row.index)
         values = [it.optimise(vehicle, index, it.Norm("paper2008"), seed=seed).value for seed in range(seeds)]
         spread = max(values) / min(values) - 1.0
         worst[row.index] = max(worst[row.index], spread)

@@ -3,6 +3,10 @@
 from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
+from inerter.fields import Field as Field
+from inerter.fields import mount as mount
+from inerter.fields import quantity as quantity
+from inerter.files.common.signal_kinds import SIGNALS as SIGNALS
 from inerter.files.study.loading import load_study as load_study
 from inerter.files.study.running import run_study as run_study
 from inerter.identification.choice import Choice as Choice
@@ -14,9 +18,12 @@ from inerter.identification.response import model_response as model_response
 from inerter.identification.staged import Staged as Staged
 from inerter.identification.staged import staged as staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
-from inerter.indices.index import LoadCarrying as LoadCarrying
-from inerter.indices.index import RideComfort as RideComfort
-from inerter.indices.index import TyreLoad as TyreLoad
+from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
+from inerter.indices.question import Combination as Combination
+from inerter.indices.question import Question as Question
+from inerter.indices.registry import INDICES as INDICES
+from inerter.indices.ride_comfort import RideComfort as RideComfort
+from inerter.indices.tyre_load import TyreLoad as TyreLoad
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare
@@ -24,17 +31,25 @@ from inerter.methods.excitation import MultisineExcitation as MultisineExcitatio
 from inerter.methods.excitation import NoiseExcitation as NoiseExcitation
 from inerter.methods.expected_value import ExpectedValue as ExpectedValue
 from inerter.methods.method import Estimate as Estimate
+from inerter.methods.method import Sees as Sees
 from inerter.methods.method import evaluate as evaluate
 from inerter.methods.method import evaluate_many as evaluate_many
 from inerter.methods.norm import Norm as Norm
+from inerter.methods.registry import METHODS as METHODS
 from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
 from inerter.networks.catalogue import LAYOUTS as LAYOUTS
 from inerter.networks.elements import Damper as Damper
+from inerter.networks.elements import Element as Element
 from inerter.networks.elements import Friction as Friction
 from inerter.networks.elements import Gap as Gap
 from inerter.networks.elements import Inerter as Inerter
 from inerter.networks.elements import Spring as Spring
 from inerter.networks.elements import free as free
+from inerter.networks.elements.registry import ELEMENTS as ELEMENTS
+from inerter.networks.elements.roles import Guard as Guard
+from inerter.networks.elements.roles import Linear as Linear
+from inerter.networks.elements.roles import Statistical as Statistical
+from inerter.networks.elements.roles import Switch as Switch
 from inerter.networks.parser import network as network
 from inerter.norms.h2 import h2_norm as h2_norm
 from inerter.norms.hinf import hinf_norm as hinf_norm
@@ -42,6 +57,8 @@ from inerter.optimisation.budget import Budget as Budget
 from inerter.optimisation.budget import budget as budget
 from inerter.optimisation.optimise import Optimum as Optimum
 from inerter.optimisation.optimise import optimise as optimise
+from inerter.papers.paper import Paper as Paper
+from inerter.papers.registry import PAPERS as PAPERS
 from inerter.records.readers import read_record as read_record
 from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
@@ -64,9 +81,7 @@ from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.linear import LinearSystem as LinearSystem
-from inerter.vehicle.cars import HalfCar as HalfCar
-from inerter.vehicle.cars import QuarterCar as QuarterCar
-from inerter.vehicle.cars import Rig as Rig
+from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate
 from inerter.vehicle.mechanism import Force as Force
@@ -76,5 +91,9 @@ from inerter.vehicle.mechanism import RoadInput as RoadInput
 from inerter.vehicle.mechanism import Strut as Strut
 from inerter.vehicle.mechanism import Tyre as Tyre
 from inerter.vehicle.mechanism import Weighted as Weighted
+from inerter.vehicle.quarter_car import QuarterCar as QuarterCar
+from inerter.vehicle.registry import VEHICLES as VEHICLES
+from inerter.vehicle.rig import Rig as Rig
+from inerter.vehicle.vehicle import VehicleModel as VehicleModel
 
 __version__: str

@@ -53,6 +53,10 @@ class IdentificationError(InerterError, ValueError):
     """A model and records from which nothing can be identified."""
 
 
+class RowError(InerterError, ValueError):
+    """A row that cannot stand in its table, or a distribution whose rows cannot be loaded."""
+
+
 class StudyError(InerterError, ValueError):
     """A study file, or a result folder, that cannot be used."""
 

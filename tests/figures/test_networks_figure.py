@@ -15,7 +15,7 @@ from inerter.errors import NetworkError
 from inerter.figures.networks import draw_network, draw_networks, element_label, network_figure, schematic
 from inerter.figures.quarter_car import draw_quarter_car
 from inerter.figures.style import styled
-from inerter.figures.symbols import HALF_HEIGHT, HALF_WIDTH, LEADING, SYMBOLS, TO_LABEL, blank_figure, symbol
+from inerter.figures.symbols import HALF_HEIGHT, HALF_WIDTH, LEADING, TO_LABEL, blank_figure, symbol
 from inerter.networks.catalogue import LAYOUTS
 from inerter.networks.elements import ELEMENT_TYPES, Parallel, Series
 from inerter.networks.parser import names, network
@@ -147,8 +147,8 @@ def test_parts_in_parallel_keep_their_order_and_hang_between_the_same_bars():
 
 @pytest.mark.parametrize("kind", ELEMENT_TYPES)
 def test_symbols_join_their_ends_and_stay_in_their_box(kind):
-    points = np.array([point for line in SYMBOLS[kind] for point in line])
-    assert {(0.0, HALF_HEIGHT), (0.0, -HALF_HEIGHT)} <= {point for line in SYMBOLS[kind] for point in line}
+    points = np.array([point for line in kind.drawing for point in line])
+    assert {(0.0, HALF_HEIGHT), (0.0, -HALF_HEIGHT)} <= {point for line in kind.drawing for point in line}
     assert (np.abs(points) <= (HALF_WIDTH, HALF_HEIGHT)).all()
 
 

@@ -10,15 +10,16 @@ import numpy as np
 import pytest
 
 import inerter as it
-from inerter.errors import DesignError, IndicatorError, NetworkError, StudyError
+from inerter.errors import DesignError, IndicatorError, NetworkError, RowError, StudyError
+from inerter.fields import Field
 from inerter.figures.networks import draw_networks, schematic
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.loading import load_study
 from inerter.files.study.study import write_resolved
 from inerter.networks.elements import Element, Network, Value
 from inerter.networks.elements.drawing import BOX, circle
-from inerter.networks.elements.registry import kinds, kinds_by_unit, register, unregister
-from inerter.networks.elements.roles import Field, Guard, Linear, Statistical, Switch
+from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
+from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
 from inerter.networks.parser import network
 from inerter.systems.graph import full_graph, linear_graph
 
@@ -103,10 +104,10 @@ OWN = (Flywheel, TwoSlopes, Clutch)
 @pytest.fixture
 def known():
     for kind in OWN:
-        register(kind)
+        ELEMENTS.add(kind)
     yield
     for kind in OWN:
-        unregister(kind)
+        ELEMENTS.remove(kind)
 
 
 def car(strut: Network) -> it.QuarterCar:
@@ -364,12 +365,12 @@ def test_a_study_knows_that_a_norm_does_not_see_all_of_them(known, tmp_path):
 
 
 def test_kinds_are_registered_once_and_units_tell_the_first_that_is_a_value_alone(known):
-    assert register(Flywheel) is Flywheel
-    assert kinds()["clutch"] is Clutch
+    assert ELEMENTS.add(Flywheel) is Flywheel
+    assert ELEMENTS["clutch"] is Clutch
     assert kinds_by_unit()["N"] is it.Friction
     assert "kg m^2" not in kinds_by_unit()
-    with pytest.raises(NetworkError, match="another kind of element with the key 'clutch'"):
-        register(type("Other", (Clutch,), {}))
+    with pytest.raises(RowError, match="another kind of element with the key 'clutch'"):
+        ELEMENTS.add(type("Other", (Clutch,), {}))
 
 
 @pytest.mark.parametrize("lead", [0.0, -1.0, math.nan, "1 mm", True])

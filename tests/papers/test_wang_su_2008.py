@@ -10,7 +10,6 @@ import pytest
 from campaigns import sampled
 
 from inerter.files.study.checking import check_study
-from inerter.files.study.registry import INDEX
 from inerter.files.study.study import Study
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
@@ -56,7 +55,7 @@ def test_designs_are_found_from_scratch(row: PrintedRow) -> None:
     vehicle = source(row).design(row.layout)
     bounds = {(free.lower, free.upper) for free in vehicle.free_values().values()}
     assert bounds <= {(10.0, 1e6), (0.01, 1e5)}
-    best = optimise(vehicle, INDEX[row.index](source(row)), Norm("paper2008"))
+    best = optimise(vehicle, source(row).index(row.index), Norm("paper2008"))
     assert best.status.ok
     assert best.value <= float(row.printed) + 0.5 * row.last_digit + 1e-9 * best.value
 
@@ -69,7 +68,7 @@ def test_designs_are_found_from_scratch(row: PrintedRow) -> None:
 )
 def test_seeds_agree_on_the_half_car(layout: str, index: str) -> None:
     half = study("table2")
-    values = [optimise(half.design(layout), INDEX[index](half), Norm("paper2008"), seed=seed).value for seed in (1, 2)]
+    values = [optimise(half.design(layout), half.index(index), Norm("paper2008"), seed=seed).value for seed in (1, 2)]
     assert np.ptp(values) <= (1e-4 if index == "J5" else 1e-6) * min(values)
 
 

@@ -22,7 +22,7 @@ from inerter import (
     sine,
 )
 from inerter.networks.elements import Element, Network, Parallel, Series
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 RANGES = {Spring: (1e4, 1e6), Damper: (200.0, 1e4), Inerter: (5.0, 300.0), Friction: (2.0, 300.0), Gap: (2e-5, 1e-3)}
 

@@ -14,7 +14,7 @@ from mechanisms import log_uniform, random_network
 import inerter as it
 from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Rig, Road, Signal, Spring
 from inerter.networks.elements import Network
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 SPEED = 25.0
 DURATION = 1.0

@@ -13,7 +13,7 @@ from strategies import paper_half_car, paper_quarter_car, random_half_car, rando
 
 import inerter as it
 from inerter.networks.elements import Network
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 Array = Any
 SCREW = (it.Spring(1e6, name="shaft") | it.Damper(3200.0)) - it.Gap(1e-4) - (it.Inerter(113.0) | it.Friction(10.0))

@@ -16,7 +16,7 @@ from inerter.networks.elements import Element, Network, Parallel, Series
 from inerter.simulation.start import initial_state
 from inerter.simulation.statics import equilibrium
 from inerter.systems.piecewise import piecewise
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 CLOSE = 1e-12
 

@@ -15,8 +15,9 @@ from inerter.errors import SimulationError
 from inerter.networks.elements import Network
 from inerter.simulation.time_stepping import Histories, Start, StepTable, step_through
 from inerter.systems.graph import full_graph
-from inerter.vehicle.cars import Rig, Vehicle
 from inerter.vehicle.mechanism import GROUND, Coordinate, Force, Strut
+from inerter.vehicle.rig import Rig
+from inerter.vehicle.vehicle import Vehicle
 
 Signal = Callable[[np.ndarray], np.ndarray]
 SCREW = (Spring(1e6) | Damper(3200.0)) - Gap(1e-4) - (Inerter(113.0) | Friction(10.0))

@@ -11,16 +11,15 @@ import pytest
 
 from inerter.errors import IndicatorError, StudyError
 from inerter.files.common.layouts import StrutLayout
-from inerter.files.study import registry
 from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv
 from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
-from inerter.files.study.registry import INDEX, METHOD
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
 from inerter.optimisation.budget import budget
 from inerter.optimisation.optimise import optimise
@@ -83,7 +82,7 @@ def test_every_method_judges_the_same_design(result: StudyResult) -> None:
     for row in rows(result):
         assert row["status"] == "ok"
         design = study.design(row["layout"]).with_values({"c": float(row["c [N s/m]"])})
-        again = evaluate(design, INDEX["J1"](study), METHOD[row["method"]](study))
+        again = evaluate(design, study.index("J1"), study.method(row["method"]))
         assert again.value == float(row["value"])
         assert row["standard_error"] == ("" if again.standard_error is None else repr(again.standard_error))
         assert int(row["realisations"]) == again.realisations
@@ -95,7 +94,7 @@ def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(resu
     """By the jackknife: the scatter of the ratio of means when each road is left out in turn."""
     study, data = result.study, result.data.sel({"method": "expected-value"}).sel(index="J1")
     designs = {n: study.design(n).with_values({"c": data.parameter_value.sel(layout=n).item()}) for n in study.layouts}
-    one, other = (np.array(evaluate(designs[n], INDEX["J1"](study), ROADS).samples) for n in ("serial", "usual"))
+    one, other = (np.array(evaluate(designs[n], study.index("J1"), ROADS).samples) for n in ("serial", "usual"))
     without = [(one.sum() - a) / (other.sum() - b) for a, b in zip(one, other, strict=True)]
     expected = 100.0 * np.sqrt((one.size - 1) * np.var(without))
     found = data.improvement_error.sel(layout="serial").item()
@@ -108,7 +107,7 @@ def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyR
     assert (found.layout, found.index, found.method, found.at_most) == ("serial", "J1", "expected-value", True)
     c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(budgeted)}
     designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "plain")]
-    expected = budget(*designs, INDEX["J1"](study), parameter="h", method=ROADS)
+    expected = budget(*designs, study.index("J1"), parameter="h", method=ROADS)
     assert (found.value, found.standard_error, found.status) == (expected.value, expected.standard_error, "ok")
     (row,) = rows(budgeted, "budgets.csv")
     assert (row["value"], row["better"], row["status"]) == (repr(expected.value), "below", "ok")
@@ -158,22 +157,17 @@ def test_threads_change_no_digit(study: Study) -> None:
 def test_a_search_by_simulation_says_what_it_gains_over_the_best_linear_design(study: Study) -> None:
     simulated = replace(study, optimise="expected-value", evaluate=("expected-value",), realisations=2)
     outcome = run_case(simulated, Case("serial", "J1"))
-    expected = optimise(study.design("serial"), INDEX["J1"](study), ExpectedValue(realisations=2, jobs=1)).over_linear
+    expected = optimise(study.design("serial"), study.index("J1"), ExpectedValue(realisations=2, jobs=1)).over_linear
     assert expected is not None
     assert outcome.over_linear == (-expected.percent, expected.percent_error)
     assert outcome.over_linear[0] >= 0.0
 
 
 def test_a_method_that_fails_leaves_the_others(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    class Refuses:
-        name = "statistical-linearisation"
+    def refuse(*_: object) -> None:
+        raise IndicatorError("not this one")
 
-        def estimate(self, *_: object) -> None:
-            raise IndicatorError("not this one")
-
-        estimate_many = objective = estimate
-
-    monkeypatch.setitem(registry.METHOD, "statistical-linearisation", lambda study: Refuses())
+    monkeypatch.setattr(StatisticalLinearisation, "estimate", refuse)
     outcome = run_case(study, Case("serial", "J1"))
     assert outcome.status["statistical-linearisation"] == "failed"
     assert outcome.message == "statistical-linearisation: not this one"

@@ -22,7 +22,6 @@ from inerter.files.study.cases import Outcome, cases
 from inerter.files.study.checking import check_study
 from inerter.files.study.journal import finished, journal_of
 from inerter.files.study.loading import load_study
-from inerter.files.study.registry import INDEX, METHOD
 from inerter.files.study.running import NAMES, run_study
 from inerter.methods.method import evaluate
 
@@ -94,7 +93,7 @@ def test_summary_holds_the_values_of_the_designs(tmp_path: Path) -> None:
             if row[f"{name} [{unit}]"]
         }
         design = study.design(row["layout"], float(row["k [N/m]"])).with_values(values)
-        again = evaluate(design, INDEX[row["index"]](study), METHOD[row["method"]](study))
+        again = evaluate(design, study.index(row["index"]), study.method(row["method"]))
         assert again.value == pytest.approx(float(row["value"]), rel=1e-12)
         assert again.unit == row["unit"]
         assert row["status"] == "ok"

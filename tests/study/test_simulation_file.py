@@ -8,7 +8,7 @@ import pytest
 
 from inerter.errors import StudyError
 from inerter.files.common.layouts import StrutLayout
-from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED, NEEDED, UNITS
+from inerter.files.common.signal_kinds import NEEDED, SIGNALS, UNITS
 from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import SimulationRequest, write_simulation
@@ -16,7 +16,9 @@ from inerter.files.simulation.shape import INITIAL, SimulationSettings
 from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
-from inerter.vehicle.cars import QuarterCar, Rig
+from inerter.vehicle.quarter_car import QuarterCar
+from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.rig import Rig
 
 EXAMPLES = sorted(
     path
@@ -139,11 +141,13 @@ def test_frequencies_count_cycles_and_phases_radians(load):
     assert request.signal.values == {"amplitude": 1e-3, "frequency": 3.0, "phase": pytest.approx(np.pi / 2)}
 
 
-@pytest.mark.parametrize("model", MOVED)
+@pytest.mark.parametrize("model", VEHICLES)
 def test_the_inputs_of_a_model_are_those_of_its_mechanism(load, model):
     mechanism = load({"quarter-car": CAR, "half-car": HALF, "rig": RIG}[model]).design().mechanism()
-    assert {force.name for force in mechanism.forces} == set(FORCES[model])
-    assert all(road.name.startswith(MOVED[model]) for road in mechanism.roads)
+    angles = {coordinate.name for coordinate in mechanism.coordinates if coordinate.angle}
+    units = {force.name: "N m" if angles & set(force.port) else "N" for force in mechanism.forces}
+    assert units == dict(VEHICLES[model].forces)
+    assert all(road.name.startswith(VEHICLES[model].moved) for road in mechanism.roads)
 
 
 KIND_KEYS = {
@@ -152,11 +156,13 @@ KIND_KEYS = {
 }
 
 
-@pytest.mark.parametrize(("kind", "unit"), [(k, u) for k in KINDS for u in UNITS if u == "m" or not KINDS[k].of_roads])
+@pytest.mark.parametrize(
+    ("kind", "unit"), [(k, u) for k in SIGNALS for u in UNITS if u == "m" or not SIGNALS[k].of_roads]
+)
 def test_every_kind_of_signal_is_made_of_its_own_examples(load, tmp_path, kind, unit):
     (tmp_path / "given.csv").write_text(f"time [s],value [{unit}]\n0,1\n1,2\n2,1\n")
     (tmp_path / "road.csv").write_text("distance [m],height [mm]\n0,0\n10,5\n100,0\n")
-    keys = {name: key.of(unit) for name, key in KINDS[kind].keys.items()}
+    keys = {name: key.of(unit) for name, key in SIGNALS[kind].keys.items()}
     lines = KIND_KEYS.get(kind) or "\n".join(key.example for key in keys.values() if key.default is NEEDED)
     moved = {"m": "road", "N": "sprung_force", "N m": "pitch_moment"}[unit]
     old = 'kind = "multisine"\nseed = 3'
@@ -216,7 +222,12 @@ def test_the_steady_state_is_one_period(load):
 
 def test_every_key_is_in_the_documentation():
     text = (Path(__file__).parents[2] / "docs" / "simulation.md").read_text(encoding="utf-8")
-    words = {*KINDS, *(key for kind in KINDS.values() for key in kind.keys), *SimulationSettings.model_fields, *INITIAL}
+    words = {
+        *SIGNALS,
+        *(key for kind in SIGNALS.values() for key in kind.keys),
+        *SimulationSettings.model_fields,
+        *INITIAL,
+    }
     assert [word for word in words if f"`{word}`" not in text and f'"{word}"' not in text] == []
 
 

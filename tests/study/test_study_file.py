@@ -15,7 +15,8 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study, Sweep, write_resolved
 from inerter.networks.elements import Damper, Free, Friction, Gap, Inerter, Spring
 from inerter.signals.road import Road
-from inerter.vehicle.cars import HalfCar, QuarterCar
+from inerter.vehicle.half_car import HalfCar
+from inerter.vehicle.quarter_car import QuarterCar
 
 EXAMPLES = sorted(
     path for path in (Path(__file__).parents[2] / "examples").glob("*.toml") if "[study]" in path.read_text("utf-8")
@@ -108,7 +109,7 @@ def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tm
         baseline="S2",
         sweep=None,
         seed=0,
-        high_pass=None,
+        settings={},
     )
 
 
@@ -134,7 +135,9 @@ def test_the_unit_tells_the_kind_of_element(load):
 
 @pytest.mark.parametrize(("text", "omega"), [("6.28 rad/s", 6.28), ("1 Hz", 2 * math.pi)])
 def test_high_pass_is_an_angular_frequency(load, text, omega):
-    assert load(GOOD, ("[study]", f'[study]\nhigh_pass = "{text}"')).high_pass == pytest.approx(omega, rel=1e-15)
+    assert load(GOOD, ("[study]", f'[study]\nhigh_pass = "{text}"')).settings["high_pass"] == pytest.approx(
+        omega, rel=1e-15
+    )
 
 
 @pytest.mark.parametrize(
@@ -247,7 +250,7 @@ def test_settings_of_methods_arrive_and_survive_being_written(load, tmp_path, ro
         asked(f'{roads}\nforce = "1.5 kN"\nbudgets = ["f", "b"]\nbaseline = "S1"', "J5"),
     )
     assert (study.realisations, study.relative_error) in ((12, None), (None, 0.003))
-    assert (study.force, study.budgets, study.methods) == (1500.0, ("f", "b"), ("norm", "expected-value"))
+    assert (study.settings["force"], study.budgets, study.methods) == (1500.0, ("f", "b"), ("norm", "expected-value"))
     assert_survives(study, tmp_path)
 
 
@@ -266,7 +269,7 @@ def test_any_values_survive_to_the_last_bit(tmp_path_factory, numbers, seed):
         optimise="norm",
         sweep=Sweep("k", (tyre, 2 * tyre), "N/m"),
         seed=seed,
-        high_pass=omega,
+        settings={"high_pass": omega},
     )
     assert_survives(study, tmp_path_factory.mktemp("study"))
 

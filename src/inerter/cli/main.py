@@ -10,25 +10,25 @@ import signal
 import sys
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated
 
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
+from inerter.cli.options import Force, Jobs, Json, Output, Resume
 from inerter.cli.streams import endure, problem
-from inerter.errors import InerterError, StudyError, WorkError
-from inerter.papers.registry import PAPERS
+from inerter.errors import InerterError, WorkError
 from inerter.writing import sweep
 
-EXAMPLES = f"""Examples:
+EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
   inerter run examples/stiffness-sweep.toml -o sweep -j 2
   inerter check my-study.toml
   inerter simulate examples/stick_slip.toml
   inerter rig examples/rig_fit.toml -o fit.csv
   inerter identify fit.csv --model ball-screw
-  inerter reproduce {next(iter(PAPERS))} -o paper
+  inerter reproduce    tells which papers there are
 
 Exit codes: 0 done, 1 the work failed, 2 the request was wrong, 130 interrupted by Ctrl-C."""
 
@@ -40,36 +40,6 @@ app = App(
     help_format="plaintext",
     suppress_keyboard_interrupt=False,
 )
-
-Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
-Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Processes to use; all cores if left out.")]
-Resume = Annotated[
-    bool,
-    Parameter(
-        negative="",
-        show_default=False,
-        help="Continue an interrupted run: what its journal holds is not computed again.",
-    ),
-]
-Force = Annotated[
-    bool,
-    Parameter(
-        negative="",
-        show_default=False,
-        help="Replace the results in the folder when the new ones are whole. "
-        "What inerter did not write there, or somebody changed since, stays.",
-    ),
-]
-Json = Annotated[
-    bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
-]
-
-if TYPE_CHECKING:
-    Name = str
-    Part = str
-else:
-    Name = Literal[tuple(PAPERS)]
-    Part = Literal[tuple(dict.fromkeys(part for paper in PAPERS.values() for part in paper.parts))]
 
 
 @app.command(
@@ -253,48 +223,11 @@ def rig(
     return command(config, output, force=force)
 
 
-@app.command(
-    help_epilogue="\n  ".join(
-        [
-            "Examples:",
-            "inerter reproduce    tells which papers there are",
-            *(
-                f"inerter reproduce {p.name} {options}"
-                for p in PAPERS.values()
-                for options in ("-o paper", *p.examples)
-            ),
-        ]
-    )
+app.command(
+    "inerter.cli.reproduce:app",
+    name="reproduce",
+    help="Recompute the numbers, designs, figures and claims of a paper beside the printed ones.",
 )
-def reproduce(
-    paper: Name | None = None,
-    /,
-    *,
-    only: Annotated[
-        tuple[Part, ...],
-        Parameter(negative="", help="The parts to reproduce, each with its own --only; all if left out."),
-    ] = (),
-    output: Output = None,
-    jobs: Jobs = None,
-    resume: Resume = False,
-    force: Force = False,
-    json: Json = False,
-) -> int:
-    """Recompute the numbers, designs, figures and claims of a paper beside the printed ones.
-
-    Parameters
-    ----------
-    paper
-        The name of the paper; which there are is told if it is left out.
-    """
-    from inerter.cli.commands import papers
-    from inerter.cli.commands import reproduce as command
-
-    if paper is None:
-        if only or output or jobs or resume or force or json:
-            raise StudyError(f"Got options without a paper; expected the name of one: {', '.join(PAPERS)}.")
-        return papers()
-    return command(paper, only, output, jobs, resume=resume, force=force, as_json=json)
 
 
 def main() -> None:

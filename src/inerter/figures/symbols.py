@@ -17,14 +17,12 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
-from inerter.networks.elements import ELEMENT_TYPES, Element
 from inerter.networks.elements.drawing import HALF_HEIGHT, HALF_WIDTH, Line, Point, circle
 
 __all__ = [
     "HALF_HEIGHT",
     "HALF_WIDTH",
     "LEADING",
-    "SYMBOLS",
     "TO_LABEL",
     "Line",
     "Point",
@@ -42,9 +40,6 @@ _LINE_WIDTH = 0.9
 _LETTERS, LEADING = 8.0, 9.6  # size of all text; from line to line
 _GREEK = {"eps": r"\varepsilon", "epsilon": r"\varepsilon", "delta": r"\delta"}
 _SHORT_NAME = re.compile(r"([A-Za-z])([A-Za-z]?\d*)|([A-Za-z]+)(\d*)")
-
-
-SYMBOLS: dict[type[Element], tuple[Line, ...]] = {kind: kind.drawing for kind in ELEMENT_TYPES}
 
 
 def blank_figure(width: float, height: float) -> tuple[Figure, Axes]:

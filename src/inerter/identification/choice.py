@@ -22,7 +22,7 @@ from inerter.identification.solving import Request, Solution
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.record import Record
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 LEAST, MOST = 0.02, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most

@@ -22,7 +22,7 @@ from inerter.identification.laws import laws
 from inerter.identification.problem import Problem
 from inerter.identification.space import Space, space_of
 from inerter.records.lost import losses, restored
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS, _ACCURACY = 25, 1e-5

@@ -18,7 +18,7 @@ from inerter.networks.elements import Network
 from inerter.networks.elements.roles import Linear
 from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 _SOLVED = 0.8  # of the work, before explanations are looked for
 

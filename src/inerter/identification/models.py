@@ -23,7 +23,7 @@ from inerter.networks.elements import (
 from inerter.networks.elements.roles import Guard
 from inerter.networks.parser import network
 from inerter.networks.transform import map_elements
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 VISCOUS = "-viscous"
 _ELEMENTS: dict[str, Network] = {

@@ -21,7 +21,7 @@ from inerter.networks.transform import map_elements
 from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 _FEWEST = 100  # samples that are compared

@@ -20,7 +20,7 @@ from inerter.records.spectra import lines_of
 from inerter.signals.harmonics import Harmonics
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]

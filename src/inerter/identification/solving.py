@@ -23,7 +23,7 @@ from inerter.identification.search import QUICK, THOROUGH, search, soft, wander
 from inerter.identification.sensors import sound, unavoidable
 from inerter.identification.space import space_of
 from inerter.records.record import Record
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 Progress = Callable[[float], None]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.identification.hypotheses import Hypothesis
 from inerter.networks.elements import Element, Free
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 

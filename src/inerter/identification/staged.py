@@ -28,7 +28,7 @@ from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
 from inerter.units import format_quantity
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 _LIGHT = 1.0  # [kg] of a shaft that is not known, for the friction test alone

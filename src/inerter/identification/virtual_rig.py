@@ -16,7 +16,7 @@ from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 GRAVITY = 9.80665  # [m/s^2] standard, for load cells that are rated in kg

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, IndicatorError, Status, StatusKind
-from inerter.indices.index import Combination, Index, Question
+from inerter.indices.question import Combination, Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
 from inerter.methods.excitation import Drive, Excitation, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, corner_of, linear_problem
-from inerter.methods.method import Estimate, Objective
+from inerter.methods.method import Estimate, Objective, Sees
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
@@ -31,8 +31,8 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.systems.descriptor import close
 from inerter.systems.graph import full_graph
 from inerter.systems.piecewise import piecewise
-from inerter.vehicle.cars import Vehicle
 from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 _ROAD_RMS = math.sqrt(1e-8 / 1e-3)  # [m] noise of 1e-8 m^2/Hz, held for 1 ms
@@ -88,6 +88,10 @@ class ApproximateLinear:
     seed: int = 0
     conventions: str = "exact"
     name = "approximate-linear"
+    words = "norms of gains that the design as it is shows on random inputs, output over input, frequency by frequency"
+    sees = Sees.BOTH
+    needs_amplitude = False
+    searches = True
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import IndicatorError, InerterError, LinearSystemError, MechanismError, StatusKind
-from inerter.indices.index import Combination, Index, Question
+from inerter.indices.question import Combination, Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem
-from inerter.methods.method import Estimate, Objective
+from inerter.methods.method import Estimate, Objective, Sees
 from inerter.methods.on_roads import mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds, worst
@@ -26,7 +26,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 _DEFAULT = 8  # realisations
@@ -78,6 +78,13 @@ class ExpectedValue:
     jobs: int | None = None
     period: int | None = None
     name = "expected-value"
+    words = (
+        "means over simulations of the design as it is, with friction, gaps and elasticity, on random roads; for a "
+        "peak gain the largest response to a sinusoidal force"
+    )
+    sees = Sees.BOTH
+    needs_amplitude = True
+    searches = True
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import Enum, auto
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, DesignError, IndicatorError, Status
-from inerter.indices.index import Index, Question
+from inerter.indices.question import Index, Question
 from inerter.norms.hinf import Peak
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import find, main_outputs, outputs
-from inerter.vehicle.cars import Vehicle, check_vehicle
 from inerter.vehicle.mechanism import Mechanism, check_known
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
 Array = NDArray[np.float64]
 
@@ -88,13 +89,45 @@ class Compiled(Protocol):
         ...
 
 
+class Sees(Enum):
+    """What a method sees of a design that is not linear."""
+
+    NEITHER = auto()  # friction is left out, gaps are closed
+    FRICTION = auto()  # gaps are refused
+    BOTH = auto()
+
+
 @runtime_checkable
 class Method(Protocol):
-    """A way to get a number."""
+    """A way to get a number.
+
+    A method that files know is a frozen dataclass. Of `conventions`, `seed`, `realisations`, `relative_error` and
+    `jobs`, it gets from a study those that it has as fields.
+    """
 
     @property
     def name(self) -> str:
         """Its name in study files and results."""
+        ...
+
+    @property
+    def words(self) -> str:
+        """What its values are, to go after "Values are" in a report."""
+        ...
+
+    @property
+    def sees(self) -> Sees:
+        """Whether friction and gaps matter to it."""
+        ...
+
+    @property
+    def needs_amplitude(self) -> bool:
+        """Whether a peak gain of a design with friction or gaps needs the amplitude of its force."""
+        ...
+
+    @property
+    def searches(self) -> bool:
+        """Whether optimisers can use its `objective`."""
         ...
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:

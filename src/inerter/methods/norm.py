@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError
-from inerter.indices.index import Index, Question
+from inerter.indices.question import Index, Question
 from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem
-from inerter.methods.method import Estimate, Objective
+from inerter.methods.method import Estimate, Objective, Sees
 from inerter.systems.descriptor import close
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 
@@ -32,6 +32,10 @@ class Norm:
 
     conventions: str = "exact"
     name = "norm"
+    words = "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
+    sees = Sees.NEITHER
+    needs_amplitude = False
+    searches = True
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import StatusKind
-from inerter.indices.index import Index
+from inerter.indices.question import Index
 from inerter.methods.method import Estimate
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[Vehicle, Index], Estimate]

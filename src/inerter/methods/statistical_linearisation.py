@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.index import Combination, Index, Question
+from inerter.indices.question import Combination, Index, Question
 from inerter.kernels import harmonic
 from inerter.methods.compiled_norm import kernels_of
 from inerter.methods.describing_function import HarmonicBalance, harmonic_balance
 from inerter.methods.equivalent import check_gaps, check_outputs, has_friction
 from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.method import Estimate, Objective
+from inerter.methods.method import Estimate, Objective, Sees
 from inerter.methods.norm import Norm
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 
@@ -46,6 +46,13 @@ class StatisticalLinearisation:
 
     conventions: str = "exact"
     name = "statistical-linearisation"
+    words = (
+        "norms of a linear model in which each friction is the damper that it resembles most under the motion that "
+        "results; for a peak gain at each frequency under a sinusoidal force"
+    )
+    sees = Sees.FRICTION
+    needs_amplitude = True
+    searches = True
 
     def __post_init__(self) -> None:
         Norm(self.conventions)  # refuses what it does not know

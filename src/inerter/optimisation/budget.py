@@ -12,14 +12,14 @@ import scipy
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
-from inerter.indices.index import Index
+from inerter.indices.question import Index
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.transform import map_elements
 from inerter.units import format_quantity
-from inerter.vehicle.cars import Vehicle
 from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
 
 _POINTS = 16  # between which crossings are looked for
 _REACH = 1e3  # default bounds lie so many times below and above the present value

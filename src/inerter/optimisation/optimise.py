@@ -10,15 +10,15 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, Status, StatusKind
-from inerter.indices.index import Index
+from inerter.indices.question import Index
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Estimate, Method, Objective, check_request
+from inerter.methods.method import Estimate, Method, Objective, Sees, check_request
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
 from inerter.optimisation.local import LocalOptimum, approach, creep, descend, polish
 from inerter.optimisation.threads import one_blas_thread
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
@@ -94,7 +94,7 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     objective = method.objective(vehicle, index)
     agreement = COSTLY_AGREEMENT if objective.costly else AGREEMENT
     with one_blas_thread():
-        linear = None if isinstance(method, Norm) else _linear_optimum(vehicle, index, method, seed, starts)
+        linear = None if method.sees is Sees.NEITHER else _linear_optimum(vehicle, index, method, seed, starts)
         if objective.costly:
             first = [] if linear is None else [linear]
             first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)

@@ -4,5 +4,6 @@ from __future__ import annotations
 
 from inerter.papers.paper import Paper
 from inerter.papers.wang_su_2008.paper import PAPER as WANG_SU_2008
+from inerter.rows import Rows
 
-PAPERS: dict[str, Paper] = {paper.name: paper for paper in (WANG_SU_2008,)}
+PAPERS: Rows[Paper] = Rows("paper", "name", ("title", "parts", "claims", "figures"), (WANG_SU_2008,))

@@ -9,26 +9,19 @@ from math import pi
 import numpy as np
 import xarray as xr
 
+from inerter.fields import fields_of
 from inerter.figures.labels import capital, index_title, indices
-from inerter.files.common.shape import UNITS
 from inerter.files.study.study import Study
+from inerter.indices.registry import INDICES, amplitude_of
 from inerter.methods.linear import CONVENTIONS
+from inerter.methods.registry import is_blind, words_of
 from inerter.networks.elements import Element, Free
 from inerter.units import format_quantity
+from inerter.vehicle.registry import VEHICLES
 
-_METHODS = {
-    "norm": "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain",
-    "statistical-linearisation": (
-        "norms of a linear model in which each friction is the damper that it resembles most under the motion that "
-        "results; for a peak gain at each frequency under a sinusoidal force"
-    ),
-    "expected-value": (
-        "means over simulations of the design as it is, with friction, gaps and elasticity, on random roads; for a "
-        "peak gain the largest response to a sinusoidal force"
-    ),
-    "approximate-linear": (
-        "norms of gains that the design as it is shows on random inputs, output over input, frequency by frequency"
-    ),
+_ALSO = {  # the same value in the unit in which it is usually told
+    "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
+    "rad/s": lambda value: f" ({value / (2.0 * pi):.3g} Hz)",
 }
 
 
@@ -44,12 +37,12 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    rows += [(capital(key.replace("_", " ")), _given(value, UNITS[key])) for key, value in study.vehicle.items()]
-    speed, roughness = _given(study.road.speed, "m/s"), _given(study.road.roughness, UNITS["roughness"])
-    rows += [("Speed", f"{speed} ({3.6 * study.road.speed:.4g} km/h)"), ("Road roughness", roughness)]
-    if study.high_pass is not None:
-        corner = f"{_given(study.high_pass, UNITS['high_pass'])} ({study.high_pass / (2.0 * pi):.3g} Hz)"
-        rows.append(("High-pass corner of the tyre load", corner))
+    rows += [(capital(f.told), _given(study.vehicle[f.key], f.unit)) for f in fields_of(VEHICLES[study.model])]
+    rows += [("Speed", _given(study.road.speed, "m/s")), ("Road roughness", _given(study.road.roughness, "m^3/cycle"))]
+    for symbol in study.indices:
+        amplitude = amplitude_of(symbol)
+        given = [field for field in fields_of(INDICES[symbol]) if field.key in study.settings and field != amplitude]
+        rows += [(f"{capital(f.told)} of {symbol}", _given(study.settings[f.key], f.unit)) for f in given]
     return rows
 
 
@@ -76,7 +69,7 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
     """How the numbers were computed, in sentences."""
     several = len(study.evaluate) > 1
     for name in study.evaluate:
-        yield f"Values{f' by {name}' if several else ''} are {_METHODS.get(name, name)}."
+        yield f"Values{f' by {name}' if several else ''} are {words_of(name)}."
     yield from _of_roads(study, results)
     if study.optimise is None:
         yield "Every layout was evaluated as it is given; nothing was optimised."
@@ -87,8 +80,8 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"local searches from many starting points of a sample with seed {study.seed}. Agreement is the number of "
             "searches that ended at the best value found."
         )
-        if study.optimise != "norm":
-            yield f"What was made smallest is the value by {study.optimise}: {_METHODS[study.optimise]}."
+        if not is_blind(study.optimise):
+            yield f"What was made smallest is the value by {study.optimise}: {words_of(study.optimise)}."
     yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."
 
@@ -103,8 +96,12 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    if study.force is not None:
-        yield f"The sinusoidal force of J5 has an amplitude of {_given(study.force, 'N')}."
+    for symbol in study.indices:
+        field = amplitude_of(symbol)
+        if field is not None and field.key in study.settings:
+            yield (
+                f"The sinusoidal force of {symbol} has an amplitude of {_given(study.settings[field.key], field.unit)}."
+            )
 
 
 def _value(study: Study, name: str, element: Element) -> str:
@@ -118,4 +115,5 @@ def _value(study: Study, name: str, element: Element) -> str:
 
 def _given(value: float, unit: str) -> str:
     """A value with all digits that the study file gives it, on the line of its unit."""
-    return format_quantity(value, unit, digits=12).replace(" ", "\N{NO-BREAK SPACE}")
+    text = format_quantity(value, unit, digits=12).replace(" ", "\N{NO-BREAK SPACE}")
+    return text + _ALSO[unit](value) if unit in _ALSO else text

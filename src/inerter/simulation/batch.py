@@ -24,7 +24,7 @@ from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
     import xarray

@@ -16,7 +16,7 @@ from inerter.simulation.start import Initial, ending_of, initial_state
 from inerter.simulation.steady import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 _REPORTS = 100  # of progress
 

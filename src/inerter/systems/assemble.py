@@ -9,7 +9,7 @@ import numpy as np
 from inerter.errors import DesignError, LinearSystemError
 from inerter.systems.descriptor import close, describe
 from inerter.systems.linear import LinearSystem, check_names
-from inerter.vehicle.cars import Vehicle, check_vehicle
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
 
 def assemble(

@@ -20,8 +20,8 @@ from inerter.networks.elements.roles import Linear
 from inerter.systems.graph import Graph, switching
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements
 from inerter.systems.outputs import Output
-from inerter.vehicle.cars import Vehicle, check_vehicle
 from inerter.vehicle.mechanism import Mechanism, check_values
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
 Matrix = NDArray[np.float64]
 _LOST = 1e14  # ratio of inertias at which the smaller one is rounding of the larger

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any, NamedTuple
 
 from pydantic import PlainValidator
@@ -100,8 +100,8 @@ def text(value: Any) -> str:
     return value
 
 
-def one_of(what: str, known: tuple[str, ...]) -> Callable[[Any], str]:
-    """One of the words that this version knows; `what` says what kind of word it is, with its article."""
+def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
+    """One of the words that this version knows, or a key of a table; `what` says what it is, with its article."""
 
     def check(value: Any) -> str:
         if not isinstance(value, str) or value not in known:
@@ -114,21 +114,21 @@ def one_of(what: str, known: tuple[str, ...]) -> Callable[[Any], str]:
     return check
 
 
-def some_of(what: str, known: tuple[str, ...]) -> PlainValidator:
+def some_of(what: str, known: Collection[str]) -> PlainValidator:
     """A list of at least one of `known`, none of them twice."""
-    return _list_of(one_of(what, known), known[0])
+    return _list_of(one_of(what, known), lambda: next(iter(known)))
 
 
 def some_names(example: str) -> PlainValidator:
     """A list of at least one name, none of them twice; whether they are known is seen later."""
-    return _list_of(text, example)
+    return _list_of(text, lambda: example)
 
 
-def _list_of(one: Callable[[Any], str], example: str) -> PlainValidator:
+def _list_of(one: Callable[[Any], str], example: Callable[[], str]) -> PlainValidator:
     def check(values: Any) -> tuple[str, ...]:
         if not isinstance(values, list) or not values:
             got = "an empty list" if values == [] else shown(values)
-            raise ValueError(f"Got {got}; expected a list of one or more, such as [{shown(example)}].")
+            raise ValueError(f"Got {got}; expected a list of one or more, such as [{shown(example())}].")
         checked = tuple(one(value) for value in values)
         twice = next((value for value in checked if checked.count(value) > 1), None)
         if twice is not None:

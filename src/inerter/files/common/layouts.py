@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from inerter.errors import NetworkError
+from inerter.fields import Field, fields_of, mounts_of
 from inerter.files.common.entries import Amount
 from inerter.files.common.problems import at
-from inerter.files.common.shape import UNITS, Axles, Range
+from inerter.files.common.shape import Range, Shape
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.told_kind import ToldKind
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.registry import kinds_by_unit
 from inerter.networks.parser import names, network
 from inerter.units import shown
-from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
-
-MOUNTS = {"quarter-car": ("strut",), "half-car": ("front", "rear"), "rig": ("device",)}
-_CARS: dict[str, type[QuarterCar | HalfCar | Rig]] = {"quarter-car": QuarterCar, "half-car": HalfCar, "rig": Rig}
+from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.vehicle import VehicleModel
 
 
 @dataclass(frozen=True)
@@ -28,22 +27,20 @@ class StrutLayout:
 
     struts: dict[str, str]
 
-    def design(
-        self, model: str, vehicle: Mapping[str, float], elements: Mapping[str, Element]
-    ) -> QuarterCar | HalfCar | Rig:
+    def design(self, model: str, vehicle: Mapping[str, float], elements: Mapping[str, Element]) -> VehicleModel:
         """The vehicle with these struts, made of `elements`."""
         mounted = {mount: network(text, **elements) for mount, text in self.struts.items()}
         arguments: dict[str, Any] = {**vehicle, **mounted}
-        return _CARS[model](**arguments)
+        return VEHICLES[model](**arguments)
 
     def entry(self) -> str | dict[str, str]:
         """How a file says it."""
         return dict(self.struts) if len(self.struts) > 1 else next(iter(self.struts.values()))
 
 
-def struts_of(model: str, entry: Axles | str) -> dict[str, str]:
+def struts_of(model: str, entry: Shape | str) -> dict[str, str]:
     """The network of every mount."""
-    return entry.model_dump() if isinstance(entry, Axles) else dict.fromkeys(MOUNTS[model], entry)
+    return entry.model_dump() if isinstance(entry, Shape) else dict.fromkeys(mounts_of(VEHICLES[model]), entry)
 
 
 def element_of(name: str, entry: Range | Amount | ToldKind) -> Element:
@@ -55,25 +52,35 @@ def element_of(name: str, entry: Range | Amount | ToldKind) -> Element:
     return kinds_by_unit()[entry.unit].of(entry.value, name)
 
 
-def in_si(key: str, value: float) -> str:
-    """The text of a quantity, in the SI unit of its key."""
-    return f"{value!r} {UNITS[key]}"  # repr is the shortest text that reads back as the same number
+def in_si(fields: Iterable[Field], values: Mapping[str, float]) -> dict[str, str]:
+    """The texts of those quantities that there is a value of, in SI units."""
+    return {f.key: f"{values[f.key]!r} {f.unit}" for f in fields if f.key in values}  # repr reads back as the same
+
+
+def vehicle_entry(model: str, values: Mapping[str, float]) -> dict[str, str]:
+    """How a file says a vehicle."""
+    return {"model": model, **in_si(fields_of(VEHICLES[model]), values)}
 
 
 def layout_problems(model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[str]:
     """What is wrong with layouts: networks that cannot be, and elements that are not there."""
+    mounts = mounts_of(VEHICLES[model])
     for name, layout in layouts.items():
-        if tuple(layout.struts) != MOUNTS[model]:
-            yield at(
-                ("layouts", name),
-                f"got a table; a {model.replace('-', ' ')} has one {MOUNTS[model][0]}, so expected its network in "
-                f"quotes, such as {shown(next(iter(layout.struts.values())))}.",
-            )
+        if tuple(layout.struts) != mounts:
+            yield at(("layouts", name), f"got a table; a {model.replace('-', ' ')} {_mounted(mounts, layout)}")
             continue
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
             place = ("layouts", name) if alike else ("layouts", name, mount)
             yield from (at(place, problem) for problem in network_problems(expression, elements))
+
+
+def _mounted(mounts: tuple[str, ...], layout: StrutLayout) -> str:
+    text = shown(next(iter(layout.struts.values())))
+    if len(mounts) == 1:
+        return f"has one {mounts[0]}, so expected its network in quotes, such as {text}."
+    table = ", ".join(f"{mount} = {text}" for mount in mounts)
+    return f"has {', '.join(mounts[:-1])} and {mounts[-1]}, so expected such as {{ {table} }}."
 
 
 def network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:

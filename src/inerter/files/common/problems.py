@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inerter.errors import StudyError
-from inerter.files.common.shape import Shape
+from inerter.files.common.shape import Shape, Shapes
 from inerter.files.common.suggest import nearest
 from inerter.units import shown
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
     from pydantic_core import ErrorDetails
-
-Shapes = Mapping[tuple[str, ...], type[Shape]]
 
 _MOST, _LONGEST = 20, 600  # problems, and characters of each
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")

@@ -2,31 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
+from functools import reduce
+from operator import or_
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, PlainValidator, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    PlainValidator,
+    Tag,
+    create_model,
+    model_validator,
+)
 
+from inerter.fields import Field as Quantity
+from inerter.fields import fields_of, mounts_of
 from inerter.files.common.entries import Amount, amount, check_order, element_name, expression, layout_name, positive
 from inerter.files.common.told_kind import ToldKind, names_kind, told_kind
+from inerter.rows import made_of_rows
+from inerter.vehicle.registry import VEHICLES
 
-MODELS = ("quarter-car", "half-car")
-RIG = "rig"
-UNITS = {
-    "sprung_mass": "kg",
-    "unsprung_mass": "kg",
-    "tyre_stiffness": "N/m",
-    "pitch_inertia": "kg m^2",
-    "unsprung_mass_front": "kg",
-    "unsprung_mass_rear": "kg",
-    "tyre_stiffness_front": "N/m",
-    "tyre_stiffness_rear": "N/m",
-    "distance_front": "m",
-    "distance_rear": "m",
-    "speed": "m/s",
-    "roughness": "m^3/cycle",
-    "high_pass": "rad/s",
-    "force": "N",
-}
+ROAD = (
+    Quantity("speed", "m/s", "V of the vehicle.", "25 m/s", "speed"),
+    Quantity("roughness", "m^3/cycle", "kappa = Gd(n0) n0^2 / 2 of ISO 8608.", "5e-7 m^3/cycle", "roughness"),
+)
+ANY = "<any>"  # the shape of what does not say its kind
 
 
 class Shape(BaseModel):
@@ -35,6 +39,7 @@ class Shape(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
+Shapes = Mapping[tuple[str, ...], type[Shape]]
 AmountText = Annotated[Amount, PlainValidator(amount)]
 
 
@@ -50,33 +55,34 @@ class Range(Shape):
         return self
 
 
-class QuarterCarShape(Shape):
-    """The keys of `QuarterCar`."""
-
-    model: Literal["quarter-car"]
-    sprung_mass: Annotated[float, positive("kg")] = Field(examples=['sprung_mass = "181.75 kg"'])
-    unsprung_mass: Annotated[float, positive("kg")] = Field(examples=['unsprung_mass = "25 kg"'])
-    tyre_stiffness: Annotated[float, positive("N/m")] = Field(examples=['tyre_stiffness = "120 kN/m"'])
-
-
-class HalfCarShape(Shape):
-    """The keys of `HalfCar`."""
-
-    model: Literal["half-car"]
-    sprung_mass: Annotated[float, positive("kg")] = Field(examples=['sprung_mass = "363.5 kg"'])
-    pitch_inertia: Annotated[float, positive("kg m^2")] = Field(examples=['pitch_inertia = "200 kg m^2"'])
-    unsprung_mass_front: Annotated[float, positive("kg")] = Field(examples=['unsprung_mass_front = "25 kg"'])
-    unsprung_mass_rear: Annotated[float, positive("kg")] = Field(examples=['unsprung_mass_rear = "20 kg"'])
-    tyre_stiffness_front: Annotated[float, positive("N/m")] = Field(examples=['tyre_stiffness_front = "120 kN/m"'])
-    tyre_stiffness_rear: Annotated[float, positive("N/m")] = Field(examples=['tyre_stiffness_rear = "100 kN/m"'])
-    distance_front: Annotated[float, positive("m")] = Field(examples=['distance_front = "0.775 m"'])
-    distance_rear: Annotated[float, positive("m")] = Field(examples=['distance_rear = "1.265 m"'])
+def of_quantities(fields: Iterable[Quantity]) -> dict[str, Any]:
+    """Keys for quantities that must be given."""
+    return {
+        field.key: (Annotated[float, positive(field.unit)], Field(examples=[f'{field.key} = "{field.example}"']))
+        for field in fields
+    }
 
 
-def model_tag(vehicle: Any) -> str:
-    """Which shape the table [vehicle] has."""
-    model = vehicle.get("model") if isinstance(vehicle, dict) else None
-    return f"<{model}>" if isinstance(model, str) and model in MODELS else "<any>"
+def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Shapes]:
+    """The table [vehicle] of any of these models, and its shapes by place; `unknown` is that of any other model."""
+    made = {f"<{model}>": _vehicle_shape(model) for model in models}
+
+    def tag(vehicle: Any) -> str:
+        model = vehicle.get("model") if isinstance(vehicle, dict) else None
+        return f"<{model}>" if isinstance(model, str) and f"<{model}>" in made else ANY
+
+    shapes = {**made, ANY: unknown}
+    return one_of_shapes(shapes, tag), {("vehicle", name): shape for name, shape in shapes.items()}
+
+
+def _vehicle_shape(model: str) -> type[Shape]:
+    keys = of_quantities(fields_of(VEHICLES[model]))
+    return create_model(f"Vehicle {model}", __base__=Shape, **{**keys, "model": (Literal[model], ...)})
+
+
+def one_of_shapes(shapes: Mapping[str, Any], tag: Callable[[Any], str]) -> Any:
+    """What has the shape whose tag it has."""
+    return Annotated[reduce(or_, (Annotated[shape, Tag(name)] for name, shape in shapes.items())), Discriminator(tag)]
 
 
 ElementEntry = Annotated[
@@ -87,19 +93,32 @@ ElementEntry = Annotated[
 ]
 
 
-class Axles(Shape):
-    """A layout of a half car with a strut of its own at each axle."""
-
-    front: Annotated[str, PlainValidator(expression)] = Field(examples=['front = "k | c"'])
-    rear: Annotated[str, PlainValidator(expression)] = Field(examples=['rear = "k | c"'])
-
-
-LayoutEntry = Annotated[
-    Annotated[Axles, Tag("<axles>")] | Annotated[str, PlainValidator(expression), Tag("<strut>")],
-    Discriminator(lambda value: "<axles>" if isinstance(value, dict) else "<strut>"),
-]
 ElementName = Annotated[str, AfterValidator(element_name)]
-Layouts = Annotated[
-    dict[Annotated[str, AfterValidator(layout_name)], LayoutEntry],
-    Field(min_length=1, examples=['a section [layouts] with lines such as S1 = "k | c"']),
-]
+
+
+LayoutName = Annotated[str, AfterValidator(layout_name)]
+
+
+@made_of_rows
+def layouts() -> tuple[Any, Shapes]:
+    """The section [layouts], and its shapes by place: a text for all mounts, or a table with a text for each."""
+    several = dict.fromkeys(mounts for kind in VEHICLES.values() if len(mounts := mounts_of(kind)) > 1)
+    tables = {f"<{' '.join(mounts)}>": _mounts_shape(mounts) for mounts in several}
+
+    def tag(entry: Any) -> str:
+        if not isinstance(entry, dict):
+            return "<strut>"
+        return max(tables, key=lambda name: len(set(entry) & set(tables[name].model_fields)))
+
+    strut = Annotated[str, PlainValidator(expression)]
+    each: Any = one_of_shapes({**tables, "<strut>": strut}, tag)
+    every: Any = dict.__class_getitem__((LayoutName, each))
+    example = 'a section [layouts] with lines such as S1 = "k | c"'
+    entry = Annotated[every, Field(min_length=1, examples=[example])]
+    return entry, {("layouts", "*", name): shape for name, shape in tables.items()}
+
+
+def _mounts_shape(mounts: tuple[str, ...]) -> type[Shape]:
+    text = Annotated[str, PlainValidator(expression)]
+    keys: dict[str, Any] = {mount: (text, Field(examples=[f'{mount} = "k | c"'])) for mount in mounts}
+    return create_model(f"Mounts {' '.join(mounts)}", __base__=Shape, **keys)

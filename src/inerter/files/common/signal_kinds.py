@@ -9,23 +9,15 @@ from typing import Any, NamedTuple
 from pydantic import PlainValidator
 
 from inerter.files.common.entries import one_of, positive, quantity, text, whole, yes_or_no
+from inerter.rows import Rows
 from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
 from inerter.signals.records import held_noise, profile, recorded
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
 from inerter.signals.transients import bump, chirp, step
+from inerter.vehicle.registry import VEHICLES
 
 NEEDED: Any = ...
-MOVED = {
-    "quarter-car": "road",
-    "half-car": "road",
-    "rig": "displacement",
-}  # what a signal moves if nothing else is said
-FORCES = {
-    "quarter-car": {"sprung_force": "N"},
-    "half-car": {"sprung_force": "N", "pitch_moment": "N m"},
-    "rig": {},
-}
 UNITS = ("m", "N", "N m")  # of what a signal can be
 _SQUARES = {"m": "m^2", "N": "N^2", "N m": "N^2 m^2"}
 _SIZES = {"m": "1 mm", "N": "100 N", "N m": "100 N m"}
@@ -70,6 +62,7 @@ _WAVE = {
 class SignalKind:
     """How one kind is made: `make` takes the keys of [signal] and `given`, some of `road`, `speed` and `unit`."""
 
+    key: str
     make: Callable[..., Signal]
     keys: Mapping[str, Key]
     given: tuple[str, ...] = ("speed",)
@@ -77,15 +70,17 @@ class SignalKind:
     of_roads: bool = False  # a force cannot be of this kind
 
 
-KINDS: dict[str, SignalKind] = {
-    "multisine": SignalKind(
+_OWN = (
+    SignalKind(
+        "multisine",
         multisine,
         {"seed": _SEED, "lowest": _frequency("lowest", "0.1", 0.1), "highest": _frequency("highest", "1000", 1000.0)},
         given=("road",),
         needs=("speed", "roughness"),
         of_roads=True,
     ),
-    "flat-multisine": SignalKind(
+    SignalKind(
+        "flat-multisine",
         flat_multisine,
         {
             "seed": _SEED,
@@ -94,9 +89,10 @@ KINDS: dict[str, SignalKind] = {
             "highest": _frequency("highest", "20"),
         },
     ),
-    "sine": SignalKind(sine, _WAVE),
-    "cosine": SignalKind(cosine, _WAVE),
-    "chirp": SignalKind(
+    SignalKind("sine", sine, _WAVE),
+    SignalKind("cosine", cosine, _WAVE),
+    SignalKind(
+        "chirp",
         chirp,
         {
             "amplitude": _size("amplitude"),
@@ -105,8 +101,9 @@ KINDS: dict[str, SignalKind] = {
             "duration": Key("s", positive, 'duration = "10 s"'),
         },
     ),
-    "step": SignalKind(step, {"height": _size("height"), "time": Key("s", quantity, 'time = "1 s"', 0.0)}),
-    "bump": SignalKind(
+    SignalKind("step", step, {"height": _size("height"), "time": Key("s", quantity, 'time = "1 s"', 0.0)}),
+    SignalKind(
+        "bump",
         bump,
         {
             "height": _size("height"),
@@ -116,7 +113,8 @@ KINDS: dict[str, SignalKind] = {
         needs=("speed",),
         of_roads=True,
     ),
-    "held-noise": SignalKind(
+    SignalKind(
+        "held-noise",
         held_noise,
         {
             "seed": _SEED,
@@ -125,7 +123,8 @@ KINDS: dict[str, SignalKind] = {
             "duration": Key("s", positive, 'duration = "100 s"', 100.0),
         },
     ),
-    "sampled": SignalKind(
+    SignalKind(
+        "sampled",
         lambda file, **others: recorded(path=file, **others),
         {
             "file": _FILE,
@@ -134,12 +133,13 @@ KINDS: dict[str, SignalKind] = {
         },
         given=("speed", "unit"),
     ),
-    "profile": SignalKind(
-        lambda file, speed: profile(path=file, speed=speed), {"file": _FILE}, needs=("speed",), of_roads=True
+    SignalKind(
+        "profile", lambda file, speed: profile(path=file, speed=speed), {"file": _FILE}, needs=("speed",), of_roads=True
     ),
-}
+)
+SIGNALS: Rows[SignalKind] = Rows("kind of signal", "key", ("make", "keys"), _OWN)
 
 
 def unit_of(name: object) -> str:
     """The unit of an input by its name."""
-    return {force: unit for forces in FORCES.values() for force, unit in forces.items()}.get(str(name), "m")
+    return {force: unit for kind in VEHICLES.values() for force, unit in kind.forces.items()}.get(str(name), "m")

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import reduce
-from operator import or_
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, PlainValidator, Tag, create_model
+from pydantic import ConfigDict, Field, PlainValidator, create_model
 
 from inerter.files.common.entries import one_of, text
-from inerter.files.common.shape import Shape
-from inerter.files.common.signal_kinds import KINDS, MOVED, NEEDED, UNITS, unit_of
+from inerter.files.common.shape import ANY, Shape, Shapes, one_of_shapes
+from inerter.files.common.signal_kinds import NEEDED, SIGNALS, UNITS, unit_of
+from inerter.rows import made_of_rows
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
+from inerter.vehicle.registry import VEHICLES
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class SignalRequest:
     @property
     def units(self) -> dict[str, str]:
         """Of the values; empty for what has none."""
-        return {name: key.of(self.unit).unit for name, key in KINDS[self.kind].keys.items()}
+        return {name: key.of(self.unit).unit for name, key in SIGNALS[self.kind].keys.items()}
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -42,7 +42,7 @@ class SignalRequest:
 
     def make(self, speed: float | None = None, roughness: float | None = None) -> Signal:
         """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
-        kind = KINDS[self.kind]
+        kind = SIGNALS[self.kind]
         road = None if speed is None or roughness is None else Road(roughness, speed)
         known = {"road": road, "speed": speed, "unit": self.unit}
         return kind.make(**self.values, **{name: known[name] for name in kind.given})
@@ -57,7 +57,7 @@ class SignalRequest:
 def signal_of(path: Path, model: str, entry: dict[str, Any]) -> SignalRequest:
     """The signal that a section [signal] asks for; its file is looked for beside that at `path`."""
     values = dict(entry)
-    kind, moved = values.pop("kind"), values.pop("input") or MOVED[model]
+    kind, moved = values.pop("kind"), values.pop("input") or VEHICLES[model].moved
     if "file" in values:
         values["file"] = str((path.parent / values["file"]).absolute())
     return SignalRequest(kind, moved, values)
@@ -67,13 +67,19 @@ class AnySignal(Shape):
     """A signal whose kind is missing or unknown: nothing more can be said about its keys."""
 
     model_config = ConfigDict(extra="ignore")
-    kind: Annotated[str, PlainValidator(one_of("a kind of signal", tuple(KINDS)))] = Field(
-        examples=['kind = "multisine"']
-    )
+    kind: Annotated[str, PlainValidator(one_of("a kind of signal", SIGNALS))] = Field(examples=['kind = "multisine"'])
+
+
+@made_of_rows
+def signal_shapes() -> tuple[Any, Shapes]:
+    """The section [signal] of any kind in any unit, and its shapes by place."""
+    made = {f"<{kind} in {unit}>": _signal_shape(kind, unit) for kind in SIGNALS for unit in UNITS}
+    shapes: dict[str, type[Shape]] = {ANY: AnySignal, **made}
+    return one_of_shapes(shapes, _signal_tag), {("signal", tag): shape for tag, shape in shapes.items()}
 
 
 def _signal_shape(kind: str, unit: str) -> type[Shape]:
-    keys = {name: key.of(unit) for name, key in KINDS[kind].keys.items()}
+    keys = {name: key.of(unit) for name, key in SIGNALS[kind].keys.items()}
     fields: dict[str, Any] = {
         name: (Annotated[Any, key.check(key.unit)], Field(default=key.default, examples=[key.example]))
         for name, key in keys.items()
@@ -85,19 +91,4 @@ def _signal_shape(kind: str, unit: str) -> type[Shape]:
 
 def _signal_tag(signal: Any) -> str:
     kind = signal.get("kind") if isinstance(signal, dict) else None
-    return f"<{kind} in {unit_of(signal.get('input'))}>" if isinstance(kind, str) and kind in KINDS else "<any>"
-
-
-_SIGNALS = {f"<{kind} in {unit}>": _signal_shape(kind, unit) for kind in KINDS for unit in UNITS}
-if TYPE_CHECKING:
-    SignalEntry = Shape
-else:
-    SignalEntry = Annotated[
-        reduce(or_, (Annotated[shape, Tag(tag)] for tag, shape in {"<any>": AnySignal, **_SIGNALS}.items())),
-        Discriminator(_signal_tag),
-    ]
-
-SIGNAL_SHAPES: dict[tuple[str, ...], type[Shape]] = {
-    ("signal", "<any>"): AnySignal,
-    **{("signal", tag): shape for tag, shape in _SIGNALS.items()},
-}
+    return f"<{kind} in {unit_of(signal.get('input'))}>" if isinstance(kind, str) and kind in SIGNALS else ANY

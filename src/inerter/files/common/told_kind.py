@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from inerter.errors import UnitError
+from inerter.fields import Field
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import Element, Free
-from inerter.networks.elements.registry import kinds, kinds_by_unit
-from inerter.networks.elements.roles import Field
+from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
 from inerter.units import parse_quantity, shown
 
 KIND = "kind"
@@ -24,7 +24,7 @@ class ToldKind(NamedTuple):
     def element(self, name: str) -> Element:
         """The element; a free value has its name."""
         value = Free(*self.value, name) if isinstance(self.value, tuple) else self.value
-        return kinds()[self.kind].of(value, name, **self.more)
+        return ELEMENTS[self.kind].of(value, name, **self.more)
 
 
 def names_kind(entry: Any) -> bool:
@@ -37,11 +37,11 @@ def told_kind(entry: dict[str, Any], *, free: bool = True) -> ToldKind:
 
     Raises ValueError for what is wrong with it.
     """
-    known, told = kinds(), entry[KIND]
-    if not isinstance(told, str) or told not in known:
-        listed = ", ".join(map(shown, known))
+    told = entry[KIND]
+    if not isinstance(told, str) or told not in ELEMENTS:
+        listed = ", ".join(map(shown, ELEMENTS))
         raise ValueError(f"Got kind = {shown(told)}: not a kind of element; expected one of {listed}.")
-    kind = known[told]
+    kind = ELEMENTS[told]
     fields = {field.name: field for field in kind.fields()}
     for key in entry:
         if key not in (KIND, *fields):

@@ -12,8 +12,8 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from inerter.errors import StudyError
-from inerter.files.common.problems import Shapes, explain, refusal
-from inerter.files.common.shape import Shape
+from inerter.files.common.problems import explain, refusal
+from inerter.files.common.shape import Shape, Shapes
 
 _LARGEST = 1_000_000  # bytes
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")

@@ -18,7 +18,7 @@ from inerter.networks.elements import Element, Free, Network
 from inerter.networks.parser import names, network
 from inerter.networks.transform import map_elements
 from inerter.units import shown
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 CUSTOM = "custom"
 

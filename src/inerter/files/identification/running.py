@@ -26,7 +26,7 @@ from inerter.records.readers import read_record
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 
 Progress = Callable[[float], None]
 FIT, RESIDUALS = "fit.json", "residuals.csv"

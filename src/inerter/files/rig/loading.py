@@ -9,18 +9,17 @@ from typing import Any
 from inerter.errors import InerterError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
 from inerter.files.common.problems import at, refusal
-from inerter.files.common.shape import RIG
-from inerter.files.common.signal_kinds import KINDS, MOVED
+from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import SignalRequest, signal_of
 from inerter.files.common.toml import read_shape
 from inerter.files.rig.running import RigRequest
-from inerter.files.rig.shape import SHAPES, RigFile, RigSettings
+from inerter.files.rig.shape import RigSettings, shapes
 from inerter.identification.virtual_rig import VirtualRig
 from inerter.networks.elements import Element
 from inerter.networks.parser import network
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
-from inerter.vehicle.cars import Rig
+from inerter.vehicle.rig import Rig
 from inerter.writing import characters
 
 _OWN = ("layout", "duration", "start")  # of [rig], and not of the rig itself
@@ -32,13 +31,13 @@ def load_rig(path: str | Path) -> RigRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a rig file", RigFile, SHAPES)
+    shape = read_shape(path, "a rig file", *shapes())
     elements = {name: element_of(name, entry) for name, entry in shape.elements.items()}
-    layouts = {name: StrutLayout(struts_of(RIG, entry)) for name, entry in shape.layouts.items()}
+    layouts = {name: StrutLayout(struts_of(Rig.key, entry)) for name, entry in shape.layouts.items()}
     chosen = shape.rig.layout or (next(iter(layouts)) if len(layouts) == 1 else "")
-    signal = signal_of(path, RIG, shape.signal.model_dump())
+    signal = signal_of(path, Rig.key, shape.signal.model_dump())
     problems = [
-        *layout_problems(RIG, elements, layouts),
+        *layout_problems(Rig.key, elements, layouts),
         *chosen_layout("rig", chosen, tuple(layouts)),
         *_signal_problems(signal),
     ]
@@ -51,9 +50,9 @@ def load_rig(path: str | Path) -> RigRequest:
 
 
 def _signal_problems(signal: SignalRequest) -> Iterator[str]:
-    if signal.input != MOVED[RIG]:
-        yield at(("signal", "input"), f"got {shown(signal.input)}; a table is moved by a {MOVED[RIG]}.")
-    elif KINDS[signal.kind].needs:
+    if signal.input != Rig.moved:
+        yield at(("signal", "input"), f"got {shown(signal.input)}; a table is moved by a {Rig.moved}.")
+    elif SIGNALS[signal.kind].needs:
         yield at(
             ("signal", "kind"),
             f"got {shown(signal.kind)}, which is the shape of a road; expected another kind, such as "
@@ -75,4 +74,4 @@ def _rig(path: Path, settings: RigSettings, expression: str, elements: dict[str,
         piecewise(Rig(device))
         return VirtualRig(device, **given)
     except InerterError as error:
-        raise refusal(path, [at((RIG,), str(error))]) from None
+        raise refusal(path, [at(("rig",), str(error))]) from None

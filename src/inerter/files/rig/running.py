@@ -7,7 +7,6 @@ from pathlib import Path
 
 from inerter.errors import InerterError, StudyError
 from inerter.files.common.problems import at
-from inerter.files.common.shape import RIG
 from inerter.files.common.signals import SignalRequest
 from inerter.identification.virtual_rig import VirtualRig
 from inerter.records.record import Record
@@ -33,4 +32,4 @@ def record_of(path: Path, request: RigRequest) -> Record:
     try:
         return request.run()
     except InerterError as error:
-        raise StudyError(f"{path.name}: {at((RIG,), str(error))}") from None
+        raise StudyError(f"{path.name}: {at(('rig',), str(error))}") from None

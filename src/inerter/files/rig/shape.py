@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field, PlainValidator
+from pydantic import Field, PlainValidator, create_model
 
 from inerter.files.common.entries import (
     Amount,
@@ -17,9 +17,10 @@ from inerter.files.common.entries import (
     whole,
     yes_or_no,
 )
-from inerter.files.common.shape import Axles, ElementName, Layouts, Shape
-from inerter.files.common.signals import SIGNAL_SHAPES, SignalEntry
+from inerter.files.common.shape import ElementName, Shape, Shapes, layouts
+from inerter.files.common.signals import signal_shapes
 from inerter.files.common.told_kind import ToldKind
+from inerter.rows import made_of_rows
 
 
 class RigSettings(Shape):
@@ -44,20 +45,26 @@ class RigSettings(Shape):
 
 
 class RigFile(Shape):
-    """The whole file."""
+    """The whole file, but for what rows make of its layouts and signal."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
     elements: dict[ElementName, Annotated[Amount | ToldKind, PlainValidator(fixed_amount)]] = Field(
         min_length=1, examples=['a section [elements] with lines such as b = "113 kg"']
     )
-    layouts: Layouts = Field(examples=['a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"'])
-    signal: SignalEntry = Field(examples=['a section [signal] with kind = "cosine"'])
+    layouts: Any
+    signal: Any
     rig: RigSettings = Field(examples=['a section [rig] with duration = "5 s"'])
 
 
-SHAPES: dict[tuple[str, ...], type[Shape]] = {
-    ("layouts", "*", "<axles>"): Axles,
-    **SIGNAL_SHAPES,
-    (): RigFile,
-    ("rig",): RigSettings,
-}
+@made_of_rows
+def shapes() -> tuple[type[RigFile], Shapes]:
+    """The shape of a rig file, and all shapes in it by their place."""
+    layout, tables = layouts()
+    signal, signals = signal_shapes()
+    file = create_model(
+        "RigFile",
+        __base__=RigFile,
+        layouts=(layout, Field(examples=['a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"'])),
+        signal=(signal, Field(examples=['a section [signal] with kind = "cosine"'])),
+    )
+    return file, {**tables, **signals, (): file, ("rig",): RigSettings}

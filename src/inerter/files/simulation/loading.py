@@ -8,15 +8,17 @@ from pathlib import Path
 from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
 from inerter.files.common.problems import at, refusal
-from inerter.files.common.signal_kinds import FORCES, KINDS, MOVED
+from inerter.files.common.shape import ROAD
+from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
 from inerter.files.simulation.request import SimulationRequest
-from inerter.files.simulation.shape import SHAPES, SimulationFile
+from inerter.files.simulation.shape import SimulationFile, shapes
 from inerter.simulation.inputs import whole_steps
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
+from inerter.vehicle.registry import VEHICLES
 from inerter.writing import characters
 
 
@@ -26,7 +28,7 @@ def load_simulation(path: str | Path) -> SimulationRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a simulation file", SimulationFile, SHAPES)
+    shape = read_shape(path, "a simulation file", *shapes())
     request = _resolve(path, shape)
     for check in (_names, _needs, _parts):
         problems = list(check(request))
@@ -61,7 +63,8 @@ def _names(request: SimulationRequest) -> Iterator[str]:
     """Names that nothing has."""
     yield from layout_problems(request.model, request.elements, request.layouts)
     yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
-    moved, inputs = request.signal.input, (MOVED[request.model], *FORCES[request.model])
+    kind = VEHICLES[request.model]
+    moved, inputs = request.signal.input, (kind.moved, *kind.forces)
     if moved not in inputs:
         hint = nearest(moved, inputs)
         yield at(("signal", "input"), f"got {shown(moved)}; expected one of {some(inputs)}.{hint}")
@@ -69,7 +72,7 @@ def _names(request: SimulationRequest) -> Iterator[str]:
 
 def _needs(request: SimulationRequest) -> Iterator[str]:
     """What is missing for the signal, the vehicle or the integration."""
-    signal, kind = request.signal, KINDS[request.signal.kind]
+    signal, kind = request.signal, SIGNALS[request.signal.kind]
     if kind.of_roads and signal.unit != "m":
         yield at(
             ("signal", "kind"),
@@ -77,11 +80,11 @@ def _needs(request: SimulationRequest) -> Iterator[str]:
             f"kind, or no input.",
         )
     known = {"speed": request.speed, "roughness": request.roughness}
-    examples = {"speed": "25 m/s", "roughness": "5e-7 m^3/cycle"}
+    examples = {field.key: field.example for field in ROAD}
     for key in kind.needs:
         if known[key] is None:
             yield at(("road", key), f'missing, but a {signal.kind} needs it; expected {key} = "{examples[key]}".')
-    if request.model == "half-car" and signal.unit == "m" and request.speed is None and not kind.needs:
+    if signal.unit == "m" and request.speed is None and not kind.needs and _has_delays(request):
         yield at(
             ("road", "speed"),
             'missing, but the rear wheel meets the road later than the front one; expected speed = "25 m/s".',
@@ -93,6 +96,14 @@ def _needs(request: SimulationRequest) -> Iterator[str]:
             whole_steps(request.duration, request.step)
         except SimulationError as error:
             yield at(("simulation", "step"), str(error))
+
+
+def _has_delays(request: SimulationRequest) -> bool:
+    """Whether the road reaches some places later than others; not where the vehicle cannot be, which is told later."""
+    try:
+        return any(road.distance > 0.0 for road in request.design().mechanism().roads)
+    except InerterError:
+        return False
 
 
 def _parts(request: SimulationRequest) -> Iterator[str]:

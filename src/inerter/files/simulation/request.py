@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from inerter.files.common.layouts import StrutLayout, in_si
+from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
+from inerter.files.common.shape import ROAD
 from inerter.files.common.signals import SignalRequest
 from inerter.files.common.told_kind import entry_of
 from inerter.files.common.toml import as_toml
@@ -15,7 +16,7 @@ from inerter.networks.elements import Element
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
 from inerter.simulation.trajectory import Trajectory
-from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
+from inerter.vehicle.vehicle import VehicleModel
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class SimulationRequest:
         """The files that it is read from."""
         return (self.path, *self.signal.inputs)
 
-    def design(self) -> QuarterCar | HalfCar | Rig:
+    def design(self) -> VehicleModel:
         """The vehicle, or rig, with the chosen layout."""
         return self.layouts[self.layout].design(self.model, self.vehicle, self.elements)
 
@@ -78,10 +79,10 @@ class SimulationRequest:
 
     def resolved(self) -> dict[str, Any]:
         """The request as a simulation file says it: every default filled in, every quantity in SI units."""
-        road = {key: in_si(key, v) for key in ("speed", "roughness") if (v := getattr(self, key)) is not None}
+        road = in_si(ROAD, {f.key: v for f in ROAD if (v := getattr(self, f.key)) is not None})
         return {
             "title": self.title,
-            "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
+            "vehicle": vehicle_entry(self.model, self.vehicle),
             **({"road": road} if road else {}),
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},

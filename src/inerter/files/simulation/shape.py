@@ -2,55 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import ConfigDict, Discriminator, Field, PlainValidator, Tag
+from pydantic import ConfigDict, Field, PlainValidator, create_model
 
 from inerter.files.common.entries import Amount, fixed_amount, one_of, positive, text, whole, yes_or_no
-from inerter.files.common.shape import (
-    MODELS,
-    RIG,
-    Axles,
-    ElementName,
-    HalfCarShape,
-    Layouts,
-    QuarterCarShape,
-    Shape,
-    model_tag,
-)
-from inerter.files.common.signals import SIGNAL_SHAPES, SignalEntry
+from inerter.files.common.shape import ElementName, Shape, Shapes, layouts, vehicle_shapes
+from inerter.files.common.signals import signal_shapes
 from inerter.files.common.told_kind import ToldKind
+from inerter.rows import made_of_rows
+from inerter.units import shown
+from inerter.vehicle.registry import VEHICLES
 
 INTEGRATORS = ("event-driven", "time-stepping")
 INITIAL = ("rest", "preload", "periodic")
-
-
-class RigShape(Shape):
-    """A rig is all device."""
-
-    model: Literal["rig"]
 
 
 class AnyVehicle(Shape):
     """A vehicle whose model is missing or unknown: nothing more can be said about its keys."""
 
     model_config = ConfigDict(extra="ignore")
-    model: Annotated[str, PlainValidator(one_of("a vehicle model", (*MODELS, RIG)))] = Field(
+    model: Annotated[str, PlainValidator(one_of("a vehicle model", VEHICLES))] = Field(
         examples=['model = "quarter-car"']
     )
-
-
-def _moved_tag(vehicle: Any) -> str:
-    return f"<{RIG}>" if isinstance(vehicle, dict) and vehicle.get("model") == RIG else model_tag(vehicle)
-
-
-MovedEntry = Annotated[
-    Annotated[QuarterCarShape, Tag("<quarter-car>")]
-    | Annotated[HalfCarShape, Tag("<half-car>")]
-    | Annotated[RigShape, Tag("<rig>")]
-    | Annotated[AnyVehicle, Tag("<any>")],
-    Discriminator(_moved_tag),
-]
 
 
 class PassedRoad(Shape):
@@ -73,29 +47,40 @@ class SimulationSettings(Shape):
 
 
 class SimulationFile(Shape):
-    """The whole file."""
+    """The whole file, but for what rows make of its vehicle, layouts and signal."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
-    vehicle: MovedEntry = Field(examples=['a section [vehicle] with model = "quarter-car", "half-car" or "rig"'])
+    vehicle: Any
     road: PassedRoad | None = Field(
         default=None, examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"']
     )
     elements: dict[ElementName, Annotated[Amount | ToldKind, PlainValidator(fixed_amount)]] = Field(
         min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
     )
-    layouts: Layouts
-    signal: SignalEntry = Field(examples=['a section [signal] with kind = "multisine"'])
+    layouts: Any
+    signal: Any
     simulation: SimulationSettings = Field(examples=['a section [simulation] with duration = "10 s"'])
 
 
-SHAPES: dict[tuple[str, ...], type[Shape]] = {
-    ("vehicle", "<quarter-car>"): QuarterCarShape,
-    ("vehicle", "<half-car>"): HalfCarShape,
-    (): SimulationFile,
-    ("vehicle", "<any>"): AnyVehicle,
-    ("vehicle", "<rig>"): RigShape,
-    ("road",): PassedRoad,
-    ("layouts", "*", "<axles>"): Axles,
-    **SIGNAL_SHAPES,
-    ("simulation",): SimulationSettings,
-}
+@made_of_rows
+def shapes() -> tuple[type[SimulationFile], Shapes]:
+    """The shape of a simulation file, and all shapes in it by their place."""
+    vehicle, vehicles = vehicle_shapes(VEHICLES, AnyVehicle)
+    *models, last = map(shown, VEHICLES)
+    layout, tables = layouts()
+    signal, signals = signal_shapes()
+    file = create_model(
+        "SimulationFile",
+        __base__=SimulationFile,
+        vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {', '.join(models)} or {last}"])),
+        layouts=(layout, ...),
+        signal=(signal, Field(examples=['a section [signal] with kind = "multisine"'])),
+    )
+    return file, {
+        **vehicles,
+        (): file,
+        ("road",): PassedRoad,
+        **tables,
+        **signals,
+        ("simulation",): SimulationSettings,
+    }

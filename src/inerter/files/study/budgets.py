@@ -13,7 +13,6 @@ import numpy as np
 from inerter.errors import StatusKind
 from inerter.files.study.cases import FAILURES, Case, Outcome
 from inerter.files.study.method_problems import budget_method
-from inerter.files.study.registry import INDEX, method_of
 from inerter.files.study.study import Study, elements_used
 from inerter.networks.elements import Free
 from inerter.optimisation.budget import Budget, budget
@@ -93,7 +92,7 @@ def run_budget(study: Study, case: BudgetCase, outcomes: Mapping[Case, Outcome],
                 study.design(layout).with_values(outcomes[Case(layout, case.index)].parameters)
                 for layout in (case.layout, str(study.baseline))
             )
-            index, how = INDEX[case.index](study), method_of(study, method, threads)
+            index, how = study.index(case.index), study.method(method, threads)
             present = design_value(study, outcomes[Case(case.layout, case.index)], case.parameter)
             bounds = None if at_most else (present / _DOWN, present * _UP)
             found = budget(design, baseline, index, parameter=case.parameter, method=how, bounds=bounds)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import OK, InerterError, Status, StatusKind
-from inerter.files.study.registry import INDEX, method_of
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
+from inerter.methods.registry import is_blind
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.systems.descriptor import is_held_by_springs
@@ -19,7 +19,6 @@ from inerter.vehicle.mechanism import Mechanism
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
-_LINEAR = "norm"
 
 
 @dataclass(frozen=True)
@@ -86,8 +85,9 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
 def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
     """What linear analysis leaves out of a design if the study makes use of it, and whether springs carry it."""
     measures = mechanism.measures
-    left_out = linear_graph(mechanism).notes if _LINEAR in study.methods else ()
-    notes = [f"{_prefix(study, _LINEAR)}{note}" for note in left_out]
+    blind = [method for method in study.methods if is_blind(method)]
+    left_out = linear_graph(mechanism).notes if blind else ()
+    notes = [f"{_prefix(study, method)}{note}" for method in blind for note in left_out]
     if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
         notes.append("no spring carries the body, which would sink under its own weight")
     return notes
@@ -111,8 +111,8 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     }
     found: Optimum | None = None
     if study.optimise is not None and vehicle.free_values():
-        method = method_of(study, study.optimise, threads)
-        found = optimise(vehicle, INDEX[case.index](study), method, seed=study.seed)
+        method = study.method(study.optimise, threads)
+        found = optimise(vehicle, study.index(case.index), method, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
         fields = {name: getattr(found, name) for name in fields}
 
@@ -120,7 +120,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         if found is not None and (method, index) == (study.optimise, case.index):
             return found.estimate
         try:
-            return evaluate(vehicle, INDEX[index](study), method_of(study, method, threads))
+            return evaluate(vehicle, study.index(index), study.method(method, threads))
         except FAILURES as error:
             if len(study.evaluate) == 1:
                 raise

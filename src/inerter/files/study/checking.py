@@ -9,14 +9,14 @@ from inerter.errors import InerterError
 from inerter.files.common.problems import at, refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import design_notes
-from inerter.files.study.registry import INDEX, METHOD
 from inerter.files.study.study import Study
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Compiled
+from inerter.methods.registry import is_blind
 from inerter.networks.parser import names
 from inerter.optimisation.optimise import check_variables
 from inerter.systems.piecewise import piecewise
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 
 def check_study(study: Study) -> None:
@@ -38,8 +38,8 @@ def check_study(study: Study) -> None:
 
 def _check_design(study: Study, vehicle: Vehicle) -> None:
     mechanism = vehicle.mechanism()
-    questions = [INDEX[name](study).question(mechanism) for name in study.indices]
-    if "norm" in study.methods:
+    questions = [study.index(name).question(mechanism) for name in study.indices]
+    if any(map(is_blind, study.methods)):
         for question in questions:
             linear_problem(mechanism, question, CONVENTIONS[study.conventions])
     else:
@@ -47,9 +47,9 @@ def _check_design(study: Study, vehicle: Vehicle) -> None:
         piecewise(vehicle.with_values({name: (value.lower * value.upper) ** 0.5 for name, value in free}))
     if study.optimise is not None and vehicle.free_values():
         check_variables(vehicle)
-        method = METHOD[study.optimise](replace(study, relative_error=None))  # which would take simulations
+        method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
-            method.objective(vehicle, INDEX[name](study))
+            method.objective(vehicle, study.index(name))
 
 
 def study_notes(study: Study) -> list[str]:
@@ -70,9 +70,9 @@ def kernels(study: Study) -> list[Any]:
     found: list[Any] = []
     design = study.design(next(iter(study.layouts)))
     for name in study.methods:
-        method = METHOD[name](study)
+        method = study.method(name)
         if isinstance(method, Compiled):
             for index in study.indices:
-                question = INDEX[index](study).question(design.mechanism())
+                question = study.index(index).question(design.mechanism())
                 found += method.kernels(question, search=name == study.optimise)
     return list(dict.fromkeys(found))

@@ -13,8 +13,10 @@ from inerter.files.common.problems import at, refusal
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
 from inerter.files.study.method_problems import method_problems
-from inerter.files.study.shape import SHAPES, StudyFile, SweepRange
+from inerter.files.study.shape import StudyFile, SweepRange, shapes
 from inerter.files.study.study import Study, Sweep, elements_used
+from inerter.indices.registry import index_settings
+from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
 from inerter.signals.road import Road
 from inerter.units import shown
@@ -27,7 +29,7 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a study file", StudyFile, SHAPES)
+    shape = read_shape(path, "a study file", *shapes())
     study = _resolve(path, shape)
     problems = [
         *layout_problems(study.model, study.elements, study.layouts),
@@ -55,7 +57,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         path=path,
         model=model,
         vehicle=vehicle,
-        road=Road(roughness=shape.road.roughness, speed=shape.road.speed),
+        road=Road(**shape.road.model_dump()),
         elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
         indices=settings.indices,
@@ -65,10 +67,9 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         baseline=baseline,
         sweep=None if settings.sweep is None else _sweep(*next(iter(settings.sweep.items()))),
         seed=settings.seed,
-        high_pass=settings.high_pass,
         realisations=settings.realisations,
         relative_error=settings.relative_error,
-        force=settings.force,
+        settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
         budgets=settings.budgets,
     )
 
@@ -104,18 +105,15 @@ def _setting_problems(study: Study) -> Iterator[str]:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
         yield at(("study", "baseline"), f"got {shown(study.baseline)}; expected a layout, one of {known}.{hint}")
-    if study.high_pass is not None and "J3" not in study.indices:
-        yield at(
-            ("study", "high_pass"), 'a filter of J3, which is not in indices; expected "J3" there, or no high_pass.'
-        )
 
 
 def _free_value_problems(study: Study) -> Iterator[str]:
     used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
     if used and study.optimise is None:
+        method = shown(methods_that(searches)[0])
         yield at(
             ("study", "optimise"),
-            f'missing, but there are free values, {some(used)}; expected optimise = "norm", or fixed values.',
+            f"missing, but there are free values, {some(used)}; expected optimise = {method}, or fixed values.",
         )
     if not used and study.optimise is not None:
         yield at(

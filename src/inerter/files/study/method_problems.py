@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
+from inerter.fields import fields_of
 from inerter.files.common.problems import at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.shape import AVERAGING, FORCED
 from inerter.files.study.study import Study, elements_used
+from inerter.indices.registry import INDICES, amplitude_of, index_settings
+from inerter.methods.registry import METHODS, averages, is_blind, methods_that, needs_amplitude, refuses_gaps
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Statistical
 from inerter.systems.graph import switching_parts
 from inerter.units import shown
 
-_BLIND = "norm"  # the method that sees neither friction nor gaps
-_NO_GAPS = "statistical-linearisation"
-
 
 def method_problems(study: Study) -> Iterator[str]:
     """One line for each."""
     yield from _road_problems(study)
+    yield from _index_problems(study)
     yield from _force_problems(study)
     yield from _gap_problems(study)
     yield from _budget_problems(study)
@@ -27,7 +27,7 @@ def method_problems(study: Study) -> Iterator[str]:
 
 def budget_method(study: Study) -> str:
     """The first method of `evaluate` that sees friction, else the first."""
-    return next((method for method in study.evaluate if method != _BLIND), study.evaluate[0])
+    return next((method for method in study.evaluate if not is_blind(method)), study.evaluate[0])
 
 
 def _road_problems(study: Study) -> Iterator[str]:
@@ -38,39 +38,62 @@ def _road_problems(study: Study) -> Iterator[str]:
             f"got {study.relative_error} beside realisations = {study.realisations}; expected one of the two: how many "
             f"roads, or how small an error they must reach.",
         )
-    elif given and not set(AVERAGING) & set(study.methods):
+    elif given and not any(map(averages, study.methods)):
         yield at(
             ("study", given[0]),
-            f"no method averages over roads; expected {_either(AVERAGING)} in evaluate, or no {given[0]}.",
+            f"no method averages over roads; expected {_either(methods_that(averages))} in evaluate, or no {given[0]}.",
         )
+
+
+def _index_problems(study: Study) -> Iterator[str]:
+    """Settings of indices that nothing asks for."""
+    amplitudes = {field.key for symbol in INDICES if (field := amplitude_of(symbol)) is not None}
+    for key in study.settings:
+        field, owners = index_settings()[key], [symbol for symbol in INDICES if key in _keys(symbol)]
+        asked = set(owners) & set(study.indices)
+        what, there = f"the {field.told} of {_either(owners, str)}", _either(owners)
+        if key in amplitudes and not (asked and any(map(needs_amplitude, study.methods))):
+            yield at(
+                ("study", key),
+                f"{what} for {_either(methods_that(needs_amplitude))}; expected {there} in indices and one of them in "
+                f"evaluate, or no {key}.",
+            )
+        elif not asked:
+            yield at(("study", key), f"{what}, which is not in indices; expected {there} there, or no {key}.")
+
+
+def _keys(symbol: str) -> set[str]:
+    return {field.key for field in fields_of(INDICES[symbol])}
 
 
 def _force_problems(study: Study) -> Iterator[str]:
-    concerned = [method for method in study.methods if method in FORCED] if "J5" in study.indices else []
+    """Amplitudes that are missing."""
+    concerned = [method for method in study.methods if needs_amplitude(method)]
     nonlinear = _layouts_with(study, lambda part: part.switch is not None)
-    if study.force is None and concerned and nonlinear:
-        yield at(
-            ("study", "force"),
-            f"missing, but {concerned[0]} takes J5 of {some(nonlinear)}, where friction or gaps make it depend on "
-            f'the size of the force; expected its amplitude, such as force = "1 kN".',
-        )
-    if study.force is not None and not concerned:
-        yield at(
-            ("study", "force"),
-            f'the amplitude of the force of J5 for {_either(FORCED)}; expected "J5" in indices and one of them in '
-            f"evaluate, or no force.",
-        )
+    for symbol in study.indices if concerned and nonlinear else ():
+        field = amplitude_of(symbol)
+        if field is not None and field.key not in study.settings:
+            yield at(
+                ("study", field.key),
+                f"missing, but {concerned[0]} takes {symbol} of {some(nonlinear)}, where friction or gaps make it "
+                f'depend on the size of the force; expected its amplitude, such as {field.key} = "{field.example}".',
+            )
 
 
 def _gap_problems(study: Study) -> Iterator[str]:
     gaps = _layouts_with(study, lambda part: part.statistical is Statistical.REFUSED)
-    key = "optimise" if study.optimise == _NO_GAPS else "evaluate"
-    if _NO_GAPS in study.methods and gaps:
+    refusing = next(filter(refuses_gaps, study.methods), None)
+    if refusing is not None and gaps:
         yield at(
-            ("study", key),
-            f"got {shown(_NO_GAPS)}, which has no answer for gaps, and {some(gaps)} has one; expected another "
-            f"method, such as {shown(AVERAGING[0])}, or layouts without gaps.",
+            ("study", "optimise" if study.optimise == refusing else "evaluate"),
+            f"got {shown(refusing)}, which has no answer for gaps, and {some(gaps)} has one; expected another "
+            f"method, such as {shown(_simulating())}, or layouts without gaps.",
         )
+
+
+def _simulating() -> str:
+    """The first method that sees friction and gaps alike."""
+    return next(name for name in METHODS if not is_blind(name) and not refuses_gaps(name))
 
 
 def _budget_problems(study: Study) -> Iterator[str]:
@@ -87,11 +110,11 @@ def _budget_problems(study: Study) -> Iterator[str]:
             yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
         elif not set(used.get(name, ())) - {study.baseline}:
             yield at(place, f"no layout but the baseline has {name}; expected an element of a layout that is compared.")
-        elif study.elements[name].switch is not None and budget_method(study) == _BLIND:
+        elif study.elements[name].switch is not None and is_blind(budget_method(study)):
             yield at(
                 place,
                 f"{name} is a {study.elements[name].key}, which linear analysis does not see; expected a method "
-                f"that does in evaluate, such as {shown(AVERAGING[0])}.",
+                f"that does in evaluate, such as {shown(_simulating())}.",
             )
 
 
@@ -102,5 +125,5 @@ def _layouts_with(study: Study, wanted: Callable[[Element], bool]) -> list[str]:
     return [layout for layout in study.layouts if layout in concerned]
 
 
-def _either(words: tuple[str, ...]) -> str:
-    return " or ".join(shown(word) for word in words)
+def _either(words: Iterable[str], write: Callable[[str], str] = shown) -> str:
+    return " or ".join(map(write, words))

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 import inerter
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case, Outcome, cases
-from inerter.files.study.registry import INDEX
 from inerter.files.study.study import Study
 from inerter.methods.compare import difference_of
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Estimate
+from inerter.methods.registry import is_blind
 from inerter.networks.elements import Free
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
@@ -61,7 +61,7 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
 def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
     sweep = study.sweep
-    indices = {name: INDEX[name](study) for name in study.indices}
+    indices = {name: study.index(name) for name in study.indices}
     design = ("layout", "index", sweep.element if sweep else "point")
     sizes = {
         "layout": len(study.layouts),
@@ -102,8 +102,8 @@ def _count(study: Study, layout: str) -> int:
 
 
 def is_uncertain(study: Study) -> bool:
-    """Whether some method is not the norm."""
-    return set(study.methods) != {"norm"}
+    """Whether some method is not one of the linear model, which knows its numbers."""
+    return not all(map(is_blind, study.methods))
 
 
 _VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
@@ -287,7 +287,7 @@ def _responses(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
     for (layout, index), vehicle in designs.items():
         mechanism = vehicle.mechanism()
         try:
-            problem = linear_problem(mechanism, INDEX[index](study).question(mechanism), conventions)
+            problem = linear_problem(mechanism, study.index(index).question(mechanism), conventions)
             systems[layout, index] = problem, problem.system(close(problem.descriptor, {}))
         except (MechanismError, LinearSystemError):  # friction or a gap alone holds a part
             if not is_uncertain(study):
@@ -306,7 +306,7 @@ def _responses(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
             gains[list(study.layouts).index(layout)] = weights[:, None] * np.abs(response).T
         own = f"({question.unit})" if "/" in question.unit else question.unit
         unit = question.unit if question.road is None else f"{own}/(m/s)"
-        attributes = {"units": unit, "long_name": INDEX[index](study).response}
+        attributes = {"units": unit, "long_name": study.index(index).response}
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
         names = [o.output if o.weight == 1.0 else f"{o.output} x {o.weight:g} m" for o in question.outputs]
         data = data.assign_coords({f"output_{index}": names})

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, ConfigDict, Discriminator, Field, PlainValidator, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    PlainValidator,
+    Tag,
+    create_model,
+    model_validator,
+)
 
 from inerter.files.common.entries import (
     MOST_POINTS,
@@ -21,27 +30,25 @@ from inerter.files.common.entries import (
     whole,
 )
 from inerter.files.common.shape import (
-    MODELS,
-    RIG,
+    ROAD,
     AmountText,
-    Axles,
     ElementEntry,
     ElementName,
-    HalfCarShape,
-    Layouts,
-    QuarterCarShape,
     Range,
     Shape,
-    model_tag,
+    Shapes,
+    layouts,
+    of_quantities,
+    vehicle_shapes,
 )
+from inerter.indices.registry import INDICES, index_settings
+from inerter.methods.linear import CONVENTIONS
+from inerter.methods.registry import METHODS, methods_that, searches
+from inerter.rows import made_of_rows
 from inerter.units import shown
+from inerter.vehicle.registry import VEHICLES
 
-INDICES = ("J1", "J3", "J5")
-METHODS = ("norm", "statistical-linearisation", "expected-value", "approximate-linear")
-AVERAGING = ("expected-value", "approximate-linear")  # over random roads
-FORCED = ("expected-value", "statistical-linearisation")  # take J5 at a force of one amplitude
 _MOST_ROADS = 100_000
-CONVENTIONS = ("exact", "paper2008")
 SPACINGS = ("linear", "log")
 
 
@@ -68,12 +75,18 @@ SweepEntry = Annotated[
 
 
 def _car(value: Any) -> str:
-    if value == RIG:
+    cars = tuple(_cars())
+    if isinstance(value, str) and value in VEHICLES and value not in cars:
         raise ValueError(
-            f"Got {shown(RIG)}, which has no road to be judged on; expected {' or '.join(map(shown, MODELS))}. "
-            f"A rig is for: inerter simulate."
+            f"Got {shown(value)}, which has no road to be judged on; expected {' or '.join(map(shown, cars))}. "
+            f"A {value.replace('-', ' ')} is for: inerter simulate."
         )
-    return one_of("a vehicle model", MODELS)(value)
+    return one_of("a vehicle model", cars)(value)
+
+
+def _cars() -> list[str]:
+    """The models that are judged on a road."""
+    return [model for model, kind in VEHICLES.items() if kind.moved == "road"]
 
 
 class AnyCar(Shape):
@@ -83,63 +96,71 @@ class AnyCar(Shape):
     model: Annotated[str, PlainValidator(_car)] = Field(examples=['model = "quarter-car"'])
 
 
-VehicleEntry = Annotated[
-    Annotated[QuarterCarShape, Tag("<quarter-car>")]
-    | Annotated[HalfCarShape, Tag("<half-car>")]
-    | Annotated[AnyCar, Tag("<any>")],
-    Discriminator(model_tag),
-]
+RoadShape = create_model("RoadShape", __base__=Shape, **of_quantities(ROAD))
 
 
-class RoadShape(Shape):
-    """The keys of `Road`."""
-
-    speed: Annotated[float, positive("m/s")] = Field(examples=['speed = "25 m/s"'])
-    roughness: Annotated[float, positive("m^3/cycle")] = Field(examples=['roughness = "5e-7 m^3/cycle"'])
+def _search(value: Any) -> str:
+    return one_of("an optimisation method", methods_that(searches))(value)
 
 
 class Settings(Shape):
-    """What is asked of the layouts, and how it is answered."""
+    """What is asked of the layouts, and how it is answered; beside these there are the settings of indices."""
 
     indices: Annotated[tuple[str, ...], some_of("an index", INDICES)] = Field(examples=['indices = ["J1", "J3", "J5"]'])
     conventions: Annotated[str, PlainValidator(one_of("a set of conventions", CONVENTIONS))] = "exact"
-    optimise: Annotated[str | None, PlainValidator(one_of("an optimisation method", METHODS))] = None
+    optimise: Annotated[str | None, PlainValidator(_search)] = None
     evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = ("norm",)
     baseline: Annotated[str | None, PlainValidator(text)] = None
     sweep: Annotated[dict[str, SweepEntry], AfterValidator(one_sweep)] | None = Field(
         default=None, examples=['sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }']
     )
     seed: Annotated[int, whole(0, 2**63 - 1)] = 0
-    high_pass: Annotated[float | None, positive("rad/s")] = None
     realisations: Annotated[int | None, whole(2, _MOST_ROADS)] = None
     relative_error: Annotated[float | None, PlainValidator(share)] = None
-    force: Annotated[float | None, positive("N")] = None
     budgets: Annotated[tuple[str, ...], some_names("f")] = ()
 
 
 class StudyFile(Shape):
-    """The whole file."""
+    """The whole file, but for what is made of quantities and rows."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
-    vehicle: VehicleEntry = Field(examples=['a section [vehicle] with model = "quarter-car" or "half-car"'])
-    road: RoadShape = Field(
-        examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'],
-    )
+    vehicle: Any
+    road: Any
     elements: dict[ElementName, ElementEntry] = Field(
         min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
     )
-    layouts: Layouts
-    study: Settings = Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])
+    layouts: Any
+    study: Any
 
 
-SHAPES: dict[tuple[str, ...], type[Shape]] = {
-    (): StudyFile,
-    ("vehicle", "<any>"): AnyCar,
-    ("vehicle", "<quarter-car>"): QuarterCarShape,
-    ("vehicle", "<half-car>"): HalfCarShape,
-    ("road",): RoadShape,
-    ("elements", "*", "<range>"): Range,
-    ("layouts", "*", "<axles>"): Axles,
-    ("study",): Settings,
-    ("study", "sweep", "*", "<range>"): SweepRange,
-}
+@made_of_rows
+def shapes() -> tuple[type[StudyFile], Shapes]:
+    """The shape of a study file, and all shapes in it by their place."""
+    keys: dict[str, Any] = {
+        key: (
+            Annotated[float | None, positive(field.unit)],
+            Field(default=None, examples=[f'{key} = "{field.example}"']),
+        )
+        for key, field in index_settings().items()
+    }
+    settings = create_model("Settings", __base__=Settings, **keys)
+    vehicle, vehicles = vehicle_shapes(_cars(), AnyCar)
+    cars = " or ".join(map(shown, _cars()))
+    layout, tables = layouts()
+    file = create_model(
+        "StudyFile",
+        __base__=StudyFile,
+        vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {cars}"])),
+        road=(RoadShape, Field(examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'])),
+        layouts=(layout, ...),
+        study=(settings, Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])),
+    )
+    return file, {
+        (): file,
+        **vehicles,
+        ("road",): RoadShape,
+        ("elements", "*", "<range>"): Range,
+        **tables,
+        ("study",): settings,
+        ("study", "sweep", "*", "<range>"): SweepRange,
+    }

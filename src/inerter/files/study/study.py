@@ -7,14 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
-from inerter.files.common.layouts import StrutLayout, in_si
+from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
+from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.told_kind import entry_of
 from inerter.files.common.toml import as_toml
+from inerter.indices.question import Index
+from inerter.indices.registry import index_settings, make_index
+from inerter.methods.method import Method
+from inerter.methods.registry import make_method
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
 from inerter.signals.road import Road
-from inerter.vehicle.cars import HalfCar, QuarterCar, Rig
+from inerter.vehicle.vehicle import VehicleModel
 
 
 @dataclass(frozen=True)
@@ -44,10 +49,9 @@ class Study:
     baseline: str | None = None  # the layout that the others are compared with; None if there is but one
     sweep: Sweep | None = None
     seed: int = 0
-    high_pass: float | None = None  # corner of the filter of J3 [rad/s]
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
-    force: float | None = None  # amplitude of the sinusoidal force of J5 [N]
+    settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
     budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
     @property
@@ -55,7 +59,18 @@ class Study:
         """All methods that it uses."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
 
-    def design(self, layout: str, swept: float | None = None) -> QuarterCar | HalfCar | Rig:
+    def index(self, symbol: str) -> Index:
+        """The index of that symbol as the study asks it."""
+        return make_index(symbol, self.road, self.settings)
+
+    def method(self, name: str, threads: int = 1) -> Method:
+        """The method of that name as the study asks it; one that simulates shares its roads over `threads`, which
+        changes no digit.
+        """
+        known = ("conventions", "seed", "realisations", "relative_error")
+        return make_method(name, {**{key: getattr(self, key) for key in known}, "jobs": threads})
+
+    def design(self, layout: str, swept: float | None = None) -> VehicleModel:
         """The vehicle with the struts of `layout`; `swept` replaces the value of the swept element [its SI unit].
 
         Raises `StudyError` for an unknown layout, or for `swept` where nothing is swept; `NetworkError` where `swept`
@@ -80,8 +95,8 @@ class Study:
         """
         return {
             "title": self.title,
-            "vehicle": {"model": self.model, **{key: in_si(key, value) for key, value in self.vehicle.items()}},
-            "road": {key: in_si(key, getattr(self.road, key)) for key in ("speed", "roughness")},
+            "vehicle": vehicle_entry(self.model, self.vehicle),
+            "road": in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD}),
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "study": self._settings(),
@@ -97,10 +112,9 @@ class Study:
             "baseline": self.baseline,
             "sweep": None if sweep is None else {sweep.element: [f"{v!r} {sweep.unit}" for v in sweep.values]},
             "seed": self.seed,
-            "high_pass": None if self.high_pass is None else in_si("high_pass", self.high_pass),
             "realisations": self.realisations,
             "relative_error": self.relative_error,
-            "force": None if self.force is None else in_si("force", self.force),
+            **in_si(index_settings().values(), self.settings),
             "budgets": list(self.budgets) or None,
         }
         return {key: value for key, value in settings.items() if value is not None}

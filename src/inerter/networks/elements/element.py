@@ -9,9 +9,10 @@ import numpy as np
 
 from inerter.checks import is_number
 from inerter.errors import DesignError, NetworkError
+from inerter.fields import Field
 from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, Line
-from inerter.networks.elements.roles import Field, Guard, Linear, Statistical, Switch
+from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
 from inerter.networks.elements.values import Free, Value, check_name
 
 

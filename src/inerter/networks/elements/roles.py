@@ -58,12 +58,3 @@ class Switch:
     def states(self) -> dict[int, str]:
         """The names of the states by their numbers."""
         return {-1: self.lower, 0: self.middle, 1: self.upper}
-
-
-@dataclass(frozen=True)
-class Field:
-    """A number that an element is made of: its keyword in Python and key in files, SI unit, and what it is."""
-
-    name: str
-    unit: str
-    sentence: str

@@ -9,7 +9,6 @@ import numpy as np
 import scipy.optimize
 import xarray as xr
 
-from inerter.files.study.registry import INDEX
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.source import study
@@ -43,7 +42,7 @@ def compute(name: str) -> dict[str, float]:
     def optimal(layout: str, k: float) -> float:
         vehicle = source.design(layout, k)
         method = Norm(source.conventions)
-        return optimise(vehicle, INDEX[index](source), method, seed=source.seed, starts=_STARTS).value
+        return optimise(vehicle, source.index(index), method, seed=source.seed, starts=_STARTS).value
 
     def excess(k: float) -> float:
         return optimal(one, k) / optimal(other, k) - 1.0

@@ -9,7 +9,7 @@ from inerter.optimisation.budget import budget
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.rows import RUNS
 from inerter.papers.wang_su_2008.source import index_of, linear_rows, study
-from inerter.vehicle.cars import Vehicle
+from inerter.vehicle.vehicle import Vehicle
 
 _ROADS = ExpectedValue(realisations=RUNS, jobs=1)
 _STARTS = 6  # of quick searches, whose ends start the search by simulation

@@ -9,10 +9,10 @@ from functools import cache
 from importlib.resources import as_file, files
 
 from inerter.files.study.loading import load_study
-from inerter.files.study.registry import INDEX
 from inerter.files.study.study import Study
-from inerter.indices.index import Index, LoadCarrying
-from inerter.vehicle.cars import Vehicle
+from inerter.indices.load_carrying import LoadCarrying
+from inerter.indices.question import Index
+from inerter.vehicle.vehicle import Vehicle
 
 _DATA = files("inerter.papers.wang_su_2008") / "data"
 _LINEAR = {"none": "", "ideal": "", "elastic": "-soft", "elastic soft": "-soft", "elastic hard": "-hard"}
@@ -81,7 +81,7 @@ class PrintedRow:
 
 def index_of(symbol: str, source: Study) -> Index:
     """An index as the paper asks it: J5 with its force on a design that is not linear."""
-    return LoadCarrying(amplitude=_FORCE[source.model]) if symbol == "J5" else INDEX[symbol](source)
+    return LoadCarrying(amplitude=_FORCE[source.model]) if symbol == "J5" else source.index(symbol)
 
 
 @cache

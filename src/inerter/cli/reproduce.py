@@ -1,0 +1,58 @@
+"""The command `inerter reproduce`: loaded when it is used, because its words are made of the papers that there are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import App, Parameter
+
+from inerter.cli.options import Force, Jobs, Json, Output, Resume
+from inerter.errors import StudyError
+from inerter.papers.registry import PAPERS
+
+_EXAMPLES = [f"inerter reproduce {p.name} {options}" for p in PAPERS.values() for options in ("-o paper", *p.examples)]
+
+app = App(
+    name="reproduce",
+    help_format="plaintext",
+    help_epilogue="\n  ".join(["Examples:", "inerter reproduce    tells which papers there are", *_EXAMPLES]),
+)
+
+if TYPE_CHECKING:
+    Name = str
+    Part = str
+else:
+    Name = Literal[tuple(PAPERS)]
+    Part = Literal[tuple(dict.fromkeys(part for paper in PAPERS.values() for part in paper.parts))]
+
+
+@app.default
+def reproduce(
+    paper: Name | None = None,
+    /,
+    *,
+    only: Annotated[
+        tuple[Part, ...],
+        Parameter(negative="", help="The parts to reproduce, each with its own --only; all if left out."),
+    ] = (),
+    output: Output = None,
+    jobs: Jobs = None,
+    resume: Resume = False,
+    force: Force = False,
+    json: Json = False,
+) -> int:
+    """Recompute the numbers, designs, figures and claims of a paper beside the printed ones.
+
+    Parameters
+    ----------
+    paper
+        The name of the paper; which there are is told if it is left out.
+    """
+    from inerter.cli.commands import papers
+    from inerter.cli.commands import reproduce as command
+
+    if paper is None:
+        if only or output or jobs or resume or force or json:
+            raise StudyError(f"Got options without a paper; expected the name of one: {', '.join(PAPERS)}.")
+        return papers()
+    return command(paper, only, output, jobs, resume=resume, force=force, as_json=json)

@@ -1,0 +1,69 @@
+"""Quantities of which something is made, stated where it is: name, SI unit, a sentence, an example.
+
+A frozen dataclass gives them to its own fields as `field(metadata=quantity(...))`. The keys of files, the tables of the
+docs, the rows of reports and the checks are made of them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+_QUANTITY, _MOUNT = "inerter quantity", "inerter mount"
+
+
+@dataclasses.dataclass(frozen=True)
+class Field:
+    """A positive number of `unit`."""
+
+    name: str
+    unit: str  # SI
+    sentence: str
+    example: str = ""  # of a value with its unit
+    key: str = ""  # in files, if that is not the name
+    words: str = ""  # to go before "of ...", if that is not the name
+
+    @property
+    def told(self) -> str:
+        """What it is called in sentences."""
+        return self.words or self.name.replace("_", " ")
+
+
+def quantity(unit: str, sentence: str, example: str, *, key: str = "", words: str = "") -> Mapping[str, Any]:
+    """The metadata of a dataclass field that is a positive quantity, in `unit`.
+
+    `example` is a value with its unit, for messages. In files it has the name of the field or this `key`, and in
+    sentences these `words` stand for it.
+
+    >>> @dataclasses.dataclass(frozen=True)
+    ... class Wheel:
+    ...     mass: float = dataclasses.field(metadata=quantity("kg", "With its tyre.", "25 kg"))
+    >>> fields_of(Wheel)
+    (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words=''),)
+    """
+    return {_QUANTITY: Field("", unit, sentence, example, key, words)}
+
+
+def mount(sentence: str) -> Mapping[str, Any]:
+    """The metadata of a dataclass field that is a network; files give it in their layouts."""
+    return {_MOUNT: sentence}
+
+
+def fields_of(kind: type) -> tuple[Field, ...]:
+    """The quantities of a dataclass, in their order."""
+    return _stated(kind)[0]
+
+
+def mounts_of(kind: type) -> tuple[str, ...]:
+    """The networks of a dataclass, in their order."""
+    return _stated(kind)[1]
+
+
+@cache
+def _stated(kind: Any) -> tuple[tuple[Field, ...], tuple[str, ...]]:
+    every = dataclasses.fields(kind)
+    stated = [(f.name, f.metadata[_QUANTITY]) for f in every if _QUANTITY in f.metadata]
+    quantities = tuple(dataclasses.replace(field, name=name, key=field.key or name) for name, field in stated)
+    return quantities, tuple(f.name for f in every if _MOUNT in f.metadata)

@@ -1,0 +1,52 @@
+"""The indices that files know by their symbols, and the keys of files that are settings of theirs."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+from inerter.errors import RowError
+from inerter.fields import Field, fields_of
+from inerter.indices.load_carrying import LoadCarrying
+from inerter.indices.question import Index
+from inerter.indices.ride_comfort import RideComfort
+from inerter.indices.tyre_load import TyreLoad
+from inerter.rows import Rows, made_of_rows
+from inerter.signals.road import Road
+
+INDICES: Rows[type[Index]] = Rows(
+    "index", "symbol", ("title", "unit", "response", "question"), (RideComfort, TyreLoad, LoadCarrying)
+)
+_AMPLITUDE = "amplitude"  # the setting that says how large a sinusoidal force is
+
+
+@made_of_rows
+def index_settings() -> dict[str, Field]:
+    """The settings of all indices, by their keys; indices that have the same key share it.
+
+    Raises `RowError` if two of them have it in unlike units.
+    """
+    found: dict[str, Field] = {}
+    for index in INDICES.values():
+        for field in fields_of(index):
+            if found.setdefault(field.key, field).unit != field.unit:
+                raise RowError(
+                    f"{index.symbol} has a setting {field.key!r} in {field.unit}, and another index has it in "
+                    f"{found[field.key].unit}. Choose another key."
+                )
+    return found
+
+
+def amplitude_of(symbol: str) -> Field | None:
+    """The setting of an index that is the amplitude of its sinusoidal force; None if it has none."""
+    return next((field for field in fields_of(INDICES[symbol]) if field.name == _AMPLITUDE), None)
+
+
+def make_index(symbol: str, road: Road, settings: Mapping[str, float]) -> Index:
+    """The index of that symbol, on `road` if it is asked on one, with those of the settings that are its own."""
+    kind: Any = INDICES[symbol]
+    given = {field.name: settings[field.key] for field in fields_of(kind) if field.key in settings}
+    on_road = "road" in {field.name for field in dataclasses.fields(kind)}
+    index: Index = kind(**({"road": road} if on_road else {}), **given)
+    return index

@@ -1,0 +1,73 @@
+"""The methods that files know by their names."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from inerter.methods.approximate_linear import ApproximateLinear
+from inerter.methods.expected_value import ExpectedValue
+from inerter.methods.method import Method, Sees
+from inerter.methods.norm import Norm
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.rows import Rows
+
+METHODS: Rows[type[Method]] = Rows(
+    "method",
+    "name",
+    ("words", "sees", "needs_amplitude", "searches", "estimate", "estimate_many", "objective"),
+    (Norm, StatisticalLinearisation, ExpectedValue, ApproximateLinear),
+)
+
+
+def is_blind(name: str) -> bool:
+    """Whether the method sees neither friction nor gaps."""
+    return _kind(name).sees is Sees.NEITHER
+
+
+def refuses_gaps(name: str) -> bool:
+    """Whether it has no answer where something has play."""
+    return _kind(name).sees is Sees.FRICTION
+
+
+def needs_amplitude(name: str) -> bool:
+    """Whether a peak gain of a design with friction or gaps needs the amplitude of its force."""
+    return bool(_kind(name).needs_amplitude)
+
+
+def searches(name: str) -> bool:
+    """Whether optimisers can use it."""
+    return bool(_kind(name).searches)
+
+
+def words_of(name: str) -> str:
+    """What its values are, to go after "Values are"."""
+    return str(_kind(name).words)
+
+
+def averages(name: str) -> bool:
+    """Whether its values are means over random inputs, as many as it is asked for."""
+    return "realisations" in _settings(_kind(name))
+
+
+def methods_that(can: Callable[[str], object]) -> tuple[str, ...]:
+    """The names of those methods."""
+    return tuple(name for name in METHODS if can(name))
+
+
+def make_method(name: str, settings: Mapping[str, Any]) -> Method:
+    """The method of that name, with those of the settings that it has and that are not None."""
+    kind = _kind(name)
+    method: Method = kind(
+        **{key: settings[key] for key in _settings(kind) & set(settings) if settings[key] is not None}
+    )
+    return method
+
+
+def _kind(name: str) -> Any:
+    return METHODS[name]
+
+
+def _settings(kind: Any) -> set[str]:
+    return {field.name for field in dataclasses.fields(kind)}

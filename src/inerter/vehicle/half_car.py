@@ -1,0 +1,77 @@
+"""The half car of Wang and Su (2008)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from inerter.fields import mount, quantity
+from inerter.networks.elements import Network, Spring
+from inerter.vehicle.mechanism import (
+    Coordinate,
+    Force,
+    Measures,
+    Mechanism,
+    RoadInput,
+    Strut,
+    Tyre,
+    Weighted,
+)
+from inerter.vehicle.vehicle import VehicleModel
+
+
+@dataclass(frozen=True)
+class HalfCar(VehicleModel):
+    """A rigid body in bounce and pitch on two struts, two wheels and one road that reaches the rear wheel later.
+
+    Source: Wang and Su (2008), eqs. (7) to (10). Pitch is positive nose up, so that the front port is
+    bounce + distance_front x pitch. Coordinates `sprung`, `pitch`, `unsprung_front`, `unsprung_rear`.
+
+    Raises `MechanismError` unless masses, stiffnesses and distances are positive.
+    """
+
+    sprung_mass: float = field(metadata=quantity("kg", "Half of the body.", "363.5 kg"))
+    pitch_inertia: float = field(metadata=quantity("kg m^2", "Of that half, about its centre of mass.", "200 kg m^2"))
+    unsprung_mass_front: float = field(metadata=quantity("kg", "Front wheel and hub.", "25 kg"))
+    unsprung_mass_rear: float = field(metadata=quantity("kg", "Rear wheel and hub.", "20 kg"))
+    tyre_stiffness_front: float = field(metadata=quantity("N/m", "Of the front tyre.", "120 kN/m"))
+    tyre_stiffness_rear: float = field(metadata=quantity("N/m", "Of the rear tyre.", "100 kN/m"))
+    distance_front: float = field(metadata=quantity("m", "From the centre of mass to the front axle.", "0.775 m"))
+    distance_rear: float = field(metadata=quantity("m", "From the centre of mass to the rear axle.", "1.265 m"))
+    front: Network = field(metadata=mount("Between body and front wheel."))
+    rear: Network = field(metadata=mount("Between body and rear wheel."))
+    key: ClassVar[str] = "half-car"
+    forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N", "pitch_moment": "N m"}
+
+    def mechanism(self) -> Mechanism:
+        """The same car as a `Mechanism`.
+
+        The weight of pitch in ride comfort is the mean lever (l_f + l_r)/2, which the paper's text defines and its
+        formula for J1 leaves out.
+        """
+        front, rear = self.distance_front, self.distance_rear
+        return Mechanism(
+            coordinates=(
+                Coordinate("sprung", self.sprung_mass),
+                Coordinate("pitch", self.pitch_inertia, angle=True),
+                Coordinate("unsprung_front", self.unsprung_mass_front),
+                Coordinate("unsprung_rear", self.unsprung_mass_rear),
+            ),
+            struts=(
+                Strut("front", self.front, upper={"sprung": 1.0, "pitch": front}, lower={"unsprung_front": 1.0}),
+                Strut("rear", self.rear, upper={"sprung": 1.0, "pitch": -rear}, lower={"unsprung_rear": 1.0}),
+            ),
+            tyres=(
+                Tyre("tyre_front", Spring(self.tyre_stiffness_front), {"unsprung_front": 1.0}, "road_front"),
+                Tyre("tyre_rear", Spring(self.tyre_stiffness_rear), {"unsprung_rear": 1.0}, "road_rear"),
+            ),
+            roads=(RoadInput("road_front"), RoadInput("road_rear", distance=front + rear)),
+            forces=(Force("sprung_force", {"sprung": 1.0}), Force("pitch_moment", {"pitch": 1.0})),
+            measures=Measures(
+                comfort=(Weighted("sprung_acceleration"), Weighted("pitch_acceleration", 0.5 * (front + rear))),
+                tyre_load=(Weighted("tyre_front_load"), Weighted("tyre_rear_load")),
+                load_input="sprung_force",
+                load_output="sprung_displacement",
+            ),
+        )

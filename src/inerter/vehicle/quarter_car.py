@@ -1,0 +1,55 @@
+"""The quarter car of Wang and Su (2008)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from inerter.fields import mount, quantity
+from inerter.networks.elements import Network, Spring
+from inerter.vehicle.mechanism import (
+    Coordinate,
+    Force,
+    Measures,
+    Mechanism,
+    RoadInput,
+    Strut,
+    Tyre,
+    Weighted,
+)
+from inerter.vehicle.vehicle import VehicleModel
+
+
+@dataclass(frozen=True)
+class QuarterCar(VehicleModel):
+    """Body over wheel over road, with one strut between body and wheel.
+
+    Source: Wang and Su (2008), eqs. (2) and (3). Coordinates `sprung` and `unsprung`, input road `road`, force
+    `sprung_force` on the body.
+
+    Raises `MechanismError` unless masses and tyre stiffness are positive, `NetworkError` if `strut` is no network.
+    """
+
+    sprung_mass: float = field(metadata=quantity("kg", "A quarter of the body.", "181.75 kg"))
+    unsprung_mass: float = field(metadata=quantity("kg", "Wheel, hub and their share of the suspension.", "25 kg"))
+    tyre_stiffness: float = field(metadata=quantity("N/m", "Of the tyre, vertically.", "120 kN/m"))
+    strut: Network = field(metadata=mount("Between body and wheel."))
+    key: ClassVar[str] = "quarter-car"
+    forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N"}
+
+    def mechanism(self) -> Mechanism:
+        """The same car as a `Mechanism`."""
+        return Mechanism(
+            coordinates=(Coordinate("sprung", self.sprung_mass), Coordinate("unsprung", self.unsprung_mass)),
+            struts=(Strut("strut", self.strut, upper={"sprung": 1.0}, lower={"unsprung": 1.0}),),
+            tyres=(Tyre("tyre", Spring(self.tyre_stiffness), port={"unsprung": 1.0}, road="road"),),
+            roads=(RoadInput("road"),),
+            forces=(Force("sprung_force", {"sprung": 1.0}),),
+            measures=Measures(
+                comfort=(Weighted("sprung_acceleration"),),
+                tyre_load=(Weighted("tyre_load"),),
+                load_input="sprung_force",
+                load_output="sprung_displacement",
+            ),
+        )

@@ -1,0 +1,13 @@
+"""The vehicles that files know by their keys."""
+
+from __future__ import annotations
+
+from inerter.rows import Rows
+from inerter.vehicle.half_car import HalfCar
+from inerter.vehicle.quarter_car import QuarterCar
+from inerter.vehicle.rig import Rig
+from inerter.vehicle.vehicle import VehicleModel
+
+VEHICLES: Rows[type[VehicleModel]] = Rows(
+    "vehicle", "key", ("mechanism", "moved", "forces"), (QuarterCar, HalfCar, Rig)
+)

@@ -1,0 +1,61 @@
+"""The test rig of Wang and Su (2008)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from inerter.checks import check_positive
+from inerter.errors import MechanismError
+from inerter.fields import mount
+from inerter.networks.elements import Damper, Network, Spring
+from inerter.vehicle.mechanism import GROUND, Coordinate, Mechanism, RoadInput, Strut
+from inerter.vehicle.vehicle import VehicleModel
+
+_CELL = 1e13  # [N/m] stiffness of a load cell: a millionth of the softness of any device
+_ON_CELL = {"load_cell": 1.0}
+
+
+@dataclass(frozen=True)
+class Rig(VehicleModel):
+    """A device between a motion table, whose displacement is given, and a load cell on the ground.
+
+    Source: Wang and Su (2008), the test platform. Input `displacement` [m] of the device's upper end; the load cell
+    reads the output `device_force`, positive in tension. A load cell that follows only up to `cell_bandwidth` [Hz]
+    (second order, Butterworth) is a mass on a spring, so stiff that it hardly moves; it then reads `reading_force`.
+
+    Raises `NetworkError` if `device` is no network, `MechanismError` if the bandwidth is not positive.
+    """
+
+    device: Network = field(metadata=mount("Between table and load cell."))
+    cell_bandwidth: float | None = None  # [Hz]
+    key: ClassVar[str] = "rig"
+    moved: ClassVar[str] = "displacement"
+
+    def __post_init__(self) -> None:
+        if self.cell_bandwidth is not None:
+            check_positive(MechanismError, "The bandwidth of a load cell", self.cell_bandwidth, "Hz")
+        super().__post_init__()
+
+    def mechanism(self) -> Mechanism:
+        """The same rig as a `Mechanism`."""
+        coordinates: tuple[Coordinate, ...] = ()
+        cell: tuple[Strut, ...] = ()
+        lower = GROUND
+        if self.cell_bandwidth is not None:
+            omega = 2.0 * math.pi * self.cell_bandwidth
+            coordinates, lower = (Coordinate("load_cell", _CELL / omega**2),), _ON_CELL
+            damping = math.sqrt(2.0) * _CELL / omega
+            holder = Spring(_CELL, name="reading") | Damper(damping, name="load_cell_damping")
+            cell = (Strut("load_cell_mount", holder, upper=_ON_CELL, lower=GROUND),)
+        return Mechanism(
+            coordinates=coordinates,
+            struts=(Strut("device", self.device, upper={"displacement": 1.0}, lower=lower), *cell),
+            roads=(RoadInput("displacement"),),
+        )
+
+    @property
+    def reading(self) -> str:
+        """The output that the load cell reads."""
+        return "device_force" if self.cell_bandwidth is None else "reading_force"

@@ -1,0 +1,72 @@
+"""What every analysis takes as a vehicle, and what those vehicles have in common that files know by their key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Protocol, Self
+
+from inerter.checks import check_positive
+from inerter.errors import DesignError, MechanismError
+from inerter.fields import fields_of, mounts_of
+from inerter.networks.elements import Free, check_network
+from inerter.networks.transform import name_free_values, with_values
+from inerter.vehicle.mechanism import Mechanism, check_known
+
+
+class Vehicle(Protocol):
+    """What every analysis takes: something that is a mechanism and may have free values."""
+
+    def mechanism(self) -> Mechanism:
+        """The mechanism that it is."""
+        ...
+
+    def free_values(self) -> dict[str, Free]:
+        """Its design variables by name."""
+        ...
+
+    def with_values(self, values: Mapping[str, float]) -> Self:
+        """The same vehicle with the named free values fixed."""
+        ...
+
+
+def check_vehicle(vehicle: object) -> None:
+    """Raises `DesignError` unless `vehicle` is one (its class is not)."""
+    if isinstance(vehicle, type) or not hasattr(vehicle, "mechanism"):
+        raise DesignError(f"Expected a vehicle, such as QuarterCar(...), got {vehicle!r}.")
+
+
+@dataclass(frozen=True)
+class VehicleModel:
+    """A kind of vehicle that files know by its `key`: some quantities, and the networks that are mounted in it.
+
+    A kind is a frozen dataclass whose fields say what they are, by `quantity` and `mount`, and which makes a
+    `mechanism` of them.
+
+    Raises `MechanismError` unless all quantities are positive, `NetworkError` if what is mounted is no network.
+    """
+
+    key: ClassVar[str]
+    moved: ClassVar[str] = "road"  # what a signal moves if nothing else is said
+    forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
+
+    def __post_init__(self) -> None:
+        for field in fields_of(type(self)):
+            what = f"The {field.told} of the {self.key.replace('-', ' ')}"
+            check_positive(MechanismError, what, getattr(self, field.name), field.unit)
+        mounted = {name: check_network(getattr(self, name)) for name in mounts_of(type(self))}
+        for name, network in name_free_values(mounted).items():
+            object.__setattr__(self, name, network)
+
+    def mechanism(self) -> Mechanism:
+        """The same vehicle as a `Mechanism`."""
+        raise NotImplementedError
+
+    def free_values(self) -> dict[str, Free]:
+        """The design variables by name, in the order in which they appear."""
+        return self.mechanism().free_values()
+
+    def with_values(self, values: Mapping[str, float]) -> Self:
+        """The same vehicle with the named free values fixed; raises `DesignError` for a name that is not free here."""
+        check_known(values, self.free_values())
+        return replace(self, **{name: with_values(getattr(self, name), values) for name in mounts_of(type(self))})

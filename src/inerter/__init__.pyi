@@ -14,9 +14,9 @@ from inerter.identification.response import model_response as model_response
 from inerter.identification.staged import Staged as Staged
 from inerter.identification.staged import staged as staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
-from inerter.indices.index import LoadCarrying as LoadCarrying
-from inerter.indices.index import RideComfort as RideComfort
-from inerter.indices.index import TyreLoad as TyreLoad
+from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
+from inerter.indices.ride_comfort import RideComfort as RideComfort
+from inerter.indices.tyre_load import TyreLoad as TyreLoad
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare

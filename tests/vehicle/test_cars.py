@@ -21,7 +21,7 @@ from inerter import (
     free,
     frequency_response,
 )
-from inerter.indices.index import Combination
+from inerter.indices.question import Combination
 
 k, c, b = Spring(60e3), Damper(3e3), Inerter(50.0)
 

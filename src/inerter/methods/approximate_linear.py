@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, IndicatorError, Status, StatusKind
-from inerter.indices.index import Combination, Index, Question
+from inerter.indices.question import Combination, Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
 from inerter.methods.excitation import Drive, Excitation, MultisineExcitation, NoiseExcitation

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status
-from inerter.indices.index import Index
+from inerter.indices.question import Index
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
 from inerter.vehicle.cars import Vehicle

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.index import Combination, Question
+from inerter.indices.question import Combination, Question
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError, MechanismError
-from inerter.indices.index import Question
+from inerter.indices.question import Question
 from inerter.methods.equivalent import GAUSSIAN, Equivalent, acts, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.networks.elements.roles import Guard

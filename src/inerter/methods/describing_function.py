@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, IndicatorError, Status, StatusKind
-from inerter.indices.index import Question
+from inerter.indices.question import Question
 from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import POORLY, Equivalent, equivalent
 from inerter.methods.method import Estimate

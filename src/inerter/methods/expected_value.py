@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import IndicatorError, InerterError, LinearSystemError, MechanismError, StatusKind
-from inerter.indices.index import Combination, Index, Question
+from inerter.indices.question import Combination, Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Objective

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError, Status, StatusKind
-from inerter.indices.index import Question
+from inerter.indices.question import Question
 from inerter.methods.compiled_norm import CompiledQuestion
 from inerter.methods.equivalent import GAUSSIAN, POORLY, STIFFEST, Equivalent, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, linear_problem

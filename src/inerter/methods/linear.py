@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IndicatorError
-from inerter.indices.index import Combination, Question
+from inerter.indices.question import Combination, Question
 from inerter.methods.method import Estimate
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak, hinf_norm

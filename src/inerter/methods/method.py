@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, DesignError, IndicatorError, Status
-from inerter.indices.index import Index, Question
+from inerter.indices.question import Index, Question
 from inerter.norms.hinf import Peak
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import find, main_outputs, outputs

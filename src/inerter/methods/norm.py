@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError
-from inerter.indices.index import Index, Question
+from inerter.indices.question import Index, Question
 from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Objective

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.indices.index import Question
+from inerter.indices.question import Question
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
 from inerter.methods.linear import Conventions

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.index import Question
+from inerter.indices.question import Question
 from inerter.kernels.arrays import FRICTION, KIND
 from inerter.methods.realisations import Drive, table
 from inerter.signals.harmonics import multisine

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status
-from inerter.indices.index import Question
+from inerter.indices.question import Question
 from inerter.methods.linear import Conventions, corner_of
 from inerter.signals.harmonics import Harmonics, multisine
 from inerter.signals.road import Road

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import StatusKind
-from inerter.indices.index import Index
+from inerter.indices.question import Index
 from inerter.methods.method import Estimate
 from inerter.vehicle.cars import Vehicle
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.index import Combination, Index, Question
+from inerter.indices.question import Combination, Index, Question
 from inerter.kernels import harmonic
 from inerter.methods.compiled_norm import kernels_of
 from inerter.methods.describing_function import HarmonicBalance, harmonic_balance

@@ -12,7 +12,7 @@ import scipy
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
-from inerter.indices.index import Index
+from inerter.indices.question import Index
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element

@@ -10,7 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, Status, StatusKind
-from inerter.indices.index import Index
+from inerter.indices.question import Index
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Estimate, Method, Objective, check_request
 from inerter.methods.norm import Norm

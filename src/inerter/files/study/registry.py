@@ -7,7 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 from inerter.files.study.study import Study
-from inerter.indices.index import Index, LoadCarrying, RideComfort, TyreLoad
+from inerter.indices.load_carrying import LoadCarrying
+from inerter.indices.question import Index
+from inerter.indices.ride_comfort import RideComfort
+from inerter.indices.tyre_load import TyreLoad
 from inerter.methods.method import Method
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation

@@ -1,0 +1,48 @@
+"""The index of dynamic load carrying."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from inerter.checks import check_positive
+from inerter.errors import IndicatorError
+from inerter.indices.question import Combination, Question
+from inerter.vehicle.mechanism import Mechanism, Weighted
+
+
+@dataclass(frozen=True)
+class LoadCarrying:
+    """J5: largest gain from a force on the body to its displacement, over all frequencies [m/N].
+
+    Half car: bounce force to bounce displacement. `amplitude` is that of a sinusoidal force [N]: what a design with
+    friction or gaps does depends on it, what a linear one does not. Source: Wang and Su (2008), eq. (6).
+
+    Raises `IndicatorError` unless the amplitude is positive.
+    """
+
+    amplitude: float | None = None
+    symbol = "J5"
+    title = "dynamic load carrying"
+    unit = "m/N"
+    response = "body displacement per force on the body"
+
+    def __post_init__(self) -> None:
+        if self.amplitude is not None:
+            check_positive(IndicatorError, "The amplitude of the force on the body", self.amplitude, "N")
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `IndicatorError` if the mechanism names no force and displacement for it."""
+        measures = mechanism.measures
+        if measures.load_input is None or measures.load_output is None:
+            raise IndicatorError(
+                "The mechanism does not say which force and displacement load carrying is about. "
+                "Set measures.load_input and measures.load_output."
+            )
+        return Question(
+            inputs=(measures.load_input,),
+            outputs=(Weighted(measures.load_output),),
+            combination=Combination.PEAK_GAIN,
+            road=None,
+            unit=self.unit,
+            amplitude=self.amplitude,
+        )

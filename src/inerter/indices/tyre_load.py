@@ -1,0 +1,37 @@
+"""The index of dynamic tyre load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from inerter.checks import check_positive
+from inerter.errors import IndicatorError
+from inerter.indices.question import Question, on_road
+from inerter.signals.road import Road
+from inerter.vehicle.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class TyreLoad:
+    """J3: r.m.s. dynamic tyre force on a road [N], added up over the tyres.
+
+    `high_pass` puts a filter s/(s + high_pass), in rad/s, on every tyre force; the paper does so for the half car.
+    Source: Wang and Su (2008), eq. (5).
+    """
+
+    road: Road
+    high_pass: float | None = None
+    symbol = "J3"
+    title = "dynamic tyre load"
+    unit = "N"
+    response = "tyre force per road velocity"
+
+    def __post_init__(self) -> None:
+        if self.high_pass is not None:
+            check_positive(IndicatorError, "The high-pass corner of the tyre load", self.high_pass, "rad/s")
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `IndicatorError` if the mechanism has no road or names no tyre load."""
+        return on_road(
+            self, mechanism, mechanism.measures.tyre_load, "measures.tyre_load", high_pass=self.high_pass, over_s=True
+        )

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.errors import NetworkError
 from inerter.files.common.entries import Amount
-from inerter.files.common.problems import at
+from inerter.files.common.problem import Problem, at
 from inerter.files.common.shape import UNITS, Axles, Range
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.told_kind import ToldKind
@@ -60,42 +60,43 @@ def in_si(key: str, value: float) -> str:
     return f"{value!r} {UNITS[key]}"  # repr is the shortest text that reads back as the same number
 
 
-def layout_problems(model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[str]:
+def layout_problems(
+    model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]
+) -> Iterator[Problem]:
     """What is wrong with layouts: networks that cannot be, and elements that are not there."""
     for name, layout in layouts.items():
         if tuple(layout.struts) != MOUNTS[model]:
             yield at(
                 ("layouts", name),
-                f"got a table; a {model.replace('-', ' ')} has one {MOUNTS[model][0]}, so expected its network in "
-                f"quotes, such as {shown(next(iter(layout.struts.values())))}.",
+                got="a table",
+                fault=f"a {model.replace('-', ' ')} has one {MOUNTS[model][0]}",
+                expected=f"its network in quotes, such as {shown(next(iter(layout.struts.values())))}",
             )
             continue
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
             place = ("layouts", name) if alike else ("layouts", name, mount)
-            yield from (at(place, problem) for problem in network_problems(expression, elements))
+            yield from network_problems(place, expression, elements)
 
 
-def network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:
-    """What is wrong with one network: its syntax, or elements that are not there."""
+def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[str, Element]) -> Iterator[Problem]:
+    """What is wrong with the network at one place: its syntax, or elements that are not there."""
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:
-            defined = some(elements)
-            yield (
-                f"got {shown(expression)}: {shown(name)} is not in [elements], where there are {defined}"
-                f".{nearest(name, elements)}"
-            )
+            missing = f"{shown(name)} is not in [elements], where there are {some(elements)}"
+            yield at(place, got=shown(expression), fault=missing, hint=nearest(name, elements))
         if not unknown:
             network(expression, **elements)
     except NetworkError as error:
-        yield str(error)
+        yield at(place, str(error))
 
 
-def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[str]:
+def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[Problem]:
     """What is wrong with the layout that a section chooses."""
     layouts = some(known)
     if not layout:
-        yield at((section, "layout"), f"missing, but there are several layouts; expected one of {layouts}.")
+        yield at((section, "layout"), fault="missing, but there are several layouts", expected=f"one of {layouts}")
     elif layout not in known:
-        yield at((section, "layout"), f"got {shown(layout)}; expected one of {layouts}.{nearest(layout, known)}")
+        hint = nearest(layout, known)
+        yield at((section, "layout"), got=shown(layout), expected=f"one of {layouts}", hint=hint)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import inerter as it
-from inerter.errors import Status, StatusKind
+from inerter.errors import OK, Status, StatusKind
 from inerter.files.identification.running import Candidate, Identified, Reading, responses
 from inerter.identification.fit import Explanation, Misfit, Told
 from inerter.identification.guess import chain_of
@@ -137,9 +137,9 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: Identified) -> No
 
 def test_several_models_are_listed_best_first(found: Identified) -> None:
     rows = (
-        Candidate("friction", 2, 1.01, 0.0, 0.0, True, "ok"),
-        Candidate("custom", 1, 1.02, 0.01, 0.02, True, "ok"),
-        Candidate("ideal", 1, 7.5, 6.5, 0.3, False, "inaccurate: it explains little"),
+        Candidate("friction", 2, 1.01, 0.0, 0.0, True, OK),
+        Candidate("custom", 1, 1.02, 0.01, 0.02, True, OK),
+        Candidate("ideal", 1, 7.5, 6.5, 0.3, False, Status(StatusKind.INACCURATE, "it explains little")),
     )
     text = identification_text(replace(found, candidates=rows, choice=("The choice is clear.",)))
     assert text.index("friction ") < text.index("* custom ") < text.index("ideal ")

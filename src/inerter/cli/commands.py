@@ -15,7 +15,7 @@ import numpy as np
 
 from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import progress, steps
-from inerter.errors import StatusKind, StudyError
+from inerter.errors import StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.loading import load_study
@@ -120,8 +120,7 @@ def _judge(result: StudyResult) -> int:
         _say(line)
     if len(result.failures) > _MOST:
         _say(f"and {len(result.failures) - _MOST} more like these; {result.folder / SUMMARY} tells all")
-    failed = bool(result.data.status.str.startswith("failed").any())
-    return 1 if failed or any(found.status == StatusKind.FAILED for found in result.budgets) else 0
+    return int(result.failed)
 
 
 def _as_json(result: StudyResult) -> str:

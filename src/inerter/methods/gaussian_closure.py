@@ -20,6 +20,7 @@ from inerter.methods.compiled_norm import CompiledQuestion
 from inerter.methods.equivalent import GAUSSIAN, POORLY, STIFFEST, Equivalent, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
+from inerter.methods.note import Note
 from inerter.systems.descriptor import close
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
@@ -327,9 +328,9 @@ class GaussianClosure:
             result = replace(
                 result, status=Status(StatusKind.INACCURATE, f"{words} sticks for a part of the time, which {POORLY}")
             )
-        told = [f"{words} sticks" for words in parts.locked]
+        told = [Note(f"{words} sticks") for words in parts.locked]
         told += [
-            f"{words} sticks" if sticks else f"{words} taken as a damper of {c:.6g} N s/m"
+            Note(f"{words} sticks") if sticks else Note(f"{words} taken as a damper of ", float(c), " N s/m")
             for words, c, sticks in zip(parts.frictions, dampers.damping[0], dampers.sticks[0], strict=True)
         ]
         return replace(result, notes=(*self.free.index.problem.descriptor.notes, *told))

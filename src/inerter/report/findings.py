@@ -98,8 +98,8 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     return found
 
 
-def crossing_sentences(results: xr.Dataset, write: Writer = quantity) -> list[str]:
-    """For each index and layout that crosses the baseline over a sweep, where it does. For a study with a sweep."""
+def crossing_sentences(results: xr.Dataset, write: Writer = quantity) -> list[tuple[str, str]]:
+    """Each index, and where each layout crosses the baseline over a sweep. For a study with a sweep."""
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
     several = len(methods(results)) > 1
     ways = {f" by {m}": by_method(results, m) for m in methods(results)} if several else {"": one_method(results)}
@@ -110,7 +110,8 @@ def crossing_sentences(results: xr.Dataset, write: Writer = quantity) -> list[st
             unit = results[element].attrs["units"]
             texts = [_listed([write(at, unit, e) for at, e in places]) + by for by, places in found.items() if places]
             if texts:
-                sentences.append(f"{index}: {name} and {baseline} are equally good at {element} = {', '.join(texts)}")
+                said = f"{name} and {baseline} are equally good at {element} = {', '.join(texts)}"
+                sentences.append((index, said))
     return sentences
 
 

@@ -113,7 +113,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             misfit=misfit(found),
             remarks=list(remarks(found)),
             explanations=list(explained(found)),
-            candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), c.status) for c in found.candidates],
+            candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), str(c.status)) for c in found.candidates],
             choice=found.choice,
             chosen=found.name,
             drawn=drawn,

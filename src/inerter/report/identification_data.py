@@ -52,7 +52,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "predicted": fit.predicted,
         "misfit": vars(fit.misfit),
         "explanations": [{**vars(e), "misfit": vars(e.misfit)} for e in fit.explanations],
-        "candidates": [vars(candidate) for candidate in found.candidates],
+        "candidates": [{**vars(c), "status": str(c.status)} for c in found.candidates],
         "choice": found.choice,
         "settings": {**found.settings, **fit.settings},
         "elements": elements_block(found),

@@ -144,7 +144,7 @@ def _candidates(found: Identified) -> Iterator[str]:
     yield f"{'models':<{width + 2}}  unknowns  loss on check  over the best"
     for c in found.candidates:
         mark = "*" if c.name == found.name else " "
-        state = "" if c.status == "ok" else f"  {c.status.partition(':')[0]}"
+        state = "" if c.status.ok else f"  {c.status.kind}"
         yield f"{mark} {c.name:<{width}}  {c.unknowns:>8}  {c.loss:>13.4g}  {behind(c)}{state}"
     for sentence in found.choice:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="  ")

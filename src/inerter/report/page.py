@@ -61,8 +61,10 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             tables=design_tables(results) if swept is None else sweep_tables(results),
             by_method=method_tables(results),
             crossings=[
-                printed_sentence(f"{sentence}.")
-                for sentence in (crossing_sentences(results, printed) if swept and results.attrs["baseline"] else [])
+                printed_sentence(f"{index}: {sentence}.")
+                for index, sentence in (
+                    crossing_sentences(results, printed) if swept and results.attrs["baseline"] else []
+                )
             ],
             budgets=budget_tables(budgets, study),
             trade_offs=trade_off_tables(results) if swept is None else [],

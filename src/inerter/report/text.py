@@ -108,8 +108,8 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
 def _crossings(results: xr.Dataset, index: str) -> Iterator[str]:
     """Where layouts cross the baseline over a sweep."""
     if swept_element(results) is not None and compared(results):
-        for sentence in crossing_sentences(results.sel(index=[index])):
-            yield from wrapped(sentence.removeprefix(f"{index}: "), initial_indent="  ", subsequent_indent="    ")
+        for _, sentence in crossing_sentences(results.sel(index=[index])):
+            yield from wrapped(sentence, initial_indent="  ", subsequent_indent="    ")
 
 
 def _heading(results: xr.Dataset, index: str) -> str:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from pydantic import PlainValidator
 
-from inerter.errors import UnitError
+from inerter.files.common.problem import EntryError
 from inerter.files.common.suggest import nearest
 from inerter.files.common.told_kind import ToldKind, names_kind, told_kind
 from inerter.networks.elements import NAME
@@ -33,7 +33,7 @@ def positive(unit: str) -> PlainValidator:
     def check(text: Any) -> float:
         value = parse_quantity(text, unit)
         if value <= 0.0:
-            raise UnitError(f"Got {shown(text)}: not positive; expected more than 0 {unit}.")
+            raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
         return value
 
     return PlainValidator(check)
@@ -50,7 +50,7 @@ def not_negative(unit: str) -> PlainValidator:
     def check(text: Any) -> float:
         value = parse_quantity(text, unit)
         if value < 0.0:
-            raise UnitError(f"Got {shown(text)}: negative; expected 0 {unit} or more.")
+            raise EntryError(got=shown(text), fault="negative", expected=f"0 {unit} or more")
         return value
 
     return PlainValidator(check)
@@ -59,14 +59,14 @@ def not_negative(unit: str) -> PlainValidator:
 def positive_number(value: Any) -> float:
     """A number greater than zero, without a unit."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
-        raise ValueError(f"Got {shown(value)}; expected a positive number without quotes, such as 1.02.")
+        raise EntryError(got=shown(value), expected="a positive number without quotes, such as 1.02")
     return float(value)
 
 
 def yes_or_no(value: Any) -> bool:
     """True or false."""
     if not isinstance(value, bool):
-        raise ValueError(f"Got {shown(value)}; expected true or false, without quotes.")
+        raise EntryError(got=shown(value), expected="true or false, without quotes")
     return value
 
 
@@ -75,10 +75,8 @@ def fixed_amount(text: Any) -> Amount | ToldKind:
     if names_kind(text):
         return told_kind(text, free=False)
     if isinstance(text, dict):
-        raise ValueError(
-            'Got a range; a simulation needs one value. Write one, such as "3 kN s/m", perhaps the best that '
-            "inerter run found (summary.csv)."
-        )
+        hint = 'Write one, such as "3 kN s/m", perhaps the best that inerter run found (summary.csv).'
+        raise EntryError(got="a range", fault="a simulation needs one value", hint=hint)
     return amount(text)
 
 
@@ -86,17 +84,15 @@ def amount(text: Any) -> Amount:
     """The value of an element."""
     unit, value = parse_element(text)
     if value < 0.0 or (value == 0.0 and not kinds_by_unit()[unit].may_vanish):
-        raise UnitError(
-            f"Got {shown(text)}: not positive; expected more than 0 {unit}. "
-            f"To leave the element out, drop its branch from the layouts."
-        )
+        hint = "To leave the element out, drop its branch from the layouts."
+        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}", hint=hint)
     return Amount(unit, value)
 
 
 def text(value: Any) -> str:
     """A title or a name."""
     if not isinstance(value, str) or not value.strip() or len(value) > 200:
-        raise ValueError(f'Got {shown(value)}; expected text of 1 to 200 characters in quotes, such as "My car".')
+        raise EntryError(got=shown(value), expected='text of 1 to 200 characters in quotes, such as "My car"')
     return value
 
 
@@ -105,10 +101,8 @@ def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
 
     def check(value: Any) -> str:
         if not isinstance(value, str) or value not in known:
-            raise ValueError(
-                f"Got {shown(value)}: not {what}; available in this version: "
-                f"{', '.join(shown(name) for name in known)}.{nearest(value, known)}"
-            )
+            available = f"not {what}; available in this version: {', '.join(shown(name) for name in known)}"
+            raise EntryError(got=shown(value), fault=available, hint=nearest(value, known))
         return value
 
     return check
@@ -128,11 +122,11 @@ def _list_of(one: Callable[[Any], str], example: Callable[[], str]) -> PlainVali
     def check(values: Any) -> tuple[str, ...]:
         if not isinstance(values, list) or not values:
             got = "an empty list" if values == [] else shown(values)
-            raise ValueError(f"Got {got}; expected a list of one or more, such as [{shown(example())}].")
+            raise EntryError(got=got, expected=f"a list of one or more, such as [{shown(example())}]")
         checked = tuple(one(value) for value in values)
         twice = next((value for value in checked if checked.count(value) > 1), None)
         if twice is not None:
-            raise ValueError(f"Got {shown(twice)} more than once; expected each at most once.")
+            raise EntryError(got=f"{shown(twice)} more than once", expected="each at most once")
         return checked
 
     return PlainValidator(check)
@@ -143,7 +137,7 @@ def whole(lower: int, upper: int) -> PlainValidator:
 
     def check(value: Any) -> int:
         if not isinstance(value, int) or isinstance(value, bool) or not lower <= value <= upper:
-            raise ValueError(f"Got {shown(value)}; expected a whole number from {lower} to {upper}, without quotes.")
+            raise EntryError(got=shown(value), expected=f"a whole number from {lower} to {upper}, without quotes")
         return value
 
     return PlainValidator(check)
@@ -152,18 +146,19 @@ def whole(lower: int, upper: int) -> PlainValidator:
 def share(value: Any) -> float:
     """A number between zero and one, without a unit."""
     if not isinstance(value, float) or not 0.0 < value < 1.0:
-        raise ValueError(f"Got {shown(value)}; expected a number between 0 and 1 without quotes, such as 0.01.")
+        raise EntryError(got=shown(value), expected="a number between 0 and 1 without quotes, such as 0.01")
     return value
 
 
 def expression(value: Any) -> str:
     """The text of a network; whether it can be parsed is seen when all elements are known."""
     if not isinstance(value, str):
-        raise ValueError(f'Got {shown(value)}; expected a network in quotes, such as "k | c - b".')
+        raise EntryError(got=shown(value), expected='a network in quotes, such as "k | c - b"')
     if len(value) > _LONGEST_EXPRESSION or value.count("(") > _MOST_BRACKETS:
-        raise ValueError(
-            f"Got a network of {len(value)} characters with {value.count('(')} brackets; expected at most "
-            f"{_LONGEST_EXPRESSION} and {_MOST_BRACKETS}. Write it with fewer brackets and shorter names."
+        raise EntryError(
+            got=f"a network of {len(value)} characters with {value.count('(')} brackets",
+            expected=f"at most {_LONGEST_EXPRESSION} and {_MOST_BRACKETS}",
+            hint="Write it with fewer brackets and shorter names.",
         )
     return value
 
@@ -180,20 +175,21 @@ _TAKEN = frozenset(
 def element_name(name: Any) -> str:
     """A name that can stand in an expression, and in results beside the names that are there already."""
     if not NAME.fullmatch(name):
-        raise ValueError(
-            f"Got {shown(name)}: not a name; expected a letter followed by letters, digits and underscores, such as k1."
-        )
+        letters = "a letter followed by letters, digits and underscores, such as k1"
+        raise EntryError(got=shown(name), fault="not a name", expected=letters)
     if name in _TAKEN:
-        raise ValueError(f"Got {shown(name)}: a word that results use themselves; expected another name, such as k1.")
+        taken = "a word that results use themselves"
+        raise EntryError(got=shown(name), fault=taken, expected="another name, such as k1")
     return str(name)
 
 
 def layout_name(name: Any) -> str:
     """A name that can stand in a table and in the name of a file."""
     if not 0 < len(name) <= 40 or not _LAYOUT_NAME_CHARACTERS.issuperset(name) or name[0] in ".-+":
-        raise ValueError(
-            f"Got {shown(name)}: not a layout name, which also names files; expected up to 40 letters, digits and "
-            f"_ - + . that begin with a letter or a digit, such as S3e."
+        raise EntryError(
+            got=shown(name),
+            fault="not a layout name, which also names files",
+            expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, such as S3e",
         )
     return str(name)
 
@@ -201,27 +197,27 @@ def layout_name(name: Any) -> str:
 def check_order(lower: Amount, upper: Amount) -> None:
     """Raises ValueError unless both ends have one unit and `lower` is the lower."""
     if lower.unit != upper.unit:
-        raise ValueError(f"Got ends of unlike units, {lower.unit} and {upper.unit}; expected one unit for both.")
+        raise EntryError(got=f"ends of unlike units, {lower.unit} and {upper.unit}", expected="one unit for both")
     if lower.value >= upper.value:
         equal = lower.value == upper.value
         how, remedy = ("equal", "Write a single value without from and to.") if equal else ("reversed", "Swap them.")
         first, last = (format_quantity(end.value, end.unit, digits=12) for end in (lower, upper))
-        raise ValueError(f'Got {how} ends, from = "{first}" and to = "{last}"; expected from less than to. {remedy}')
+        ends = f'{how} ends, from = "{first}" and to = "{last}"'
+        raise EntryError(got=ends, expected="from less than to", hint=remedy)
 
 
 def sweep_list(values: Any) -> tuple[Amount, ...]:
     """The values of a sweep, one by one."""
     if not isinstance(values, list) or not 2 <= len(values) <= MOST_POINTS:
         got = f"a list of {len(values)}" if isinstance(values, list) else shown(values)
-        raise ValueError(
-            f"Got {got}; expected 2 to {MOST_POINTS} values, as in "
-            f'k = {{ from = "10 kN/m", to = "300 kN/m", points = 30 }} or k = ["10 kN/m", "20 kN/m"].'
-        )
+        example = 'k = { from = "10 kN/m", to = "300 kN/m", points = 30 } or k = ["10 kN/m", "20 kN/m"]'
+        raise EntryError(got=got, expected=f"2 to {MOST_POINTS} values, as in {example}")
     amounts = tuple(amount(value) for value in values)
     if len({a.unit for a in amounts}) > 1:
-        raise ValueError(f"Got values of unlike units, {', '.join(sorted({a.unit for a in amounts}))}; expected one.")
+        units = ", ".join(sorted({a.unit for a in amounts}))
+        raise EntryError(got=f"values of unlike units, {units}", expected="one")
     if len(set(amounts)) < len(amounts):
-        raise ValueError("Got the same value more than once; expected each once.")
+        raise EntryError(got="the same value more than once", expected="each once")
     return amounts
 
 
@@ -229,5 +225,5 @@ def one_sweep(sweep: dict[str, Any]) -> dict[str, Any]:
     """Two swept elements would be a grid, which is not one line in a figure."""
     if len(sweep) != 1:
         got = ", ".join(shown(name) for name in sweep) or "none"
-        raise ValueError(f"Got {len(sweep)} swept elements ({got}); expected exactly one.")
+        raise EntryError(got=f"{len(sweep)} swept elements ({got})", expected="exactly one")
     return sweep

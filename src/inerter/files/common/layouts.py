@@ -9,7 +9,7 @@ from typing import Any
 from inerter.errors import NetworkError
 from inerter.fields import Field, fields_of, mounts_of
 from inerter.files.common.entries import Amount
-from inerter.files.common.problems import at
+from inerter.files.common.problem import Problem, at
 from inerter.files.common.shape import Range, Shape
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.told_kind import ToldKind
@@ -62,47 +62,49 @@ def vehicle_entry(model: str, values: Mapping[str, float]) -> dict[str, str]:
     return {"model": model, **in_si(fields_of(VEHICLES[model]), values)}
 
 
-def layout_problems(model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[str]:
+def layout_problems(
+    model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]
+) -> Iterator[Problem]:
     """What is wrong with layouts: networks that cannot be, and elements that are not there."""
     mounts = mounts_of(VEHICLES[model])
     for name, layout in layouts.items():
         if tuple(layout.struts) != mounts:
-            yield at(("layouts", name), f"got a table; a {model.replace('-', ' ')} {_mounted(mounts, layout)}")
+            yield at(("layouts", name), got="a table", **_mounted(model, mounts, layout))
             continue
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
             place = ("layouts", name) if alike else ("layouts", name, mount)
-            yield from (at(place, problem) for problem in network_problems(expression, elements))
+            yield from network_problems(place, expression, elements)
 
 
-def _mounted(mounts: tuple[str, ...], layout: StrutLayout) -> str:
+def _mounted(model: str, mounts: tuple[str, ...], layout: StrutLayout) -> dict[str, str]:
+    """How layouts of this vehicle are said."""
     text = shown(next(iter(layout.struts.values())))
+    car = model.replace("-", " ")
     if len(mounts) == 1:
-        return f"has one {mounts[0]}, so expected its network in quotes, such as {text}."
+        return {"fault": f"a {car} has one {mounts[0]}", "expected": f"its network in quotes, such as {text}"}
     table = ", ".join(f"{mount} = {text}" for mount in mounts)
-    return f"has {', '.join(mounts[:-1])} and {mounts[-1]}, so expected such as {{ {table} }}."
+    return {"fault": f"a {car} has {', '.join(mounts[:-1])} and {mounts[-1]}", "expected": f"such as {{ {table} }}"}
 
 
-def network_problems(expression: str, elements: Mapping[str, Element]) -> Iterator[str]:
-    """What is wrong with one network: its syntax, or elements that are not there."""
+def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[str, Element]) -> Iterator[Problem]:
+    """What is wrong with the network at one place: its syntax, or elements that are not there."""
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:
-            defined = some(elements)
-            yield (
-                f"got {shown(expression)}: {shown(name)} is not in [elements], where there are {defined}"
-                f".{nearest(name, elements)}"
-            )
+            missing = f"{shown(name)} is not in [elements], where there are {some(elements)}"
+            yield at(place, got=shown(expression), fault=missing, hint=nearest(name, elements))
         if not unknown:
             network(expression, **elements)
     except NetworkError as error:
-        yield str(error)
+        yield at(place, str(error))
 
 
-def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[str]:
+def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[Problem]:
     """What is wrong with the layout that a section chooses."""
     layouts = some(known)
     if not layout:
-        yield at((section, "layout"), f"missing, but there are several layouts; expected one of {layouts}.")
+        yield at((section, "layout"), fault="missing, but there are several layouts", expected=f"one of {layouts}")
     elif layout not in known:
-        yield at((section, "layout"), f"got {shown(layout)}; expected one of {layouts}.{nearest(layout, known)}")
+        hint = nearest(layout, known)
+        yield at((section, "layout"), got=shown(layout), expected=f"one of {layouts}", hint=hint)

@@ -1,13 +1,14 @@
-"""What is wrong with a file, one line a problem: the place, what arrived, what was expected."""
+"""The problems of a file: those that its shape has, and the error that reports them, one a line."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inerter.errors import StudyError
+from inerter.files.common.problem import EntryError, Problem
 from inerter.files.common.shape import Shape, Shapes
 from inerter.files.common.suggest import nearest
 from inerter.units import shown
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 _MOST, _LONGEST = 20, 600  # problems, and characters of each
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _TELLING = {"vehicle": "model", "signal": "kind"}  # the key that decides which others a section has
 _OTHERS = {
     "study": "It is a section of study files, for: inerter run.",
@@ -30,10 +30,10 @@ _OTHERS = {
 }
 
 
-def refusal(path: Path, problems: Iterable[str]) -> StudyError:
+def refusal(path: Path, problems: Iterable[Problem]) -> StudyError:
     """The error that reports the `problems` of the file, one a line: so many as a reader may want to see."""
     every = list(problems)
-    lines = [f"{path.name}: {shortened(problem)}" for problem in every[:_MOST]]
+    lines = [f"{path.name}: {shortened(str(problem))}" for problem in every[:_MOST]]
     if len(every) > _MOST:
         lines.append(f"{path.name}: and {len(every) - _MOST} problems more.")
     return StudyError("\n".join(lines))
@@ -44,44 +44,39 @@ def shortened(line: str) -> str:
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 205]} ... {line[-200:]}"
 
 
-def at(place: Iterable[str], sentence: str) -> str:
-    """A problem: its dotted path in the file and a sentence, which may be another exception's."""
-    keys = ".".join(key if _BARE_KEY.fullmatch(key) else shown(key) for key in place)
-    return f"{keys}: {sentence[0].lower()}{sentence[1:]}"
-
-
-def explain(error: ValidationError, shapes: Shapes) -> Iterator[str]:
+def explain(error: ValidationError, shapes: Shapes) -> Iterator[Problem]:
     """The problems that the shape of the file has; `shapes` are all its tables, by their place."""
     for detail in error.errors(include_url=False):
         place = tuple(str(part) for part in detail["loc"])
-        yield at([key for key in place if not _is_tag(key)], _sentence(detail, place, shapes))
+        yield replace(_found(detail, place, shapes), place=tuple(key for key in place if not _is_tag(key)))
 
 
-def _sentence(detail: ErrorDetails, place: tuple[str, ...], shapes: Shapes) -> str:
+def _found(detail: ErrorDetails, place: tuple[str, ...], shapes: Shapes) -> Problem:
     match detail["type"]:
         case "value_error":
-            return str(detail["ctx"]["error"])
+            error = detail["ctx"]["error"]
+            return error.problem if isinstance(error, EntryError) else Problem(said=str(error))
         case "missing":
-            return f"missing; expected {_example(place, shapes)}."
+            return Problem(fault="missing", expected=_example(place, shapes))
         case "extra_forbidden":
-            return _unknown_key(place, shapes)
+            key, known = place[-1], _keys(_shape(place[:-1], shapes))
+            return Problem(fault="unknown key", expected=f"one of {', '.join(known)}", hint=_where(place, key, shapes))
         case "too_short":
-            return f"none given; expected {_example(place, shapes)}."
+            return Problem(fault="none given", expected=_example(place, shapes))
         case _:  # model_type, dict_type: everything else is checked by validators of our own
-            return f"got {shown(detail['input'])}: not a table; expected {_example(place, shapes)}."
+            return Problem(got=shown(detail["input"]), fault="not a table", expected=_example(place, shapes))
 
 
-def _unknown_key(place: tuple[str, ...], shapes: Shapes) -> str:
-    key, known = place[-1], _keys(_shape(place[:-1], shapes))
-    sentence = f"unknown key; expected one of {', '.join(known)}."
+def _where(place: tuple[str, ...], key: str, shapes: Shapes) -> str:
+    """Where an unknown key may belong, or the known one that it may be."""
     if len(place) == 1 and key in _OTHERS:
-        return f"{sentence} {_OTHERS[key]}"
+        return _OTHERS[key]
     elsewhere = [path for path, shape in shapes.items() if path != () and "*" not in path and key in _keys(shape)]
     for path in elsewhere:
         if path[0] == place[0] in _TELLING:
-            return f'{sentence} It is a key of {_TELLING[path[0]]} = "{path[1].strip("<>").split()[0]}".'
+            return f'It is a key of {_TELLING[path[0]]} = "{path[1].strip("<>").split()[0]}".'
     elsewhere = [path for path in elsewhere if path[0] != place[0]]
-    return sentence + (f" It belongs in [{elsewhere[0][0]}]." if elsewhere else nearest(key, known))
+    return f"It belongs in [{elsewhere[0][0]}]." if elsewhere else nearest(key, _keys(_shape(place[:-1], shapes)))
 
 
 def _example(place: tuple[str, ...], shapes: Shapes) -> str:

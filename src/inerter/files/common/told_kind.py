@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from inerter.errors import UnitError
 from inerter.fields import Field
+from inerter.files.common.problem import EntryError
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
@@ -40,17 +41,17 @@ def told_kind(entry: dict[str, Any], *, free: bool = True) -> ToldKind:
     told = entry[KIND]
     if not isinstance(told, str) or told not in ELEMENTS:
         listed = ", ".join(map(shown, ELEMENTS))
-        raise ValueError(f"Got kind = {shown(told)}: not a kind of element; expected one of {listed}.")
+        raise EntryError(got=f"kind = {shown(told)}", fault="not a kind of element", expected=f"one of {listed}")
     kind = ELEMENTS[told]
     fields = {field.name: field for field in kind.fields()}
     for key in entry:
         if key not in (KIND, *fields):
-            raise ValueError(
-                f"Got {shown(key)}: not a key of a {told}; expected {', '.join(fields)}.{nearest(key, fields)}"
-            )
+            hint = nearest(key, fields)
+            raise EntryError(got=shown(key), fault=f"not a key of a {told}", expected=", ".join(fields), hint=hint)
     for name, field in fields.items():
         if name not in entry:
-            raise ValueError(f'Got no {name} of the {told}; expected {name} = "1 {field.unit}". {field.sentence}')
+            example = f'{name} = "1 {field.unit}"'
+            raise EntryError(got=f"no {name} of the {told}", expected=example, hint=field.sentence)
     value, *more = fields.values()
     amounts = {field.name: _amount(field, entry[field.name], False) for field in more}
     given = entry[value.name]
@@ -58,10 +59,11 @@ def told_kind(entry: dict[str, Any], *, free: bool = True) -> ToldKind:
         return ToldKind(told, _amount(value, given, kind.may_vanish), amounts)
     if not free or set(given) != {"from", "to"}:
         expected = f'a range {{ from = "1 {value.unit}", to = "2 {value.unit}" }}' if free else "one value"
-        raise ValueError(f"Got a table for {value.name}; expected {expected}.")
+        raise EntryError(got=f"a table for {value.name}", expected=expected)
     lower, upper = (_amount(value, given[end], kind.may_vanish) for end in ("from", "to"))
     if not lower < upper:
-        raise ValueError(f"Got equal or reversed ends of {value.name}; expected from less than to. Swap them.")
+        ends = f"equal or reversed ends of {value.name}"
+        raise EntryError(got=ends, expected="from less than to", hint="Swap them.")
     return ToldKind(told, (lower, upper), amounts)
 
 
@@ -71,7 +73,8 @@ def _amount(field: Field, text: Any, may_vanish: bool) -> float:
     except UnitError as error:
         raise ValueError(f"{field.name}: {error}") from None
     if amount < 0.0 or (amount == 0.0 and not may_vanish):
-        raise ValueError(f"Got {field.name} = {shown(text)}: not positive; expected more than 0 {field.unit}.")
+        given = f"{field.name} = {shown(text)}"
+        raise EntryError(got=given, fault="not positive", expected=f"more than 0 {field.unit}")
     return amount
 
 

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from inerter.errors import StudyError
+from inerter.files.common.problem import Problem
 from inerter.files.common.problems import explain, refusal
 from inerter.files.common.shape import Shape, Shapes
 
@@ -48,28 +49,33 @@ def read_tables(path: Path, what: str) -> dict[str, Any]:
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror}); expected {what}.") from None
     if len(data) > _LARGEST:
-        raise refusal(path, [f"larger than {_LARGEST} bytes; expected {what}, which is a page of TOML."])
+        raise refusal(
+            path, [Problem(fault=f"larger than {_LARGEST} bytes", expected=f"{what}, which is a page of TOML")]
+        )
     try:
         return tomllib.loads(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise refusal(path, [f"line {line}: not UTF-8 text; save the file with the encoding UTF-8."]) from None
+        said = f"line {line}: not UTF-8 text; save the file with the encoding UTF-8."
+        raise refusal(path, [Problem(said=said)]) from None
     except tomllib.TOMLDecodeError as error:
         raise refusal(path, [_syntax_problem(str(error), data)]) from None
     except (RecursionError, ValueError):  # thousands of brackets, or of digits in a whole number
-        raise refusal(path, [f"not {what}: brackets nested too deeply, or a number too long."]) from None
+        said = f"not {what}: brackets nested too deeply, or a number too long."
+        raise refusal(path, [Problem(said=said)]) from None
 
 
-def _syntax_problem(message: str, data: bytes) -> str:
-    """Tomllib's message with its position in front and a hint for the two most frequent causes."""
+def _syntax_problem(message: str, data: bytes) -> Problem:
+    """Tomllib's message with its position, which it has nowhere else, in front, and the two most frequent causes."""
     position = _POSITION.search(message)
     lines = data.decode("utf-8-sig").split("\n")
     line, column = position.groups() if position else (None, None)
     where = f"line {line or len(lines)}, column {column or len(lines[-1]) + 1}"
     what = _POSITION.sub("", message)
-    if what.startswith(("Cannot", "Duplicate")):
-        return f"{where}: a key or section is given twice ({what}); expected each once. Rename or remove one."
-    return f'{where}: not valid TOML ({what}); quantities, names and networks are quoted, such as k = "120 kN/m".'
+    return Problem(
+        said=f'{where}: not valid TOML ({what}); quantities, names and networks are quoted, such as k = "120 kN/m", '
+        f"and no key or section is given twice."
+    )
 
 
 def as_toml(tables: Mapping[str, Any]) -> str:

@@ -9,7 +9,8 @@ from typing import Any
 
 from inerter.errors import InerterError, StudyError
 from inerter.files.common.layouts import element_of, network_problems
-from inerter.files.common.problems import at, refusal
+from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import read_shape
 from inerter.files.identification.shape import CHOOSE, SHAPES, IdentificationFile
@@ -74,9 +75,8 @@ class IdentificationRequest:
         if self.name == CHOOSE:
             return {name: _replaced(model, self.elements) for name, model in MODELS.items()}
         if self.name not in MODELS:
-            raise StudyError(
-                f"Got --model {self.name}; expected one of {known}.{nearest(self.name, (*MODELS, CHOOSE))}"
-            )
+            hint = nearest(self.name, (*MODELS, CHOOSE))
+            raise StudyError(str(EntryError(got=f"--model {self.name}", expected=f"one of {known}", hint=hint)))
         return {self.name: _replaced(MODELS[self.name], self.elements)}
 
 
@@ -104,25 +104,26 @@ def load_identification(path: str | Path) -> IdentificationRequest:
     return request
 
 
-def _problems(request: IdentificationRequest) -> Iterator[str]:
+def _problems(request: IdentificationRequest) -> Iterator[Problem]:
     if request.layout is None:
         yield from _of_named(request)
         return
     if request.name is not None:
-        yield at(("model",), f"got both a name, {shown(request.name)}, and a layout; expected one of them.")
-    wrong = list(network_problems(request.layout, request.elements))
-    yield from (at(("model", "layout"), problem) for problem in wrong)
+        yield at(("model",), got=f"both a name, {shown(request.name)}, and a layout", expected="one of them")
+    wrong = list(network_problems(("model", "layout"), request.layout, request.elements))
+    yield from wrong
     if wrong:
         return
     used = names(request.layout)
     for name in request.elements:
         if name not in used:
-            yield at(("elements", name), "is not in the layout of [model]; use it there, or leave it out.")
+            unused = "it is not in the layout of [model]"
+            yield at(("elements", name), fault=unused, hint="Use it there, or leave it out.")
     if not any(isinstance(request.elements[name].value, Free) for name in used):
         yield at(
             ("elements",),
-            'nothing to identify, since every value is fixed; expected a range, such as b = { from = "1 kg", '
-            'to = "500 kg" }.',
+            fault="nothing to identify, since every value is fixed",
+            expected='a range, such as b = { from = "1 kg", to = "500 kg" }',
         )
     try:
         Rig(network(request.layout, **request.elements))
@@ -130,19 +131,17 @@ def _problems(request: IdentificationRequest) -> Iterator[str]:
         yield at(("model", "layout"), str(error))
 
 
-def _of_named(request: IdentificationRequest) -> Iterator[str]:
+def _of_named(request: IdentificationRequest) -> Iterator[Problem]:
     """Elements that replace those of models of the catalogue."""
     units = {e.label: e.unit for model in MODELS.values() for e in model.elements()}
     for name, element in request.elements.items():
         if name not in units:
-            hint = nearest(name, units)
-            yield at(
-                ("elements", name),
-                f"there is no model.layout that would use it, and the models of the catalogue have "
-                f"{', '.join(units)}.{hint}",
+            unused = (
+                f"there is no model.layout that would use it, and the models of the catalogue have {', '.join(units)}"
             )
+            yield at(("elements", name), fault=unused, hint=nearest(name, units))
         elif element.unit != units[name]:
-            yield at(("elements", name), f"got a value in {element.unit}; expected one in {units[name]}.")
+            yield at(("elements", name), got=f"a value in {element.unit}", expected=f"one in {units[name]}")
 
 
 def _replaced(model: Network, elements: Mapping[str, Element]) -> Network:

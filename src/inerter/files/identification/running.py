@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError, RecordError
+from inerter.errors import InerterError, RecordError, Status
 from inerter.files.identification.loading import CUSTOM, IdentificationRequest, RecordRequest
 from inerter.identification.choice import choose
 from inerter.identification.fit import Comparison, Fit
@@ -53,7 +53,7 @@ class Candidate:
     behind: float  # the loss over the least
     error: float  # standard error of that difference
     as_good: bool  # as the best
-    status: str
+    status: Status
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +150,7 @@ def _chosen(
     given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
     choice = choose([r.used for r in readings], models=given, **settings, progress=progress)
     candidates = tuple(
-        Candidate(c.name, c.unknowns, c.loss, c.behind, c.error, c.as_good, str(choice.fits[c.name].status))
+        Candidate(c.name, c.unknowns, c.loss, c.behind, c.error, c.as_good, choice.fits[c.name].status)
         for c in choice.candidates
     )
     named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]

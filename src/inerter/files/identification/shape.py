@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator
 
 from inerter.files.common.entries import expression, not_negative, one_of, positive, text, whole, yes_or_no
+from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ElementEntry, ElementName, Range, Shape
 from inerter.files.common.suggest import nearest
 from inerter.identification.models import MODELS
@@ -21,20 +22,21 @@ _MOST_STARTS = 4096
 def channel(value: Any) -> str | int:
     """A channel by its name or its number."""
     if isinstance(value, bool) or not isinstance(value, str | int) or value == "":
-        raise ValueError(f'Got {shown(value)}; expected the name of a channel, such as "Load", or its number from 0.')
+        raise EntryError(got=shown(value), expected='the name of a channel, such as "Load", or its number from 0')
     return value
 
 
 def channel_units(value: Any) -> dict[str, str]:
     """Units by what a channel is, not by its name."""
     if not isinstance(value, dict):
-        raise ValueError(f'Got {shown(value)}; expected a table such as {{ force = "kgf" }}.')
+        raise EntryError(got=shown(value), expected='a table such as { force = "kgf" }')
     for role, unit in value.items():
         if role not in CHANNELS:
             known = ", ".join(CHANNELS)
-            raise ValueError(f"Got a unit of {shown(role)}; expected one of {known}.{nearest(role, CHANNELS)}")
+            hint = nearest(role, CHANNELS)
+            raise EntryError(got=f"a unit of {shown(role)}", expected=f"one of {known}", hint=hint)
         if not isinstance(unit, str):
-            raise ValueError(f'Got {shown(unit)} as the unit of the {role}; expected text such as "kgf".')
+            raise EntryError(got=f"{shown(unit)} as the unit of the {role}", expected='text such as "kgf"')
     return value
 
 
@@ -48,7 +50,7 @@ def gap_treatment(value: Any) -> str | float:
         seconds = -1.0
     if seconds <= 0.0:
         known = ", ".join(map(shown, GAPS))
-        raise ValueError(f'Got {shown(value)}; expected one of {known}, or the longest to fill, such as "50 ms".')
+        raise EntryError(got=shown(value), expected=f'one of {known}, or the longest to fill, such as "50 ms"')
     return seconds
 
 
@@ -60,7 +62,7 @@ def longest_delay(value: Any) -> bool | float:
 def check_part(value: Any) -> float:
     """The part of each record that is kept for the check."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= 0.6:
-        raise ValueError(f"Got {shown(value)}; expected a number from 0 to 0.6 without quotes, such as 0.2.")
+        raise EntryError(got=shown(value), expected="a number from 0 to 0.6 without quotes, such as 0.2")
     return float(value)
 
 

@@ -8,7 +8,8 @@ from typing import Any
 
 from inerter.errors import InerterError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
-from inerter.files.common.problems import at, refusal
+from inerter.files.common.problem import Problem, at
+from inerter.files.common.problems import refusal
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import SignalRequest, signal_of
 from inerter.files.common.toml import read_shape
@@ -49,14 +50,15 @@ def load_rig(path: str | Path) -> RigRequest:
     )
 
 
-def _signal_problems(signal: SignalRequest) -> Iterator[str]:
+def _signal_problems(signal: SignalRequest) -> Iterator[Problem]:
     if signal.input != Rig.moved:
-        yield at(("signal", "input"), f"got {shown(signal.input)}; a table is moved by a {Rig.moved}.")
+        yield at(("signal", "input"), got=shown(signal.input), fault=f"a table is moved by a {Rig.moved}")
     elif SIGNALS[signal.kind].needs:
         yield at(
             ("signal", "kind"),
-            f"got {shown(signal.kind)}, which is the shape of a road; expected another kind, such as "
-            f'"flat-multisine" or "cosine".',
+            got=shown(signal.kind),
+            fault="it is the shape of a road",
+            expected='another kind, such as "flat-multisine" or "cosine"',
         )
     else:
         try:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from inerter.errors import InerterError, StudyError
-from inerter.files.common.problems import at
+from inerter.errors import InerterError
+from inerter.files.common.problem import at
+from inerter.files.common.problems import refusal
 from inerter.files.common.signals import SignalRequest
 from inerter.identification.virtual_rig import VirtualRig
 from inerter.records.record import Record
@@ -32,4 +33,4 @@ def record_of(path: Path, request: RigRequest) -> Record:
     try:
         return request.run()
     except InerterError as error:
-        raise StudyError(f"{path.name}: {at(('rig',), str(error))}") from None
+        raise refusal(path, [at(("rig",), str(error))]) from None

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
-from inerter.files.common.problems import at, refusal
+from inerter.files.common.problem import Problem, at
+from inerter.files.common.problems import refusal
 from inerter.files.common.shape import ROAD
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
@@ -59,7 +60,7 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
     )
 
 
-def _names(request: SimulationRequest) -> Iterator[str]:
+def _names(request: SimulationRequest) -> Iterator[Problem]:
     """Names that nothing has."""
     yield from layout_problems(request.model, request.elements, request.layouts)
     yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
@@ -67,30 +68,33 @@ def _names(request: SimulationRequest) -> Iterator[str]:
     moved, inputs = request.signal.input, (kind.moved, *kind.forces)
     if moved not in inputs:
         hint = nearest(moved, inputs)
-        yield at(("signal", "input"), f"got {shown(moved)}; expected one of {some(inputs)}.{hint}")
+        yield at(("signal", "input"), got=shown(moved), expected=f"one of {some(inputs)}", hint=hint)
 
 
-def _needs(request: SimulationRequest) -> Iterator[str]:
+def _needs(request: SimulationRequest) -> Iterator[Problem]:
     """What is missing for the signal, the vehicle or the integration."""
     signal, kind = request.signal, SIGNALS[request.signal.kind]
     if kind.of_roads and signal.unit != "m":
         yield at(
             ("signal", "kind"),
-            f"got {shown(signal.kind)}, which is the shape of a road, for the force {signal.input}; expected another "
-            f"kind, or no input.",
+            got=f"{shown(signal.kind)} for the force {signal.input}",
+            fault="it is the shape of a road",
+            expected="another kind, or no input",
         )
     known = {"speed": request.speed, "roughness": request.roughness}
     examples = {field.key: field.example for field in ROAD}
     for key in kind.needs:
         if known[key] is None:
-            yield at(("road", key), f'missing, but a {signal.kind} needs it; expected {key} = "{examples[key]}".')
+            needed = f"missing, but a {signal.kind} needs it"
+            yield at(("road", key), fault=needed, expected=f'{key} = "{examples[key]}"')
     if signal.unit == "m" and request.speed is None and not kind.needs and _has_delays(request):
         yield at(
             ("road", "speed"),
-            'missing, but the rear wheel meets the road later than the front one; expected speed = "25 m/s".',
+            fault="missing, but the rear wheel meets the road later than the front one",
+            expected='speed = "25 m/s"',
         )
     if request.duration is None and request.initial != "periodic":
-        yield at(("simulation", "duration"), 'missing; expected duration = "10 s".')
+        yield at(("simulation", "duration"), fault="missing", expected='duration = "10 s"')
     if request.duration is not None:
         try:
             whole_steps(request.duration, request.step)
@@ -106,7 +110,7 @@ def _has_delays(request: SimulationRequest) -> bool:
         return False
 
 
-def _parts(request: SimulationRequest) -> Iterator[str]:
+def _parts(request: SimulationRequest) -> Iterator[Problem]:
     """The signal, or the vehicle, cannot be."""
     try:
         request.make_signal()

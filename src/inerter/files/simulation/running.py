@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from inerter.errors import InerterError, StudyError
+from inerter.errors import InerterError
 from inerter.files.common.folder import FIGURES, Intent, claimed
-from inerter.files.common.problems import at
+from inerter.files.common.problem import at
+from inerter.files.common.problems import refusal
 from inerter.files.simulation.request import SimulationRequest, write_simulation
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
@@ -135,7 +136,7 @@ def run_simulation(
         try:
             result = SimulationResult(request, request.run(progress))
         except InerterError as error:
-            raise StudyError(f"{request.path.name}: {at(('simulation',), str(error))}") from None
+            raise refusal(request.path, [at(("simulation",), str(error))]) from None
         _write(result, results.draft)
         results.publish()
         finish(result, results.draft)

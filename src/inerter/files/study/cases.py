@@ -10,6 +10,7 @@ import numpy as np
 from inerter.errors import OK, InerterError, Status, StatusKind
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
+from inerter.methods.note import parts_of
 from inerter.methods.registry import is_blind
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
@@ -47,7 +48,7 @@ class Outcome:
     standard_errors: dict[str, dict[str, float | None]]
     status: dict[str, str]  # method -> kind of status of the case's own index
     message: str = ""
-    notes: list[str] = field(default_factory=list)
+    notes: list[list[str | float]] = field(default_factory=list)  # the parts of each: words, and numbers between them
     realisations: dict[str, int] = field(default_factory=dict)  # method -> roads of the case's own index
     samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
@@ -56,6 +57,11 @@ class Outcome:
     def case(self) -> Case:
         """The case that it answers."""
         return Case(self.layout, self.index, self.point)
+
+    @property
+    def kind(self) -> str:
+        """The kind of its status: the first of all methods that is not ok."""
+        return next((kind for kind in self.status.values() if kind != StatusKind.OK), StatusKind.OK.value)
 
     def to_json(self) -> dict[str, Any]:
         """A plain dictionary; `Outcome(**...)` undoes it."""
@@ -131,7 +137,9 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
     bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
-    notes = [f"{_prefix(study, m)}{note}" for m, e in own.items() for note in e.notes]
+    left_out = design_notes(study, vehicle.mechanism())
+    notes = [(_prefix(study, m), *parts_of(note)) for m, e in own.items() for note in e.notes]
+    notes += [("", *parts_of(note)) for note in left_out]
     return Outcome(
         case.layout,
         case.index,
@@ -141,7 +149,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
         status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
         message=f"{bad}{worst.message}" if worst.message else "",
-        notes=list(dict.fromkeys([*notes, *design_notes(study, vehicle.mechanism())])),
+        notes=list(map(list, dict.fromkeys(notes))),
         realisations={m: e.realisations for m, e in own.items() if e.realisations},
         samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
         over_linear=None if over is None else (-over.percent, over.percent_error),

@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from inerter.errors import InerterError
-from inerter.files.common.problems import at, refusal
+from inerter.files.common.problem import at
+from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import design_notes
 from inerter.files.study.study import Study

@@ -9,7 +9,8 @@ import numpy as np
 
 from inerter.files.common.entries import Amount
 from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
-from inerter.files.common.problems import at, refusal
+from inerter.files.common.problem import Problem, at
+from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
 from inerter.files.study.method_problems import method_problems
@@ -82,42 +83,48 @@ def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
     return Sweep(name, tuple(float(value) for value in values), entry.lower.unit)
 
 
-def _sweep_problems(study: Study) -> Iterator[str]:
+def _sweep_problems(study: Study) -> Iterator[Problem]:
     sweep = study.sweep
     if sweep is None:
         return
     place, name = ("study", "sweep", sweep.element), sweep.element
     if name not in study.elements:
-        hint = nearest(name, study.elements)
-        yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
+        missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
+        yield at(place, fault=missing, hint=nearest(name, study.elements))
         return
     element = study.elements[name]
     if isinstance(element.value, Free):
-        yield at(place, f"{name} is free; expected an element with a fixed value. Fix it, or leave the sweep out.")
+        fixed = "an element with a fixed value"
+        yield at(place, fault=f"{name} is free", expected=fixed, hint="Fix it, or leave the sweep out.")
     if element.unit != sweep.unit:
-        yield at(place, f"got values in {sweep.unit}, but {name} is in {element.unit}; expected the unit of {name}.")
+        other = f"{name} is in {element.unit}"
+        yield at(place, got=f"values in {sweep.unit}", fault=other, expected=f"the unit of {name}")
     if name not in elements_used(study):
-        yield at(place, f"{name} is in no layout, so a sweep changes nothing; expected an element that a layout uses.")
+        unused = f"{name} is in no layout, so a sweep changes nothing"
+        yield at(place, fault=unused, expected="an element that a layout uses")
 
 
-def _setting_problems(study: Study) -> Iterator[str]:
+def _setting_problems(study: Study) -> Iterator[Problem]:
     if study.baseline is not None and study.baseline not in study.layouts:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
-        yield at(("study", "baseline"), f"got {shown(study.baseline)}; expected a layout, one of {known}.{hint}")
+        wanted = f"a layout, one of {known}"
+        yield at(("study", "baseline"), got=shown(study.baseline), expected=wanted, hint=hint)
 
 
-def _free_value_problems(study: Study) -> Iterator[str]:
+def _free_value_problems(study: Study) -> Iterator[Problem]:
     used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
     if used and study.optimise is None:
         method = shown(methods_that(searches)[0])
         yield at(
             ("study", "optimise"),
-            f"missing, but there are free values, {some(used)}; expected optimise = {method}, or fixed values.",
+            fault=f"missing, but there are free values, {some(used)}",
+            expected=f"optimise = {method}, or fixed values",
         )
     if not used and study.optimise is not None:
         yield at(
             ("study", "optimise"),
-            f"got {shown(study.optimise)}, but no layout has a free value; expected one such as "
-            f'c = {{ from = "100 N s/m", to = "100 kN s/m" }} in [elements], or no optimise.',
+            got=shown(study.optimise),
+            fault="no layout has a free value",
+            expected='one such as c = { from = "100 N s/m", to = "100 kN s/m" } in [elements], or no optimise',
         )

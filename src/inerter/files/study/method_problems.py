@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from inerter.fields import fields_of
-from inerter.files.common.problems import at
+from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.study import Study, elements_used
 from inerter.indices.registry import INDICES, amplitude_of, index_settings
@@ -16,7 +16,7 @@ from inerter.systems.graph import switching_parts
 from inerter.units import shown
 
 
-def method_problems(study: Study) -> Iterator[str]:
+def method_problems(study: Study) -> Iterator[Problem]:
     """One line for each."""
     yield from _road_problems(study)
     yield from _index_problems(study)
@@ -30,22 +30,23 @@ def budget_method(study: Study) -> str:
     return next((method for method in study.evaluate if not is_blind(method)), study.evaluate[0])
 
 
-def _road_problems(study: Study) -> Iterator[str]:
+def _road_problems(study: Study) -> Iterator[Problem]:
     given = [name for name in ("realisations", "relative_error") if getattr(study, name) is not None]
     if len(given) == 2:
         yield at(
             ("study", "relative_error"),
-            f"got {study.relative_error} beside realisations = {study.realisations}; expected one of the two: how many "
-            f"roads, or how small an error they must reach.",
+            got=f"{study.relative_error} beside realisations = {study.realisations}",
+            expected="one of the two: how many roads, or how small an error they must reach",
         )
     elif given and not any(map(averages, study.methods)):
         yield at(
             ("study", given[0]),
-            f"no method averages over roads; expected {_either(methods_that(averages))} in evaluate, or no {given[0]}.",
+            fault="no method averages over roads",
+            expected=f"{_either(methods_that(averages))} in evaluate, or no {given[0]}",
         )
 
 
-def _index_problems(study: Study) -> Iterator[str]:
+def _index_problems(study: Study) -> Iterator[Problem]:
     """Settings of indices that nothing asks for."""
     amplitudes = {field.key for symbol in INDICES if (field := amplitude_of(symbol)) is not None}
     for key in study.settings:
@@ -55,18 +56,19 @@ def _index_problems(study: Study) -> Iterator[str]:
         if key in amplitudes and not (asked and any(map(needs_amplitude, study.methods))):
             yield at(
                 ("study", key),
-                f"{what} for {_either(methods_that(needs_amplitude))}; expected {there} in indices and one of them in "
-                f"evaluate, or no {key}.",
+                fault=f"{what} for {_either(methods_that(needs_amplitude))}",
+                expected=f"{there} in indices and one of them in evaluate, or no {key}",
             )
         elif not asked:
-            yield at(("study", key), f"{what}, which is not in indices; expected {there} there, or no {key}.")
+            wanted = f"{there} there, or no {key}"
+            yield at(("study", key), fault=f"{what}, which is not in indices", expected=wanted)
 
 
 def _keys(symbol: str) -> set[str]:
     return {field.key for field in fields_of(INDICES[symbol])}
 
 
-def _force_problems(study: Study) -> Iterator[str]:
+def _force_problems(study: Study) -> Iterator[Problem]:
     """Amplitudes that are missing."""
     concerned = [method for method in study.methods if needs_amplitude(method)]
     nonlinear = _layouts_with(study, lambda part: part.switch is not None)
@@ -75,19 +77,21 @@ def _force_problems(study: Study) -> Iterator[str]:
         if field is not None and field.key not in study.settings:
             yield at(
                 ("study", field.key),
-                f"missing, but {concerned[0]} takes {symbol} of {some(nonlinear)}, where friction or gaps make it "
-                f'depend on the size of the force; expected its amplitude, such as {field.key} = "{field.example}".',
+                fault=f"missing, but {concerned[0]} takes {symbol} of {some(nonlinear)}, where friction or gaps make "
+                f"it depend on the size of the force",
+                expected=f'its amplitude, such as {field.key} = "{field.example}"',
             )
 
 
-def _gap_problems(study: Study) -> Iterator[str]:
+def _gap_problems(study: Study) -> Iterator[Problem]:
     gaps = _layouts_with(study, lambda part: part.statistical is Statistical.REFUSED)
     refusing = next(filter(refuses_gaps, study.methods), None)
     if refusing is not None and gaps:
         yield at(
             ("study", "optimise" if study.optimise == refusing else "evaluate"),
-            f"got {shown(refusing)}, which has no answer for gaps, and {some(gaps)} has one; expected another "
-            f"method, such as {shown(_simulating())}, or layouts without gaps.",
+            got=shown(refusing),
+            fault=f"it has no answer for gaps, and {some(gaps)} has one",
+            expected=f"another method, such as {shown(_simulating())}, or layouts without gaps",
         )
 
 
@@ -96,25 +100,26 @@ def _simulating() -> str:
     return next(name for name in METHODS if not is_blind(name) and not refuses_gaps(name))
 
 
-def _budget_problems(study: Study) -> Iterator[str]:
+def _budget_problems(study: Study) -> Iterator[Problem]:
     place = ("study", "budgets")
     if study.budgets and study.sweep is not None:
-        yield at(place, "given beside a sweep; expected one of the two.")
+        yield at(place, fault="given beside a sweep", expected="one of the two")
     if study.budgets and study.baseline is None:
-        yield at(place, "there is but one layout; expected another to compare it with, or no budgets.")
+        yield at(place, fault="there is but one layout", expected="another to compare it with, or no budgets")
         return
     used = elements_used(study)
     for name in study.budgets:
         if name not in study.elements:
-            hint = nearest(name, study.elements)
-            yield at(place, f"{shown(name)} is not in [elements], where there are {some(study.elements)}.{hint}")
+            missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
+            yield at(place, fault=missing, hint=nearest(name, study.elements))
         elif not set(used.get(name, ())) - {study.baseline}:
-            yield at(place, f"no layout but the baseline has {name}; expected an element of a layout that is compared.")
+            only = f"no layout but the baseline has {name}"
+            yield at(place, fault=only, expected="an element of a layout that is compared")
         elif study.elements[name].switch is not None and is_blind(budget_method(study)):
             yield at(
                 place,
-                f"{name} is a {study.elements[name].key}, which linear analysis does not see; expected a method "
-                f"that does in evaluate, such as {shown(_simulating())}.",
+                fault=f"{name} is a {study.elements[name].key}, which linear analysis does not see",
+                expected=f"a method that does in evaluate, such as {shown(_simulating())}",
             )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -14,12 +13,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import inerter
-from inerter.errors import LinearSystemError, MechanismError
+from inerter.errors import LinearSystemError, MechanismError, StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
 from inerter.files.study.study import Study
 from inerter.methods.compare import difference_of
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Estimate
+from inerter.methods.note import Parts, text_of
 from inerter.methods.registry import is_blind
 from inerter.networks.elements import Free
 from inerter.norms.response import frequency_response
@@ -196,26 +196,27 @@ def _enter(data: xr.Dataset, study: Study, outcome: Outcome) -> None:
 
 def _notes(study: Study, outcomes: Mapping[Case, Outcome]) -> list[str]:
     """What methods left out, each with the layouts that it concerns; notes that differ in numbers alone are one."""
-    found: dict[str, dict[str, dict[str, None]]] = {}
+    found: dict[tuple[str | None, ...], list[Parts]] = {}
+    layouts: dict[tuple[str | None, ...], set[str]] = {}
     for case in cases(study):
         for note in outcomes[case].notes if case in outcomes else ():
-            found.setdefault(_NUMBER.sub("{}", note), {}).setdefault(note, {})[case.layout] = None
-    lines = []
-    for alike in found.values():
-        layouts = dict.fromkeys(layout for layouts in alike.values() for layout in layouts)
-        lines.append(f"{', '.join(name for name in study.layouts if name in layouts)}: {_ranged(list(alike))}")
-    return lines
+            words = tuple(part if isinstance(part, str) else None for part in note)
+            found.setdefault(words, []).append(tuple(note))
+            layouts.setdefault(words, set()).add(case.layout)
+    return [
+        f"{', '.join(name for name in study.layouts if name in layouts[words])}: {_ranged(alike)}"
+        for words, alike in found.items()
+    ]
 
 
-_NUMBER = re.compile(r"(?<![\w'])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w'])")
-
-
-def _ranged(notes: list[str]) -> str:
+def _ranged(notes: list[Parts]) -> str:
     """One note for several that differ in their numbers."""
-    columns = zip(*(_NUMBER.findall(note) for note in notes), strict=True)
-    ends = [(min(column, key=float), max(column, key=float)) for column in columns]
-    texts = iter(low if low == high else f"{low} to {high}" for low, high in ends)
-    return _NUMBER.sub(lambda _: next(texts), notes[0])
+    texts = []
+    for column in zip(*notes, strict=True):
+        numbers = [part for part in column if not isinstance(part, str)]
+        low, high = (text_of((end,)) for end in ((min(numbers), max(numbers)) if numbers else column[:1] * 2))
+        texts.append(low if low == high else f"{low} to {high}")
+    return "".join(texts)
 
 
 def summary_csv(study: Study, data: xr.Dataset) -> str:
@@ -265,8 +266,8 @@ def _number(value: Any) -> str:
 
 
 def _status(outcome: Outcome) -> str:
-    kind = next((kind for kind in outcome.status.values() if kind != "ok"), "ok")
-    return kind if kind == "ok" or not outcome.message else f"{kind}: {outcome.message}"
+    kind = outcome.kind
+    return kind if kind == StatusKind.OK or not outcome.message else f"{kind}: {outcome.message}"
 
 
 def _parameters(study: Study) -> dict[str, str]:

@@ -41,6 +41,7 @@ class StudyResult:
     data: xr.Dataset
     computed: int  # cases that this run computed; the others were there already
     budgets: tuple[BudgetOutcome, ...] = ()
+    failed: bool = False  # whether a case or a budget has no number at all
 
     @property
     def failures(self) -> list[str]:
@@ -98,7 +99,8 @@ def run_study(
         write_text(results.draft / SUMMARY, summary_csv(study, data))
         write_netcdf(results.draft / DATASET, data)
         results.publish()
-        result = StudyResult(results.folder, study, data, computed, found)
+        kinds = (*(outcome.kind for outcome in done.values()), *(budget.status for budget in found))
+        result = StudyResult(results.folder, study, data, computed, found, StatusKind.FAILED in kinds)
         finish(result, results.draft)
     return result
 

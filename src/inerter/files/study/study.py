@@ -8,6 +8,7 @@ from typing import Any
 
 from inerter.errors import NetworkError, StudyError
 from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
+from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.told_kind import entry_of
@@ -78,7 +79,8 @@ class Study:
         """
         if layout not in self.layouts:
             known = ", ".join(self.layouts)
-            raise StudyError(f"Got layout {layout!r}; expected one of {known}.{nearest(layout, self.layouts)}")
+            hint = nearest(layout, self.layouts)
+            raise StudyError(str(EntryError(got=f"layout {layout!r}", expected=f"one of {known}", hint=hint)))
         elements = dict(self.elements)
         if swept is not None:
             if self.sweep is None:

@@ -79,6 +79,8 @@ def compute_budget(name: str) -> dict[str, object]:
         "high": found.interval[1],
         "unit": found.unit,
         "status": str(found.status),
+        "kind": found.status.kind.value,
+        "message": found.status.message,
     }
 
 

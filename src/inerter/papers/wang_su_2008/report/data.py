@@ -189,6 +189,9 @@ def _optimum_row(name: str, numbers: dict[str, Any]) -> dict[str, Any]:
     return {"index": index, "layout": layout, **plain, **parameters}
 
 
+_OF_BUDGET = ("value", "error", "low", "high", "unit", "status")
+
+
 def _budget_row(name: str, numbers: dict[str, Any]) -> dict[str, Any]:
     index, layout, what = name.split(maxsplit=2)
-    return {"index": index, "layout": layout, "of": what, **{k: v for k, v in numbers.items() if k != "seconds"}}
+    return {"index": index, "layout": layout, "of": what, **{k: numbers[k] for k in _OF_BUDGET}}

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from textwrap import wrap
 from typing import Any
 
+from inerter.errors import StatusKind
 from inerter.figures.labels import printed
 from inerter.papers.wang_su_2008.judging import Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
@@ -131,7 +132,7 @@ def _optimum_line(name: str, numbers: dict[str, Any]) -> str:
 
 def budget_value(numbers: dict[str, Any]) -> str:
     if numbers["value"] != numbers["value"]:
-        return str(numbers["status"]).removeprefix("unbounded: ")
+        return str(numbers["message"] if numbers["kind"] == StatusKind.UNBOUNDED else numbers["status"])
     error = numbers["error"]
     about = f" ± {format_quantity(error, numbers['unit'], digits=2)}" if error else ""
     return f"{printed(numbers['value'], numbers['unit'])}{about}".replace("\N{NO-BREAK SPACE}", " ")

@@ -1,0 +1,57 @@
+"""A problem of a file as data: its place, what arrived, what is wrong with it, what was expected, what to try.
+
+Here, and nowhere else, it becomes a sentence.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from inerter.units import shown
+
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is wrong with an entry of a file; `said` is a whole sentence where another one, such as an error, has it."""
+
+    place: tuple[str, ...] = ()  # the path of keys
+    said: str = ""
+    got: str = ""  # what arrived, as it can be shown
+    fault: str = ""  # what is wrong with it
+    expected: str = ""
+    hint: str = ""  # what to try, a whole sentence
+
+    def __str__(self) -> str:
+        sentence = self.said or _sentence(self)
+        keys = ".".join(key if _BARE_KEY.fullmatch(key) else shown(key) for key in self.place)
+        return f"{keys}: {sentence[0].lower()}{sentence[1:]}" if keys else sentence
+
+
+class EntryError(ValueError):
+    """An entry that is not what it should be, wherever it stands."""
+
+    def __init__(self, *, got: str = "", fault: str = "", expected: str = "", hint: str = "") -> None:
+        self.problem = Problem(got=got, fault=fault, expected=expected, hint=hint)
+        super().__init__(self.problem)
+
+    def __str__(self) -> str:
+        sentence = str(self.problem)
+        return f"{sentence[0].upper()}{sentence[1:]}"
+
+
+def at(
+    place: Iterable[str], said: str = "", *, got: str = "", fault: str = "", expected: str = "", hint: str = ""
+) -> Problem:
+    """The problem of the entry at this path of keys."""
+    return Problem(tuple(place), said, got, fault, expected, hint)
+
+
+def _sentence(problem: Problem) -> str:
+    arrived = f"got {problem.got}" if problem.got else ""
+    what = ": ".join(part for part in (arrived, problem.fault) if part)
+    wanted = f"expected {problem.expected}" if problem.expected else ""
+    return " ".join(part for part in ("; ".join(filter(None, (what, wanted))) + ".", problem.hint.strip()) if part)

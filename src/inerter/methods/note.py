@@ -1,0 +1,38 @@
+"""What a method says beside its number: text whose numbers are known apart, so that designs can be told together."""
+
+from __future__ import annotations
+
+Parts = tuple[str | float, ...]  # words, and the numbers between them
+
+
+class Note(str):
+    """A text made of words and numbers, which `parts` keeps apart.
+
+    >>> Note("friction taken as a damper of ", 1234.5678, " N s/m").parts[1]
+    1234.5678
+    """
+
+    parts: Parts
+
+    def __new__(cls, *parts: str | float) -> Note:
+        """The parts, one after the other; numbers to six digits."""
+        self = super().__new__(cls, text_of(parts))
+        self.parts = parts
+        return self
+
+    def __getnewargs__(self) -> Parts:  # type: ignore[override]
+        return self.parts
+
+
+def parts_of(note: str) -> Parts:
+    """The parts of a note; a plain text is one."""
+    return note.parts if isinstance(note, Note) else (note,)
+
+
+def text_of(parts: Parts) -> str:
+    """The parts as text.
+
+    >>> text_of(("c = ", 1234.5678))
+    'c = 1234.57'
+    """
+    return "".join(part if isinstance(part, str) else f"{part:.6g}" for part in parts)

@@ -1,0 +1,69 @@
+"""A problem of a file keeps what it is made of, and becomes a sentence that says all of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inerter.errors import StudyError
+from inerter.files.common.entries import one_of, positive_number, some_names
+from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.problems import refusal
+from inerter.files.common.toml import read_shape
+from inerter.files.study.shape import SHAPES, StudyFile
+
+WORDS = st.text("abcdefgh", min_size=3, max_size=8)
+MAYBE = st.one_of(st.just(""), WORDS)
+
+
+@given(st.lists(WORDS, min_size=1, max_size=3), MAYBE, WORDS, MAYBE, MAYBE)
+def test_the_sentence_says_the_place_and_every_part(
+    place: list[str], got: str, fault: str, expected: str, hint: str
+) -> None:
+    problem = at(place, got=got, fault=fault, expected=expected, hint=hint and f"{hint}.")
+    text = str(problem)
+    assert text.startswith(f"{'.'.join(place)}: ")
+    assert text.endswith(".")
+    assert [part for part in (got, fault, expected, hint) if part not in text] == []
+    assert problem == Problem(tuple(place), "", got, fault, expected, hint and f"{hint}.")
+
+
+@given(WORDS, WORDS)
+def test_an_entry_that_is_refused_keeps_its_parts(got: str, expected: str) -> None:
+    error = EntryError(got=got, expected=expected)
+    assert (error.problem.got, error.problem.expected) == (got, expected)
+    assert str(error) == f"Got {got}; expected {expected}."
+
+
+def test_every_check_of_an_entry_says_what_arrived_and_what_was_expected() -> None:
+    for check, value in ((positive_number, -1), (one_of("a word", ("one", "two")), "thre"), (some_names("k").func, [])):
+        with pytest.raises(EntryError) as refused:
+            check(value)
+        problem = refused.value.problem
+        assert problem.got
+        assert problem.expected or problem.fault
+
+
+def test_the_words_of_a_problem_decide_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Other words in the place of all sentences: the same problems at the same places, in the same order."""
+    file = tmp_path / "wrong.toml"
+    file.write_text('[vehicle]\nmodel = "quarter-car"\nsprung = "1 kg"\n[rood]\n[study]\nindices = []\n')
+    with pytest.raises(StudyError) as said:
+        read_shape(file, "a study file", StudyFile, SHAPES)
+    monkeypatch.setattr(Problem, "__str__", lambda problem: f"{'.'.join(problem.place)}: token")
+    with pytest.raises(StudyError) as token:
+        read_shape(file, "a study file", StudyFile, SHAPES)
+    places = [[line.split(": ")[1] for line in str(error.value).splitlines()] for error in (said, token)]
+    assert places[0] == places[1]
+    assert len(places[0]) > 4
+
+
+def test_a_refusal_has_a_line_for_each() -> None:
+    problems = [at(("elements", "k 1"), fault="odd"), at((), "a sentence.")]
+    assert str(refusal(Path("a.toml"), problems)).splitlines() == [
+        'a.toml: elements."k 1": odd.',
+        "a.toml: a sentence.",
+    ]

@@ -1,0 +1,44 @@
+"""Notes of designs are one where they differ in numbers alone, whatever their words."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inerter.files.study.cases import Case, Outcome, cases
+from inerter.files.study.loading import load_study
+from inerter.files.study.results import dataset
+from inerter.methods.note import Note, parts_of
+
+STUDY = load_study(Path(__file__).parents[2] / "examples" / "quarter-car.toml")
+WORDS = st.text("abc 0123456789.{}", min_size=1, max_size=12)
+NUMBERS = st.floats(1e-3, 1e6)
+
+
+@given(WORDS, WORDS, st.data())
+def test_the_range_of_the_numbers_stands_in_one_note(before: str, after: str, data: st.DataObject) -> None:
+    """Digits in the words are words."""
+    layouts = list(STUDY.layouts)[:2]
+    values = {case: data.draw(NUMBERS) for case in cases(STUDY) if case.layout in layouts}
+    found = {case: _outcome(case, Note(f"x{before}", value, after)) for case, value in values.items()}
+    low, high = (f"{end(values.values()):.6g}" for end in (min, max))
+    many = low if low == high else f"{low} to {high}"
+    assert dataset(STUDY, found).attrs["notes"] == f"{', '.join(layouts)}: x{before}{many}{after}"
+
+
+def test_a_note_is_a_text_that_keeps_its_numbers() -> None:
+    note = Note("a damper of ", 1234.5678, " N s/m")
+    assert note == "a damper of 1234.57 N s/m"
+    assert pickle.loads(pickle.dumps(note)).parts == note.parts
+    assert parts_of("plain") == ("plain",)
+
+
+def _outcome(case: Case, note: Note) -> Outcome:
+    outcome = Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, {"norm": "ok"})
+    again = json.loads(json.dumps(replace(outcome, notes=[list(note.parts)]).to_json()))
+    return Outcome(**again)

@@ -15,7 +15,6 @@ from troubled_rig import Device, Sensors, Tones, measured
 import inerter as it
 from inerter.cli.main import call
 from inerter.files.identification import running as identification_run
-from inerter.files.identification.loading import load_identification
 from inerter.identification.fit import Told
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
@@ -332,16 +331,3 @@ def test_what_is_wrong_in_a_configuration_is_said(
     assert words in err
     assert err.startswith("inerter: rig.toml: ")
     assert "Traceback" not in err
-
-
-def test_the_python_of_the_page_runs() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "identification.md").read_text(encoding="utf-8")
-    (code,) = [block.partition("```")[0] for block in page.split("```python\n")[1:]]
-    exec(compile(code, "identification.md", "exec"), {})
-
-
-def test_the_configurations_of_the_page_are_sound(tmp_path: Path) -> None:
-    page = (Path(__file__).parents[2] / "docs" / "identification.md").read_text(encoding="utf-8")
-    for block in page.split("```toml\n")[1:]:
-        (tmp_path / "rig.toml").write_text(block.partition("```")[0], encoding="utf-8")
-        assert load_identification(tmp_path / "rig.toml").models()

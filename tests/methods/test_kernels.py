@@ -1,5 +1,6 @@
 """Compiled code against the exact norms, its gradients against differences, and its cache."""
 
+import math
 import shutil
 from dataclasses import replace
 from itertools import product
@@ -12,11 +13,14 @@ from exact import quarter_car_norms
 from strategies import paper_half_car, paper_quarter_car
 
 from inerter import (
+    ApproximateLinear,
     Damper,
+    ExpectedValue,
     Friction,
     Inerter,
     LoadCarrying,
     Norm,
+    QuarterCar,
     RideComfort,
     Road,
     Spring,
@@ -28,6 +32,7 @@ from inerter import (
     free,
 )
 from inerter.kernels import cache, gain, h2, harmonic
+from inerter.methods.method import Differentiable
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())
@@ -139,6 +144,35 @@ def test_gradients_of_mean_squares(name, conventions):
             np.testing.assert_allclose(
                 gradient * point, slopes(objective.values, point) * point, rtol=0.0, atol=1e-8 * value
             )
+
+
+METHODS = [Norm(), StatisticalLinearisation(), ExpectedValue(realisations=2), ApproximateLinear(realisations=2)]
+
+
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
+def test_values_and_gradients_of_every_method_are_those_of_the_formula(method):
+    """J1^2 = (S/2) (c kt + k^2 (m + mu) / c) / m^2 on a road whose velocity has the two-sided density S."""
+    mass, unsprung, tyre = 300.0, 40.0, 180e3
+    strut = Spring(free(5e3, 80e3, "k")) | Damper(free(500.0, 2e4, "c"))
+    objective = method.objective(QuarterCar(mass, unsprung, tyre, strut), RideComfort(ROAD))
+    density = 4.0 * math.pi**2 * ROAD.roughness * ROAD.speed
+    for k, c in ((20e3, 2e3), (60e3, 1e3), (8e3, 9e3)):
+        rise = (
+            0.5
+            * density
+            / mass**2
+            * np.array([2.0 * k * (mass + unsprung) / c, tyre - (k / c) ** 2 * (mass + unsprung)])
+        )
+        value = math.sqrt(0.5 * density * (c * tyre + k**2 * (mass + unsprung) / c)) / mass
+        point = np.array([k, c])
+        assert objective.values(point[None])[0] == pytest.approx(
+            value, rel=2e-4 if method.name == "approximate-linear" else 1e-6
+        )
+        if isinstance(objective, Differentiable):
+            found, gradient = objective.value_and_gradient(point)
+            assert found == pytest.approx(value, rel=1e-9)
+            assert gradient == pytest.approx(rise / (2.0 * value), rel=1e-7)
+    assert isinstance(objective, Differentiable) == (method.name in ("norm", "statistical-linearisation"))
 
 
 @pytest.mark.parametrize("name", CARS)

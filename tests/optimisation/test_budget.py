@@ -186,6 +186,44 @@ def test_bounds_by_default_lie_about_the_present_value():
     assert found.evaluations > 16
 
 
+@pytest.mark.parametrize("kept", [1 / 1100, 1 / 900, 900, 1100])
+def test_a_stiffness_is_looked_for_up_to_a_thousand_times_its_value(kept):
+    """J1^2 goes as c kt / m^2 + k^2 (m + mu) / (c m^2): of two dampings alike at k = sqrt(kt c c' / (m + mu))."""
+    expected = math.sqrt(120e3 * 3e3 * 5e3 / 206.75)
+    present = expected / kept
+    design, baseline = conventional(present, 5e3), conventional(present, 3e3)
+    found = budget(design, baseline, J1, parameter="k", method=Norm())
+    if 1e-3 < kept < 1e3:
+        assert found.value == pytest.approx(expected, rel=3e-5)
+    else:
+        assert found.status.message.startswith(f"the design is better for {'every' if kept < 1.0 else 'no'} k from ")
+
+
+@pytest.mark.parametrize("expected", [0.09, 0.11, 9e3, 11e3])
+def test_a_friction_that_is_not_there_yet_is_looked_for_between_a_tenth_of_a_newton_and_ten_kilonewtons(expected):
+    """All power that enters, kt S / 2 for a road velocity of density S, leaves by the damping; friction adds to it."""
+    damping, more = 6e3, 300.0
+    density = 2.0 * damping / 120e3 * (expected / more) ** 2 * 2.0 / math.pi
+    index = RideComfort(Road(roughness=density / (4.0 * math.pi**2 * 25.0), speed=25.0))
+    design = paper_quarter_car(Spring(80e3) | Damper(damping - more) | Friction(0.0))
+    baseline = paper_quarter_car(Spring(80e3) | Damper(damping))
+    found = budget(design, baseline, index, parameter="friction", method=Linearisation())
+    if 0.1 < expected < 1e4:
+        assert found.value == pytest.approx(expected, rel=3e-5)
+    else:
+        assert found.status.message == (
+            f"the design is better for {'no' if expected < 1.0 else 'every'} friction from 0.1 N to 10 kN"
+        )
+
+
+def test_a_play_that_is_not_there_yet_is_looked_for_between_a_micrometre_and_a_centimetre():
+    """The norm closes gaps, so that one is as good as another."""
+    design = paper_quarter_car(Spring(120e3) | Damper(6666.4) - shaft - Gap(0.0) - Inerter(363.55))
+    found = budget(design, conventional(), J3, parameter="gap", method=Norm())
+    assert found.status.message == "the design is better for every gap from 1 um to 10 mm"
+    assert found.bounds == (1e-6, 1e-2)
+
+
 WRONG = {
     "no such name": (lambda: budget(series(), conventional(), J3, parameter="q", method=Norm()), "named 'q'"),
     "no gap there": (lambda: budget(series(), conventional(), J3, parameter="gap", method=Norm()), "Gap(0.0)"),

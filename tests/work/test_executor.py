@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 from pickle import dumps, loads
-from shutil import copytree
 from typing import Any
 
 import pytest
@@ -79,16 +77,3 @@ def test_an_executor_that_is_given_does_all_and_goes_on() -> None:
             with crewed(threads) as crew:
                 assert list(crew.spread(abs, [-1])) == [1]
         assert threads.submit(abs, -2).result() == 2
-
-
-def test_the_documented_lines_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    root = Path(__file__).parents[2]
-    text = (root / "docs" / "study-file.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
-    copytree(root / "examples", tmp_path / "examples")
-    monkeypatch.chdir(tmp_path)
-    exec(block, {})
-    assert float(capsys.readouterr().out) == pytest.approx(2.4281, abs=5e-5)  # Wang and Su (2008), Table 1, J1 case 7
-    assert (tmp_path / "out" / "summary.csv").exists()

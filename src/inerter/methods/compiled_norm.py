@@ -37,10 +37,9 @@ _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that a
 
 @dataclass(frozen=True, eq=False)
 class CompiledQuestion:
-    """One question as a function of the free values: the `Objective` of `Norm`."""
+    """One question as a function of the free values: the `Differentiable` objective of `Norm`."""
 
     problem: LinearProblem
-    costly = False
 
     @cached_property
     def descriptor(self) -> tuple[Any, ...]:

@@ -31,12 +31,10 @@ _NUDGE = 1e-6  # relative change of a value for differences
 
 @dataclass(frozen=True, eq=False)
 class HarmonicBalance:
-    """A peak gain with friction as a function of the free values: an `Objective`.
+    """A peak gain with friction as a function of the free values: `Differentiable`.
 
     The gains at given frequencies are its components, with gradients by central differences.
     """
-
-    costly = False
 
     question: Question
     descriptor: Descriptor  # inputs: the force, a force beside each friction; outputs: displacement, velocities

@@ -170,13 +170,11 @@ class Solved:
 
 @dataclass(frozen=True, eq=False)
 class GaussianClosure:
-    """An index of r.m.s. values as a function of the free values, with friction: an `Objective`.
+    """An index of r.m.s. values as a function of the free values, with friction: `Differentiable`.
 
     Gradients are those of the norms, with the dampers by implicit differentiation of their equations. The index is
     smooth but where a friction begins to slip.
     """
-
-    costly = False
 
     mechanism: Mechanism
     question: Question

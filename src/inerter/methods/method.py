@@ -38,16 +38,19 @@ class Estimate:
 
 
 class Objective(Protocol):
-    """An index of a design as a function of its free values, for an optimiser. Points are (values,) or (n, values)."""
+    """An index of a design as a function of its free values, for an optimiser. Points are (values,) or (n, values).
 
-    @property
-    def costly(self) -> bool:
-        """Whether a value takes so long, and a gradient so much longer, that searches must make do with few."""
-        ...
+    One that knows no more than its values is costly: searches make do with few of them.
+    """
 
     def values(self, points: Array) -> Array:
         """The index at each row of `points`."""
         ...
+
+
+@runtime_checkable
+class Differentiable(Objective, Protocol):
+    """An index with gradients: smooth, or the largest of smooth functions."""
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
         """The index and its gradient at one point, where it is smooth."""

@@ -13,7 +13,7 @@ from inerter.errors import DesignError
 from inerter.indices.question import Index, Question
 from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem
-from inerter.methods.method import Estimate, Objective, Sees
+from inerter.methods.method import Differentiable, Estimate, Sees
 from inerter.systems.descriptor import close
 from inerter.vehicle.vehicle import Vehicle
 
@@ -52,7 +52,7 @@ class Norm:
         conventions = CONVENTIONS[self.conventions]
         return evaluate_problems(mechanism, [index.question(mechanism) for index in indices], conventions, points)
 
-    def objective(self, vehicle: Vehicle, index: Index) -> Objective:
+    def objective(self, vehicle: Vehicle, index: Index) -> Differentiable:
         """The index as a function of the free values, compiled, with its gradient."""
         mechanism = vehicle.mechanism()
         problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])

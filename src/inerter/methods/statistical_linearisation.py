@@ -16,7 +16,7 @@ from inerter.methods.describing_function import HarmonicBalance, harmonic_balanc
 from inerter.methods.equivalent import check_gaps, check_outputs, has_friction
 from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.method import Estimate, Objective, Sees
+from inerter.methods.method import Differentiable, Estimate, Sees
 from inerter.methods.norm import Norm
 from inerter.vehicle.vehicle import Vehicle
 
@@ -66,7 +66,7 @@ class StatisticalLinearisation:
         """The indices (designs, indices) at many values of the free values; nan where one cannot be told."""
         return np.column_stack([self._many(vehicle, index, points) for index in indices])
 
-    def objective(self, vehicle: Vehicle, index: Index) -> Objective:
+    def objective(self, vehicle: Vehicle, index: Index) -> Differentiable:
         """The index as a function of the free values, compiled; friction forces may be among them."""
         closure = self._closure(vehicle, index)
         if closure is None:

@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.methods.method import Objective
+from inerter.methods.method import Differentiable, Objective
 
 Array = NDArray[np.float64]
 Components = Callable[[Array], tuple[Array, Array]]
@@ -34,7 +34,7 @@ class LocalOptimum:
     evaluations: int
 
 
-def descend(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
+def descend(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     """The local optimum of a smooth index that is reached from `start` within the bounds."""
 
     def logarithm(x: Array) -> tuple[float, Array]:
@@ -77,7 +77,7 @@ def creep(objective: Objective, start: Array, lower: Array, upper: Array) -> Loc
     return LocalOptimum(best[0].point, best[0].value, int(result.nfev))
 
 
-def approach(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
+def approach(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     """Close to a minimax optimum: the level above the peaks, each followed as it moves."""
 
     def peaks(point: Array) -> tuple[Array, Array]:
@@ -94,7 +94,7 @@ def approach(objective: Objective, start: Array, lower: Array, upper: Array) -> 
     return LocalOptimum(ends[best], float(values[best]), count + 2)
 
 
-def polish(objective: Objective, start: LocalOptimum, lower: Array, upper: Array) -> LocalOptimum:
+def polish(objective: Differentiable, start: LocalOptimum, lower: Array, upper: Array) -> LocalOptimum:
     """The minimax optimum near `start`: the level above known frequencies, and the peaks that stand out added."""
     best, known, evaluations = start, _active(objective, start.point), start.evaluations
     point = start.point
@@ -115,7 +115,7 @@ def polish(objective: Objective, start: LocalOptimum, lower: Array, upper: Array
     return LocalOptimum(best.point, best.value, evaluations)
 
 
-def _active(objective: Objective, point: Array) -> Array:
+def _active(objective: Differentiable, point: Array) -> Array:
     components = objective.active(point)
     assert components is not None
     return components

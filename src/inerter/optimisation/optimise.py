@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.indices.question import Index
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Estimate, Method, Objective, Sees, check_request
+from inerter.methods.method import Differentiable, Estimate, Method, Objective, Sees, check_request
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
@@ -92,16 +92,16 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     lower = np.array([free.lower for free in variables.values()])
     upper = np.array([free.upper for free in variables.values()])
     objective = method.objective(vehicle, index)
-    agreement = COSTLY_AGREEMENT if objective.costly else AGREEMENT
+    agreement = AGREEMENT if isinstance(objective, Differentiable) else COSTLY_AGREEMENT
     with one_blas_thread():
         linear = None if method.sees is Sees.NEITHER else _linear_optimum(vehicle, index, method, seed, starts)
-        if objective.costly:
+        if isinstance(objective, Differentiable):
+            first, evaluations = _starting_points(objective, lower, upper, starts, seed)
+            found = _searches(objective, first, lower, upper)
+        else:
             first = [] if linear is None else [linear]
             first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)
             found, evaluations = _costly_searches(objective, _apart(first), lower, upper)
-        else:
-            first, evaluations = _starting_points(objective, lower, upper, starts, seed)
-            found = _searches(objective, first, lower, upper)
     evaluations += sum(local.evaluations for local in found)
     best = min(found, key=lambda local: local.value, default=None)
     if best is None or not np.isfinite(best.value):
@@ -151,8 +151,7 @@ def _quick_optima(
             continue
         found = sorted(_searches(objective, first, *bounds), key=lambda local: local.value)
         return [local.point for local in found if np.isfinite(local.value)]
-    objective = method.objective(vehicle, index)
-    return _starting_points(objective, *bounds, _MOST_TRIED, seed)[0]
+    return _starting_points(method.objective(vehicle, index), *bounds, _MOST_TRIED, seed)[0]
 
 
 def _apart(points: list[Array]) -> list[Array]:
@@ -173,7 +172,7 @@ def _costly_searches(
     return [creep(objective, tried[i], lower, upper) for i in best_first], len(tried)
 
 
-def _searches(objective: Objective, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:
+def _searches(objective: Differentiable, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:
     """A local search from each start; for a peak gain only those that come close to the best are carried to the end."""
     if not first or objective.active(first[0]) is None:
         return [descend(objective, start, lower, upper) for start in first]

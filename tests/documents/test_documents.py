@@ -1,0 +1,202 @@
+"""Every block of Python and every command of the README and docs/ runs, and gives the figures that the page prints."""
+
+from __future__ import annotations
+
+import doctest
+import re
+import shlex
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from campaigns import sampled
+from pages import NUMBER, PAGES, ROOT, assert_figures, blocks, commands, printed, rounds_to, run, table, text_of
+
+import inerter as it
+from inerter.cli.main import app, call
+from inerter.files.identification.loading import load_identification
+
+PYTHON = [page for page in PAGES if blocks(page)]
+LONG = {"staged-protocol.md"}  # pages whose blocks take long
+WRITTEN = {"study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where a newcomer stands: beside the examples."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("page", sampled(PYTHON, [page for page in PYTHON if page not in LONG]))
+@pytest.mark.usefixtures("folder")
+def test_python_gives_the_figures_beside_it(page: str) -> None:
+    """All blocks of a page one after the other, as a reader would try them."""
+    namespace: dict[str, object] = {"__name__": "__main__"}
+    for block in blocks(page):
+        if not block.code.startswith(">>>"):
+            run(block, page, namespace)
+    assert Path(WRITTEN.get(page, ".")).exists()
+    if all(block.code.startswith(">>>") for block in blocks(page)):
+        failed, tried = doctest.testfile(str(PAGES[page]), module_relative=False, encoding="utf-8")
+        assert tried > 15
+        assert failed == 0
+
+
+def a_car(folder: Path) -> None:
+    shutil.copy(folder / "examples" / "stick_slip.toml", folder / "my-car.toml")
+
+
+def a_record(folder: Path, name: str = "bench.csv", frequency: float = 3.0) -> None:
+    shaft = it.Spring(1e6) | it.Damper(3200.0)
+    rig = it.VirtualRig(shaft - (it.Inerter(113.0) | it.Friction(10.0)), seed=0, sampling=500.0)
+    it.write_record(rig.run(it.cosine(1e-3, frequency), 1.0), folder / name)
+
+
+def two_records(folder: Path) -> None:
+    """In kgf, though the files say N."""
+    for name, frequency in (("slow", 1.0), ("fast", 3.0)):
+        a_record(folder, f"{name}.csv", frequency)
+        record = it.read_record(folder / f"{name}.csv")
+        scaled = it.Record(record.time, record.displacement, record.force / 9.80665)
+        it.write_record(scaled, folder / f"{name}.tdms")
+
+
+def a_configuration(folder: Path) -> None:
+    a_record(folder)
+    (folder / "rig.toml").write_text(blocks("identification.md", "toml")[1].code, encoding="utf-8")
+
+
+def a_fit_test(folder: Path) -> None:
+    assert call(shlex.split("rig examples/rig_fit.toml -o fit.csv")) == 0
+
+
+def a_friction_test(folder: Path) -> None:
+    assert call(shlex.split("rig examples/rig_friction.toml -o friction.csv")) == 0
+
+
+def nothing(folder: Path) -> None:
+    pass
+
+
+IDENTIFY = "inerter identify fit.csv --model ball-screw --force-bandwidth"
+SHOWN = f'{IDENTIFY} "300 Hz" --force-range "100 kgf"'
+COMMANDS: dict[str, Callable[[Path], None]] = {
+    "inerter run examples/quarter-car.toml": nothing,
+    "inerter simulate examples/backlash_rattle.toml": nothing,
+    "inerter simulate my-car.toml -o motion --force": a_car,
+    "inerter simulate my-car.toml --window 2:4": a_car,
+    "inerter simulate my-car.toml --json": a_car,
+    "inerter rig examples/rig_fit.toml -o fit.csv": nothing,
+    "inerter rig examples/rig_friction.toml -o friction.csv": nothing,
+    "inerter identify bench.csv --model ball-screw": a_record,
+    "inerter identify slow.tdms fast.tdms --model ball-screw --unit force=kgf -o bench": two_records,
+    "inerter identify bench.csv --config rig.toml --force": a_configuration,
+    f'{IDENTIFY} "300 Hz"': a_fit_test,
+    SHOWN: a_fit_test,
+    'inerter identify friction.csv --model ball-screw --force-bandwidth "80 Hz"': a_friction_test,
+    'inerter identify fit.csv --model choose --force-bandwidth "300 Hz" --trim 0:2': a_fit_test,
+    "inerter reproduce wang-su-2008 --only linear": nothing,
+    "inerter reproduce wang-su-2008 --only rig": nothing,
+    "inerter reproduce wang-su-2008 --only methods": nothing,
+    "inerter reproduce wang-su-2008 -o paper": nothing,
+}
+BRIEF = [command for command in COMMANDS if command.split()[1] in ("run", "simulate", "rig") or command == SHOWN]
+
+
+def test_every_command_of_the_pages_is_run() -> None:
+    """Those that only name one say which: their help is there."""
+    names = {f"inerter {name}" for name in app}
+    assert {command for command in commands() if command not in names | {"inerter"}} == set(COMMANDS)
+
+
+@pytest.mark.timeout(1200)
+@pytest.mark.parametrize("command", sampled(COMMANDS, BRIEF))
+def test_a_command_does_what_the_page_shows(command: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    COMMANDS[command](folder)
+    capsys.readouterr()
+    assert call(shlex.split(command)[1:]) == 0
+    out = capsys.readouterr().out
+    for page in commands()[command]:
+        shown = printed(page, command)
+        if shown:
+            assert NUMBER.sub("#", out.strip("\n")) == NUMBER.sub("#", shown)
+            for found, expected in zip(NUMBER.findall(out), NUMBER.findall(shown), strict=True):
+                assert rounds_to(float(found), expected, 2.0), f"{page}: {expected}, now {found}"
+
+
+def test_output_is_shown_where_there_is_some() -> None:
+    assert len(printed("identification.md", SHOWN).splitlines()) > 40
+
+
+@pytest.mark.parametrize("block", blocks("identification.md", "toml"), ids=lambda block: str(block.line))
+def test_configurations_are_sound(block, tmp_path: Path) -> None:
+    (tmp_path / "rig.toml").write_text(block.code, encoding="utf-8")
+    assert load_identification(tmp_path / "rig.toml").models()
+
+
+def test_scripts_of_the_benchmarks_are_there() -> None:
+    scripts = {name for page in PAGES for name in re.findall(r"\bbenchmarks/\w+\.py", text_of(page))}
+    assert len(scripts) > 5
+    for name in scripts:
+        compile((ROOT / name).read_text(encoding="utf-8"), name, "exec")
+
+
+ROAD = it.Road(roughness=5e-7, speed=25)
+COMFORT, LOAD, GRIP = it.RideComfort(ROAD), it.LoadCarrying(amplitude=1000.0), it.TyreLoad(ROAD)
+EXPECTED, LINEARISED = it.ExpectedValue(), it.StatisticalLinearisation()
+
+
+def screw(friction: float, damping: float, inertance: float, *shaft: it.Network) -> it.QuarterCar:
+    """S3 with this friction, and a shaft if one is given."""
+    inner = it.Damper(damping)
+    for part in (*shaft, it.Inerter(inertance) | it.Friction(friction) if friction else it.Inerter(inertance)):
+        inner = inner - part
+    return it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=it.Spring(120e3) | inner)
+
+
+def real(friction: float) -> it.QuarterCar:
+    return screw(friction, 7353, 328.72, it.Spring(1e6) | it.Damper(3200))
+
+
+def best_of_table_1(friction: float) -> it.QuarterCar:
+    return screw(friction, 7544.2, 366.52)
+
+
+FRICTION = table("methods.md", "| f [N] | J1 simulated [m/s^2] | J1 here | J3 simulated [N] | J3 here |")
+PARTING = table("methods.md", "| f [N] | statistical linearisation | expected value | approximate linear model |")
+
+
+@pytest.mark.parametrize("row", FRICTION, ids=lambda row: row[0])
+def test_what_friction_adds(row: list[str]) -> None:
+    """The table of what to expect of statistical linearisation."""
+    for index, simulated, linearised in ((COMFORT, row[1], row[2]), (GRIP, row[3], row[4])):
+        without = it.evaluate(real(0.0), index, it.Norm()).value
+        one, other = (it.evaluate(real(float(row[0])), index, method) for method in (EXPECTED, LINEARISED))
+        assert_figures(simulated, [one.value - without, one.standard_error], row[0])
+        assert_figures(linearised, [other.value - without], row[0])
+        assert ("sticks" in linearised) == any("sticks" in note for note in other.notes)
+        assert other.status.ok == (float(row[0]) <= 200.0)
+
+
+@pytest.mark.parametrize("row", PARTING, ids=lambda row: row[0])
+def test_where_the_methods_agree_and_where_they_part(row: list[str]) -> None:
+    """The table of the change of J1 by friction, in per cent."""
+    without = it.evaluate(best_of_table_1(0.0), COMFORT, it.Norm()).value
+    for cell, method in zip(row[1:], (LINEARISED, EXPECTED, it.ApproximateLinear()), strict=True):
+        found = it.evaluate(best_of_table_1(float(row[0])), COMFORT, method)
+        figures = [100.0 * (found.value / without - 1.0), 100.0 * (found.standard_error or 0.0) / without]
+        assert_figures(cell, figures, f"{row[0]} N, {method.name}")
+
+
+def test_how_far_harmonic_balance_is_off() -> None:
+    said = re.search(r"there\nthe error is (.*?) N\. ", text_of("methods.md"))
+    assert said is not None
+    for error, friction in re.findall(r"([\d.]+) % at (\d+)", said[1]):
+        balanced, simulated = (
+            it.evaluate(best_of_table_1(float(friction)), LOAD, method) for method in (LINEARISED, EXPECTED)
+        )
+        assert_figures(error, [100.0 * abs(balanced.value / simulated.value - 1.0)], friction)
+        assert balanced.status.ok == (float(friction) <= 400.0)

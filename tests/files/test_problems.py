@@ -13,7 +13,7 @@ from inerter.files.common.entries import one_of, positive_number, some_names
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.toml import read_shape
-from inerter.files.study.shape import SHAPES, StudyFile
+from inerter.files.study.shape import shapes
 
 WORDS = st.text("abcdefgh", min_size=3, max_size=8)
 MAYBE = st.one_of(st.just(""), WORDS)
@@ -52,10 +52,10 @@ def test_the_words_of_a_problem_decide_nothing(monkeypatch: pytest.MonkeyPatch, 
     file = tmp_path / "wrong.toml"
     file.write_text('[vehicle]\nmodel = "quarter-car"\nsprung = "1 kg"\n[rood]\n[study]\nindices = []\n')
     with pytest.raises(StudyError) as said:
-        read_shape(file, "a study file", StudyFile, SHAPES)
+        read_shape(file, "a study file", *shapes())
     monkeypatch.setattr(Problem, "__str__", lambda problem: f"{'.'.join(problem.place)}: token")
     with pytest.raises(StudyError) as token:
-        read_shape(file, "a study file", StudyFile, SHAPES)
+        read_shape(file, "a study file", *shapes())
     places = [[line.split(": ")[1] for line in str(error.value).splitlines()] for error in (said, token)]
     assert places[0] == places[1]
     assert len(places[0]) > 4

@@ -6,9 +6,8 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq
 
 from inerter.figures.labels import (
     by_method,
@@ -87,10 +86,10 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     told = np.flatnonzero(np.isfinite(better) & (np.abs(better) >= _NOTICEABLE))
     if told.size < 2:
         return []
-    curve, found = PchipInterpolator(swept[told], better[told]), []
+    curve, found = scipy.interpolate.PchipInterpolator(swept[told], better[told]), []
     for i, j in pairwise(told.tolist()):
         if j - i <= 2 and better[i] * better[j] < 0.0:
-            at = float(brentq(lambda place: float(curve(place)), swept[i], swept[j]))
+            at = float(scipy.optimize.brentq(lambda place: float(curve(place)), swept[i], swept[j]))
             part = (at - swept[i]) / (swept[j] - swept[i])
             error = np.nan_to_num((1.0 - part) * errors[i] + part * errors[j]) / abs(float(curve(at, 1)))
             straight = swept[i] + better[i] / (better[i] - better[j]) * (swept[j] - swept[i])

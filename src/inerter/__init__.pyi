@@ -6,6 +6,8 @@ from inerter.errors import StatusKind as StatusKind
 from inerter.fields import Field as Field
 from inerter.fields import mount as mount
 from inerter.fields import quantity as quantity
+from inerter.files.common.folder import Intent as Intent
+from inerter.files.common.folder import claimed as claimed
 from inerter.files.common.signal_kinds import SIGNALS as SIGNALS
 from inerter.files.study.loading import load_study as load_study
 from inerter.files.study.running import run_study as run_study
@@ -21,6 +23,7 @@ from inerter.identification.virtual_rig import VirtualRig as VirtualRig
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
 from inerter.indices.question import Combination as Combination
 from inerter.indices.question import Question as Question
+from inerter.indices.question import on_road as on_road
 from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
@@ -43,8 +46,10 @@ from inerter.networks.elements import Element as Element
 from inerter.networks.elements import Friction as Friction
 from inerter.networks.elements import Gap as Gap
 from inerter.networks.elements import Inerter as Inerter
+from inerter.networks.elements import Network as Network
 from inerter.networks.elements import Spring as Spring
 from inerter.networks.elements import free as free
+from inerter.networks.elements.drawing import Line as Line
 from inerter.networks.elements.registry import ELEMENTS as ELEMENTS
 from inerter.networks.elements.roles import Guard as Guard
 from inerter.networks.elements.roles import Linear as Linear
@@ -95,5 +100,6 @@ from inerter.vehicle.quarter_car import QuarterCar as QuarterCar
 from inerter.vehicle.registry import VEHICLES as VEHICLES
 from inerter.vehicle.rig import Rig as Rig
 from inerter.vehicle.vehicle import VehicleModel as VehicleModel
+from inerter.work.pool import crewed as crewed
 
 __version__: str

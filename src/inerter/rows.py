@@ -46,7 +46,7 @@ class Rows(Mapping[str, Row], Generic[Row]):
             raise RowError(f"{name} is no {self._what}: it does not say {', '.join(silent)}.")
         key = getattr(row, self._key)
         if not isinstance(key, str) or not key.strip():
-            raise RowError(f"The {self._key} of a {self._what} is text, got {key!r} of {name}.")
+            raise RowError(f"{name} is no {self._what}: its {self._key} is {key!r}, and must be text.")
         if self._rows.get(key, row) is not row:
             raise RowError(f"There is another {self._what} with the {self._key} {key!r}. Choose another {self._key}.")
         if isinstance(row, type) and "__dataclass_fields__" not in vars(row):

@@ -1,0 +1,1 @@
+"""Rows that inerter does not have, one file each."""

@@ -1,0 +1,309 @@
+"""A distribution beside this package adds rows of every kind: to files, reports and commands they are as our own."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import inerter as it
+
+HERE = Path(__file__).parent
+BASE = """title = "A passenger on a ball screw"
+[vehicle]
+model = "seated-car"
+seated_mass = "60 kg"
+sprung_mass = "180 kg"
+unsprung_mass = "25 kg"
+seat_stiffness = "15 kN/m"
+seat_damping = "500 N s/m"
+tyre_stiffness = "120 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "40 kN/m"
+c = { from = "500 N s/m", to = "20 kN s/m" }
+J = { kind = "ball screw", moment = { from = "1e-5 kg m^2", to = "2e-3 kg m^2" }, pitch = "12 mm", friction = "10 N", \
+shaft_stiffness = "1000 kN/m", shaft_damping = "3200 N s/m" }
+[layouts]
+S1 = "k | c"
+S3 = "k | c - J"
+[study]
+indices = ["J1", "T1", "W1"]
+weighting_corner = "0.5 Hz"
+optimise = "norm"
+evaluate = ["norm", "quadrature", "statistical-linearisation"]
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the distribution is installed, as an installer would: modules, name, version, entry points."""
+    return installed(tmp_path_factory.mktemp("site"))
+
+
+def installed(folder: Path) -> Path:
+    project = tomllib.loads((HERE / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    shutil.copytree(HERE / "src", folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+    about = folder / f"{project['name'].replace('-', '_')}-{project['version']}.dist-info"
+    about.mkdir()
+    metadata = f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
+    (about / "METADATA").write_text(metadata, encoding="utf-8")
+    ((group, entries),) = project["entry-points"].items()
+    lines = "".join(f"{name} = {module}\n" for name, module in entries.items())
+    (about / "entry_points.txt").write_text(f"[{group}]\n{lines}", encoding="utf-8")
+    return folder
+
+
+def inerter(place: Path, *arguments: str, cwd: Path, code: int = 0) -> subprocess.CompletedProcess[str]:
+    done = subprocess.run(
+        [sys.executable, "-c", "from inerter.cli.start import main; main()", *arguments],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env={**os.environ, "PYTHONPATH": str(place)},
+        timeout=280,
+        check=False,
+    )
+    assert done.returncode == code, done.stderr
+    return done
+
+
+def python(place: Path, program: str, cwd: Path) -> str:
+    environment = {**os.environ, "PYTHONPATH": str(place)}
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=environment, timeout=280, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("study") / "seated.toml"
+    path.write_text(BASE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def results(place: Path, study: Path) -> Path:
+    """The folder of `inerter run -j 2`."""
+    inerter(place, "run", study.name, "-o", "out", "-j", "2", cwd=study.parent)
+    return study.parent / "out"
+
+
+def rows(results: Path) -> list[dict[str, str]]:
+    with (results / "summary.csv").open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_check_knows_rows_of_another_distribution(place: Path, study: Path) -> None:
+    said = inerter(place, "check", study.name, cwd=study.parent).stdout
+    assert "seated-car; layouts S1, S3; indices J1, T1, W1: 6 designs to find." in said
+    for method in ("norm", "quadrature"):
+        assert f"Note: S3: {method}: friction 'J_friction' in 'strut' left out." in said
+
+
+def test_a_run_in_two_processes_values_every_index_by_every_method(results: Path) -> None:
+    found = rows(results)
+    assert len(found) == 2 * 3 * 3
+    assert {row["status"] for row in found} == {"ok"}
+    by = {(row["layout"], row["index"], row["method"]): float(row["value"]) for row in found}
+    for layout in ("S1", "S3"):
+        for index in ("J1", "T1", "W1"):
+            assert by[layout, index, "quadrature"] == pytest.approx(by[layout, index, "norm"], rel=1e-7)
+        assert by[layout, "W1", "norm"] < by[layout, "J1", "norm"]
+    assert {row["unit"] for row in found if row["index"] == "T1"} == {"m"}
+
+
+def test_the_ball_screw_is_the_network_that_it_stands_for(results: Path) -> None:
+    """The same car, written out in elements that everybody has."""
+    row = next(row for row in rows(results) if (row["layout"], row["index"], row["method"]) == ("S3", "J1", "norm"))
+    inertance = (2.0 * math.pi / 0.012) ** 2 * float(row["J [kg m^2]"])
+    screw = (it.Spring(1e6) | it.Damper(3200.0)) - it.Inerter(inertance)
+    strut = it.Spring(40e3) | it.Damper(float(row["c [N s/m]"])) - screw
+    mechanism = it.Mechanism(
+        coordinates=(it.Coordinate("a", 60.0), it.Coordinate("b", 180.0), it.Coordinate("w", 25.0)),
+        struts=(
+            it.Strut("strut", strut, {"b": 1.0}, {"w": 1.0}),
+            it.Strut("seat", it.Spring(15e3) | it.Damper(500.0), {"a": 1.0}, {"b": 1.0}),
+        ),
+        tyres=(it.Tyre("tyre", it.Spring(120e3), {"w": 1.0}, "road"),),
+        roads=(it.RoadInput("road"),),
+        measures=it.Measures(comfort=(it.Weighted("a_acceleration"),)),
+    )
+    comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+    assert it.evaluate(mechanism, comfort, it.Norm()).value == pytest.approx(float(row["value"]), rel=1e-10)
+
+
+def test_the_report_tells_them_in_their_own_words(results: Path) -> None:
+    page = " ".join((results / "report.html").read_text(encoding="utf-8").split())
+    for words in (
+        "seated car",
+        "Seat stiffness",
+        "suspension travel",
+        "Weighting filter of W1",
+        "(0.5 Hz)",
+        "ball screw",
+        "integrals of the squared gains of the linear model over all frequencies",
+    ):
+        assert words in page
+    assert 'kind = "ball screw"' in (results / "study.resolved.toml").read_text(encoding="utf-8").replace("'", '"')
+
+
+def test_the_resolved_study_asks_the_same(place: Path, results: Path) -> None:
+    again = "a = it.load_study('../seated.toml'); b = it.load_study('study.resolved.toml'); print(a == b, a.settings)"
+    said = python(place, f"import inerter as it; {again}", results)
+    assert said == f"True {{'weighting_corner': {math.pi!r}}}\n"
+
+
+def test_it_is_drawn(place: Path, tmp_path: Path) -> None:
+    program = (
+        "import inerter as it; from inerter.figures.networks import schematic; "
+        "screw = it.ELEMENTS['ball screw'](1e-3, 0.01, 10.0, 1e6, 3e3, 'J'); "
+        "print(len(schematic(it.Spring(1.0) | screw).placed), len(screw.drawing))"
+    )
+    assert python(place, program, tmp_path) == "2 7\n"
+
+
+def test_its_simulation_is_that_of_the_network(place: Path, tmp_path: Path) -> None:
+    program = """
+import math, numpy as np, inerter as it
+screw = it.ELEMENTS["ball screw"](1e-3, 0.01, 10.0, 1e6, 3e3, "J")
+plain = (it.Spring(1e6) | it.Damper(3e3)) - (it.Inerter(1e-3 * (2 * math.pi / 0.01) ** 2) | it.Friction(10.0))
+found = [
+    it.simulate(it.Rig(device), displacement=it.sine(1e-3, 3.0), duration=1.0, step=1e-3)["device_force"]
+    for device in (screw, plain)
+]
+print(len(found[0]), np.abs(found[0]).max() > 100.0, np.array_equal(*found))
+"""
+    assert python(place, program, tmp_path) == "1001 True True\n"
+
+
+def test_a_simulation_file_knows_the_vehicle_and_the_element(place: Path, tmp_path: Path) -> None:
+    text = BASE[: BASE.index("[study]")].replace("{ from", '"2 kN s/m" # { from', 1)
+    text = text.replace('{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }', '"1e-3 kg m^2"')
+    end = '[signal]\nkind = "bump"\nheight = "20 mm"\nlength = "1 m"\n[simulation]\nlayout = "S3"\nduration = "0.2 s"\n'
+    (tmp_path / "bump.toml").write_text(text + end, encoding="utf-8")
+    said = inerter(place, "simulate", "bump.toml", cwd=tmp_path).stdout
+    assert "seated-car, S3" in said
+    assert "J_friction" in said
+
+
+def test_a_journal_counts_for_one_state_of_the_distribution(place: Path, study: Path, tmp_path: Path) -> None:
+    """With a changed source, or without the distribution, what makes the numbers is another."""
+    origin = "from inerter.work.origin import origin, versions; print(origin(), versions().get('inerter-extending'))"
+    changed = installed(tmp_path)
+    known = [python(folder, origin, study.parent) for folder in (place, changed)]
+    with (changed / "inerter_extending" / "quadrature.py").open("a", encoding="utf-8") as stream:
+        stream.write("# another\n")
+    known += [python(changed, origin, study.parent), python(HERE, origin, study.parent)]
+    assert known[0] == known[1]
+    assert len({line.split()[0] for line in known}) == 3
+    assert [line.split()[1] for line in known] == ["1.0", "1.0", "1.0", "None"]
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_the_paper_is_reproduced(place: Path, tmp_path: Path, as_json: bool) -> None:
+    assert "usual-strut-2031\n  The usual strut (2031)" in inerter(place, "reproduce", cwd=tmp_path).stdout
+    more = ("--json",) if as_json else ()
+    done = inerter(place, "reproduce", "usual-strut-2031", "-o", "paper", "-j", "2", *more, cwd=tmp_path)
+    with (tmp_path / "paper" / "table.csv").open(encoding="utf-8") as stream:
+        table = [(float(row["damping"]), float(row["value"]), float(row["printed"])) for row in csv.DictReader(stream)]
+    assert len(table) == 4
+    for damping, value, printed in table:
+        closed = (
+            2
+            * math.pi
+            * math.sqrt(25 * 5e-7 * (285.0 * 20e3**2 / (2 * damping * 250.0**2) + 150e3 * damping / (2 * 250.0**2)))
+        )
+        assert value == pytest.approx(closed, rel=1e-9)
+        assert printed == pytest.approx(closed, abs=5e-5)
+    assert (tmp_path / "paper" / "report.html").exists()
+    if as_json:
+        assert [row["value"] for row in json.loads(done.stdout)["table"]] == [value for _, value, _ in table]
+    else:
+        assert "printed 1.0209" in done.stdout
+    again = inerter(place, "reproduce", "usual-strut-2031", "-o", "paper", cwd=tmp_path, code=2)
+    assert "--force" in again.stderr
+
+
+BAD = {
+    "model": ('"seated-car"', '"seeted-car"', "vehicle.model", ['"seated-car"', 'Did you mean "seated-car"?']),
+    "field": ('seat_stiffness = "15 kN/m"\n', "", "vehicle.seat_stiffness", ['seat_stiffness = "15 kN/m"']),
+    "unit": ('"500 N s/m"\ntyre', '"500 N/m"\ntyre', "vehicle.seat_damping", ["another kind", "N s/m"]),
+    "index": ('"T1"', '"T2"', "study.indices", ['"J5", "T1", "W1"']),
+    "setting": ('["J1", "T1", "W1"]', '["J1"]', "study.weighting_corner", ["weighting filter of W1", "no weighting_c"]),
+    "setting's unit": ('"0.5 Hz"', '"0.5 s"', "study.weighting_corner", ["another kind", "rad/s"]),
+    "method": ('"quadrature"', '"quadrture"', "study.evaluate", ['Did you mean "quadrature"?']),
+    "search": ('optimise = "norm"', 'optimise = "quadrature"', "study.optimise", ["not an optimisation method"]),
+    "element": ('pitch = "12 mm", ', "", "elements.J", ["no pitch of the ball screw"]),
+    "kind": ('"ball screw"', '"ball scrw"', "elements.J", ['"gap", "ball screw"']),
+    "mounts": ('S1 = "k | c"', 'S1 = { front = "k", rear = "k" }', "layouts.S1", ["a seated car has one strut"]),
+}
+
+
+def test_bad_files_are_told_in_the_words_of_the_rows(place: Path, tmp_path: Path) -> None:
+    for name, (old, new, _, _) in BAD.items():
+        assert old in BASE, name
+        (tmp_path / f"{name}.toml").write_text(BASE.replace(old, new, 1), encoding="utf-8")
+    program = (
+        "import json, pathlib, inerter as it\n"
+        "said = {}\n"
+        "for path in pathlib.Path().glob('*.toml'):\n"
+        "    try:\n"
+        "        it.load_study(path)\n"
+        "    except it.InerterError as error:\n"
+        "        said[path.stem] = str(error)\n"
+        "print(json.dumps(said))\n"
+    )
+    said = json.loads(python(place, program, tmp_path))
+    for name, (_, _, where, words) in BAD.items():
+        line = next(line for line in said[name].splitlines() if line.startswith(f"{name}.toml: {where}: "))
+        for word in words:
+            assert word in line, line
+
+
+FROZEN = "from dataclasses import dataclass\n@it.INDICES.add\n@dataclass(frozen=True)\n"
+BROKEN = {
+    "raises": ("1 / 0", "ZeroDivisionError"),
+    "imports": ("import nothing_of_that_name", "ModuleNotFoundError"),
+    "twice": (
+        "from dataclasses import dataclass\n@it.INDICES.add\n@dataclass(frozen=True)\nclass T(it.RideComfort): pass",
+        "'J1'",
+    ),
+    "half": (f"{FROZEN}class T:\n    symbol = 'T'", "title, unit, response, question"),
+    "no dataclass": ("@it.INDICES.add\nclass T(it.RideComfort):\n    symbol = 'T'", "@dataclass"),
+    "no key": (
+        f"{FROZEN}class T(it.RideComfort):\n    symbol = ''",
+        "its symbol is '', and must be text",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_distribution_is_one_sentence(case: str, study: Path, tmp_path: Path) -> None:
+    program, word = BROKEN[case]
+    place = installed(tmp_path)
+    (place / "inerter_extending" / "seated_car.py").write_text(f"import inerter as it\n{program}\n", encoding="utf-8")
+    done = inerter(place, "check", study.name, cwd=study.parent, code=2)
+    assert done.stdout == ""
+    assert done.stderr.startswith("inerter: inerter-extending 1.0 adds rows to inerter, but its inerter_extending.seat")
+    assert done.stderr.count("\n") == 1
+    assert word in done.stderr
+
+
+def test_help_looks_for_no_distribution(tmp_path: Path) -> None:
+    place = installed(tmp_path)
+    (place / "inerter_extending" / "seated_car.py").write_text("1 / 0\n", encoding="utf-8")
+    assert "Usage: inerter COMMAND" in inerter(place, "--help", cwd=tmp_path).stdout
+    inerter(place, "run", "--help", cwd=tmp_path)
+    inerter(place, "reproduce", cwd=tmp_path, code=2)

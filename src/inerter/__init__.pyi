@@ -15,6 +15,8 @@ from inerter.identification.staged import Staged as Staged
 from inerter.identification.staged import staged as staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
+from inerter.indices.question import Combination as Combination
+from inerter.indices.question import Question as Question
 from inerter.indices.ride_comfort import RideComfort as RideComfort
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
@@ -63,6 +65,7 @@ from inerter.simulation.batch import simulate_many as simulate_many
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
+from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.vehicle.cars import HalfCar as HalfCar
 from inerter.vehicle.cars import QuarterCar as QuarterCar

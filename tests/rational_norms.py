@@ -221,18 +221,26 @@ def index_value(mechanism: Mechanism, index) -> float | str | None:
     """J1, J3 or J5 with the exact conventions; INFINITE; or None where a pole is multiple."""
     question, exact = index.question(mechanism), RationalMechanism(mechanism)
     if question.road is None:
-        found = peak_gain(*exact.response(question.outputs[0].output, question.inputs[0]))
+        top, bottom = exact.response(question.outputs[0].output, question.inputs[0])
+        over, under = _filter(question.filters[0]) if question.filters[0] is not None else (S**0, S**0)
+        found = peak_gain(top * over, bottom * under)
         return found if found is INFINITE else abs(question.outputs[0].weight) * float(found)
     distances = {road.name: road.distance for road in mechanism.roads}
     times = [distances[name] / question.road.speed for name in question.inputs]
     total = 0.0
-    for output in question.outputs:
+    for output, passed in zip(question.outputs, question.filters, strict=True):
         pairs = [exact.response(output.output, name) for name in question.inputs]
         tops, bottom = [top for top, _ in pairs], pairs[0][1]
-        if question.high_pass is not None:
-            tops, bottom = [top * S for top in tops], bottom * (S + rational(question.high_pass))
+        if passed is not None:
+            over, under = _filter(passed)
+            tops, bottom = [top * over for top in tops], bottom * under
         square = mean_square(tops, bottom, times)
         if square is INFINITE or square is None:
             return square
         total += abs(output.weight) * float(square.sqrt())
     return total * question.road.velocity_intensity
+
+
+def _filter(given):
+    """Numerator and denominator of a filter."""
+    return tuple(flint.fmpq_poly([rational(c) for c in reversed(p)]) for p in (given.numerator, given.denominator))

@@ -85,6 +85,7 @@ from inerter.simulation.batch import simulate_many as simulate_many
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
+from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND

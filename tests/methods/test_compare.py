@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.stats
 from campaigns import sampled
+from filtered import Weighed, iso_2631_wk
 from strategies import paper_half_car, paper_quarter_car
 
 import inerter as it
@@ -16,7 +17,7 @@ from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideCom
 from inerter.errors import OK, Status, StatusKind
 from inerter.methods.averages import mean_and_error
 from inerter.methods.compare import Comparison, Difference, difference_of
-from inerter.methods.linear import CONVENTIONS
+from inerter.methods.linear import CONVENTIONS, under
 from inerter.methods.method import Estimate
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds, run
@@ -210,6 +211,12 @@ CASES = {
     "elastic J1": (elastic, J1, ("sprung_acceleration",), "exact"),
     "half J1": (half_car, J1, ("sprung_acceleration", "pitch_acceleration"), "exact"),
     "half J3 filtered": (half_car, TyreLoad(ROAD, high_pass=20.0), ("tyre_front_load", "tyre_rear_load"), "exact"),
+    "half J1 weighted": (
+        half_car,
+        Weighed(J1, (iso_2631_wk(), None)),
+        ("sprung_acceleration", "pitch_acceleration"),
+        "exact",
+    ),
     "half J3 held": (half_car, J3, ("tyre_front_load", "tyre_rear_load"), "paper2008"),
 }
 
@@ -218,14 +225,14 @@ CASES = {
 def test_a_small_friction_changes_each_road_as_predicted(case):
     design, index, outputs, conventions = CASES[case]
     system = piecewise(design(0.0))
-    question = index.question(system.mechanism)
+    question = under(CONVENTIONS[conventions], system.mechanism, index.question(system.mechanism))
     way = drive(system, question, CONVENTIONS[conventions])
     weights = [abs(output.weight) for output in question.outputs]
     for seed in realisation_seeds(0, 0, 2):
-        plain = run(system, way, outputs, (), seed)
+        plain = run(system, way, outputs, question.filters, seed)
         assert plain.status.ok
         rubbing = piecewise(design(2.0))
-        found = run(rubbing, way, outputs, (), seed).power
+        found = run(rubbing, way, outputs, question.filters, seed).power
         change = (np.sqrt(found) - np.sqrt(plain.power)) @ weights
         assert first_order(rubbing, question, way)([seed])[0] == pytest.approx(change, rel=0.05)
 

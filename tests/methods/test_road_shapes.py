@@ -82,8 +82,7 @@ def family(seed, count):
 
 
 def compiled(objective, points, weights=None):
-    arguments = objective.descriptor, objective.twofold, objective.arrivals, objective.corner
-    return h2_kernels.norms(points, *arguments, np.empty(0) if weights is None else weights)
+    return h2_kernels.norms(points, *objective.arguments, np.empty(0) if weights is None else weights)
 
 
 def check_family(seed, count, conventions, index):

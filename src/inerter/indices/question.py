@@ -7,11 +7,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Protocol
+from typing import Protocol, cast
 
 from inerter.errors import IndicatorError
 from inerter.signals.road import Road
+from inerter.systems.filters import Filter, as_filter
+from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism, Weighted
+
+Given = Filter | LinearSystem | None
 
 
 class Combination(Enum):
@@ -23,16 +27,38 @@ class Combination(Enum):
 
 @dataclass(frozen=True)
 class Question:
-    """An index put to one mechanism."""
+    """An index put to one mechanism.
+
+    A filter is a `Filter` or a `LinearSystem` with one input and one output.
+
+    Raises `IndicatorError` if filters are not as many as outputs, or if an output is named twice; `LinearSystemError`
+    for what is no filter.
+    """
 
     inputs: tuple[str, ...]
     outputs: tuple[Weighted, ...]
     combination: Combination
     road: Road | None  # whose velocity drives all inputs, each with its delay; None: a unit force
     unit: str
-    high_pass: float | None = None  # corner [rad/s] of a filter s/(s + a) on every output
-    over_s: bool = False  # whether its definition divides by s, where paper2008 divides by s + a
+    filter: Given | tuple[Given, ...] = None  # of each output, or one of all
     amplitude: float | None = None  # of the force [N], for methods that see nonlinear elements
+
+    def __post_init__(self) -> None:
+        several = self.filter if isinstance(self.filter, tuple) else (self.filter,) * len(self.outputs)
+        if len(several) != len(self.outputs):
+            raise IndicatorError(
+                f"An index has one filter for all outputs, or one (or None) for each: got {len(several)} filters for "
+                f"{len(self.outputs)} outputs."
+            )
+        names = [weighted.output for weighted in self.outputs]
+        if len(set(names)) < len(names):
+            raise IndicatorError(f"An index names each output once, got {', '.join(names)}.")
+        object.__setattr__(self, "filter", tuple(map(as_filter, several)))
+
+    @property
+    def filters(self) -> tuple[Filter | None, ...]:
+        """Of each output."""
+        return cast(tuple[Filter | None, ...], self.filter)
 
 
 class Index(Protocol):
@@ -77,8 +103,7 @@ def on_road(
     mechanism: Mechanism,
     outputs: tuple[Weighted, ...],
     where: str,
-    high_pass: float | None = None,
-    over_s: bool = False,
+    filter: Filter | None = None,
 ) -> Question:
     """The question of an index that is a sum of r.m.s. values on a road.
 
@@ -96,6 +121,5 @@ def on_road(
         combination=Combination.SUM_OF_RMS,
         road=index.road,
         unit=index.unit,
-        high_pass=high_pass,
-        over_s=over_s,
+        filter=filter,
     )

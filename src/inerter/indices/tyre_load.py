@@ -9,6 +9,7 @@ from inerter.errors import IndicatorError
 from inerter.fields import quantity
 from inerter.indices.question import Question, on_road
 from inerter.signals.road import Road
+from inerter.systems.filters import high_pass
 from inerter.vehicle.mechanism import Mechanism
 
 
@@ -36,6 +37,5 @@ class TyreLoad:
 
     def question(self, mechanism: Mechanism) -> Question:
         """Raises `IndicatorError` if the mechanism has no road or names no tyre load."""
-        return on_road(
-            self, mechanism, mechanism.measures.tyre_load, "measures.tyre_load", high_pass=self.high_pass, over_s=True
-        )
+        passed = None if self.high_pass is None else high_pass(self.high_pass)
+        return on_road(self, mechanism, mechanism.measures.tyre_load, "measures.tyre_load", passed)

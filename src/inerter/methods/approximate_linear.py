@@ -21,7 +21,7 @@ from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
 from inerter.methods.excitation import Drive, Excitation, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
-from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, corner_of, linear_problem
+from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Objective, Sees
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
@@ -117,7 +117,8 @@ class ApproximateLinear:
         `always` simulates a linear design too, which then gets its norm back.
         """
         mechanism = vehicle.mechanism()
-        questions = [index.question(mechanism) for index in indices]
+        conventions = CONVENTIONS[self.conventions]
+        questions = [under(conventions, mechanism, index.question(mechanism)) for index in indices]
         if not always and not _is_nonlinear(mechanism):
             return [self._known(mechanism, question) for question in questions]
         linears = [self._counterpart(mechanism, question) for question in questions]
@@ -192,7 +193,7 @@ class ApproximateLinear:
             places = [runs.outputs.index(output.output) for output in question.outputs]
             pooled = not self._raw or question.combination is Combination.PEAK_GAIN
             gains = _gains(squares[:, places], inputs[:, None], pooled)
-            estimate = self._from_gains(question, linear, gains * self._filter(question, runs.drive), runs)
+            estimate = self._from_gains(question, linear, gains * _factor(question, runs.drive.omega), runs)
         status = worst([estimate.status, runs.warning])
         if status.ok and self.relative_error is not None and not self._reached(estimate):
             status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
@@ -223,14 +224,6 @@ class ApproximateLinear:
     def _reached(self, estimate: Estimate) -> bool:
         error, asked = estimate.standard_error or 0.0, self.relative_error or math.inf
         return error <= asked * estimate.value
-
-    def _filter(self, question: Question, drive: Drive) -> Array:
-        """From the squared gain to what the index adds up, at the excited frequencies."""
-        if question.road is None:
-            return np.ones(drive.omega.size)
-        delays = np.array([delay for delay in drive.delays if delay is not None])
-        corner = corner_of(question, delays, CONVENTIONS[self.conventions]) or 0.0
-        return np.asarray(1.0 / (drive.omega**2 + corner**2))
 
     def _combine(
         self, question: Question, known: LinearModel | None, gains: Array, drive: Drive, unseen: float = 0.0
@@ -279,6 +272,13 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
     size = inputs.mean(axis=0)
     ratio = outputs.mean(axis=0) / size
     return np.asarray(ratio + (outputs - ratio * inputs) / size)
+
+
+def _factor(question: Question, omega: Array) -> Array:
+    """From squared gains to what the index adds up (outputs, frequencies)."""
+    one = np.ones(omega.size)
+    squares = np.array([one if f is None else np.abs(f.response(omega)) ** 2 for f in question.filters])
+    return squares if question.road is None else np.asarray(squares / omega**2)
 
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:

@@ -80,11 +80,6 @@ class CompiledQuestion:
         return (drifts, walks) if walks is not None else (drifts[:0], np.zeros((0, 0)))
 
     @property
-    def corner(self) -> float:
-        """The high-pass corner [rad/s], zero for none."""
-        return self.problem.corner or 0.0
-
-    @property
     def is_peak(self) -> bool:
         """Whether the index is a peak gain."""
         return self.problem.question.combination is Combination.PEAK_GAIN
@@ -154,7 +149,7 @@ class CompiledQuestion:
     def _compiled_norms(self, points: Array) -> Array:
         result = np.full((points.shape[0], self.serves.size), np.inf)
         if np.all(self.serves):
-            norms, _, good = h2_kernels.norms(points, *self._arguments, np.empty(0))
+            norms, _, good = h2_kernels.norms(points, *self.arguments, np.empty(0))
             norms[~good] = np.nan
             return np.asarray(norms)
         if np.any(self.serves):
@@ -170,7 +165,7 @@ class CompiledQuestion:
         weights = self.problem.weights
         if not np.all(self.serves):
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradients, good = h2_kernels.norms(point[None], *self._arguments, weights)
+        norms, gradients, good = h2_kernels.norms(point[None], *self.arguments, weights)
         found = value = float(norms[0] @ weights)
         if not good[0]:
             value = self._exact_index(point)
@@ -180,8 +175,9 @@ class CompiledQuestion:
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
 
     @property
-    def _arguments(self) -> tuple[Any, Any, Any, float]:
-        return self.descriptor, self.twofold, self.arrivals, self.corner
+    def arguments(self) -> tuple[Any, Any, Any, float]:
+        """What compiled code takes beside the points; filters are part of the descriptor."""
+        return self.descriptor, self.twofold, self.arrivals, 0.0
 
     def _exact_index(self, point: Array) -> float:
         return float(self._exact_norms(point) @ self.problem.weights)
@@ -190,7 +186,7 @@ class CompiledQuestion:
         """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        ahead, behind = h2_kernels.norms(ends, *self._arguments, np.empty(0))[0] @ self.problem.weights
+        ahead, behind = h2_kernels.norms(ends, *self.arguments, np.empty(0))[0] @ self.problem.weights
         slope = (ahead - behind) / (2.0 * _ASTRIDE)
         return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
 
@@ -234,12 +230,12 @@ def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tup
 def evaluate_problems(
     mechanism: Mechanism, questions: Sequence[Question], conventions: Conventions, points: Mapping[str, Array]
 ) -> Array:
-    """Indices (designs, indices), nan where they are not ok; questions that share road and filter share one solve."""
+    """Indices (designs, indices), nan where they are not ok; questions that share road and filters share one solve."""
     problems = [linear_problem(mechanism, question, conventions) for question in questions]
     groups: dict[Any, list[int]] = {}
     for i, (question, problem) in enumerate(zip(questions, problems, strict=True)):
         alone = question.combination is Combination.PEAK_GAIN
-        key = ("peak", i) if alone else (question.road, question.inputs, problem.corner)
+        key = ("peak", i) if alone else (question.road, question.inputs, _shared_filter(problem.question))
         groups.setdefault(key, []).append(i)
     result: Array = np.empty((next(iter(points.values())).size if points else 1, len(questions)))
     for members in groups.values():
@@ -247,9 +243,10 @@ def evaluate_problems(
             compiled = CompiledQuestion(problems[members[0]])
             result[:, members[0]] = compiled.known(_rows(compiled.problem.descriptor, points, result.shape[0]))
             continue
-        outputs = tuple({o.output: o for i in members for o in questions[i].outputs}.values())
-        joint = linear_problem(mechanism, replace(questions[members[0]], outputs=outputs), conventions)
-        joint = replace(joint, corner=problems[members[0]].corner)
+        asked = [problems[i].question for i in members]
+        found = {o.output: (o, f) for one in asked for o, f in zip(one.outputs, one.filters, strict=True)}
+        outputs, filters = (tuple(part) for part in zip(*found.values(), strict=True))
+        joint = linear_problem(mechanism, replace(asked[0], outputs=outputs, filter=filters), conventions)
         compiled = CompiledQuestion(joint)
         norms = compiled.output_norms(_rows(joint.descriptor, points, result.shape[0]))
         places = [o.output for o in outputs]
@@ -258,6 +255,12 @@ def evaluate_problems(
             result[:, i] = norms[:, columns] @ problems[i].weights
     result[np.isinf(result)] = np.nan  # an infinite index has a status that is not ok
     return result
+
+
+def _shared_filter(question: Question) -> Any:
+    """The filter of all outputs; which outputs have which, where they differ."""
+    several = set(question.filters)
+    return several.pop() if len(several) == 1 else (question.outputs, question.filters)
 
 
 def _rows(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:

@@ -18,9 +18,11 @@ from inerter.errors import OK, IndicatorError, Status, StatusKind
 from inerter.indices.question import Question
 from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import POORLY, Equivalent, equivalent
+from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import Peak
 from inerter.systems.descriptor import Descriptor, describe
+from inerter.systems.filtered import filtered
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -153,8 +155,7 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
 
     Raises `IndicatorError` if the question does not go from one force to one output or says no amplitude.
     """
-    if len(question.outputs) != 1 or len(question.inputs) != 1 or question.road or question.high_pass:
-        raise IndicatorError("A peak gain goes from one force to one output, without a road and without a filter.")
+    check_peak_gain(question)
     if question.amplitude is None:
         raise IndicatorError(
             "A peak gain with friction depends on the amplitude of the force. Give it, as in "
@@ -166,7 +167,8 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
         (*question.inputs, *(f"{name}_force" for name in parts.dampers)),
         (question.outputs[0].output, *(f"{name}_velocity" for name in parts.dampers)),
     )
-    return HarmonicBalance(question, descriptor, parts)
+    filters = (*question.filters, *(None for _ in parts.dampers))
+    return HarmonicBalance(question, filtered(descriptor, filters), parts)
 
 
 def _slowest(omegas: Array) -> float:

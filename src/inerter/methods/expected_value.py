@@ -15,7 +15,7 @@ from inerter.checks import is_number
 from inerter.errors import IndicatorError, InerterError, LinearSystemError, MechanismError, StatusKind
 from inerter.indices.question import Combination, Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
-from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem
+from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Objective, Sees
 from inerter.methods.on_roads import mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
@@ -140,7 +140,8 @@ class ExpectedValue:
         None for a peak gain, and where there is a gap or friction alone holds a part.
         """
         system = piecewise(vehicle)
-        question, conventions = index.question(system.mechanism), CONVENTIONS[self.conventions]
+        conventions = CONVENTIONS[self.conventions]
+        question = under(conventions, system.mechanism, index.question(system.mechanism))
         if question.combination is Combination.PEAK_GAIN:
             return None
         if not is_nonlinear(system):
@@ -158,7 +159,8 @@ class ExpectedValue:
         return (*quick, *KERNELS) if search or question.combination is Combination.PEAK_GAIN else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
-        question, conventions = index.question(vehicle.mechanism()), CONVENTIONS[self.conventions]
+        mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
+        question = under(conventions, mechanism, index.question(mechanism))
         linear = _linear(vehicle, question, conventions)
         system = piecewise(vehicle)
         if conventions.hold is None and not is_nonlinear(system):
@@ -185,7 +187,7 @@ class ExpectedValue:
                 "such as LoadCarrying(amplitude=1000.0)."
             )
         (output,) = question.outputs
-        forced = Forced(system, question.inputs[0], output.output, question.amplitude)
+        forced = Forced(system, question.inputs[0], output.output, question.amplitude, *question.filters)
         poles, known = np.zeros(0, dtype=complex), np.zeros(0)
         if linear is not None:
             closed = close(linear.descriptor, {})

@@ -11,11 +11,12 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status
+from inerter.methods.steady_squares import steady_squares
 from inerter.norms.hinf import Peak
 from inerter.signals.harmonics import sine
 from inerter.simulation.inputs import tabulate
 from inerter.simulation.start import initial_state
-from inerter.simulation.steady import mean_squares
+from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -35,6 +36,7 @@ class Forced:
     force: str
     output: str
     amplitude: float  # [N]
+    filter: Filter | None = None  # that the output passes through
 
     def __call__(self, omega: float) -> tuple[float, Status]:
         """The ratio at `omega` [rad/s]."""
@@ -45,8 +47,9 @@ class Forced:
         signals = [None] * len(mechanism.roads) + [signal if f.name == self.force else None for f in mechanism.forces]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, np.zeros(len(signals)), "rest")
-        found, integration, _ = mean_squares(self.system, table, [self.output], state, _MOST_PERIODS, _REPEATS)
-        status = integration.status if not integration.status.ok else integration.warning
+        found, status, _ = steady_squares(
+            self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, repeats=_REPEATS
+        )
         return sqrt(2.0 * float(found[0])) / self.amplitude, status
 
 

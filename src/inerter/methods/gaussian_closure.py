@@ -338,6 +338,8 @@ def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozense
     parts = equivalent(closure.mechanism, without, locked)
     wanted = tuple(Weighted(f"{name}_velocity") for name in parts.dampers)
     outputs = closure.question.outputs
-    joint = linear_problem(parts.mechanism, replace(closure.question, outputs=(*outputs, *wanted)), closure.conventions)
+    filters = (*closure.question.filters, *(None for _ in wanted))
+    joint_question = replace(closure.question, outputs=(*outputs, *wanted), filter=filters)
+    joint = linear_problem(parts.mechanism, joint_question, closure.conventions)
     index, velocities = joint.part(slice(0, len(outputs))), joint.part(slice(len(outputs), None))
-    return Pattern(CompiledQuestion(index), CompiledQuestion(replace(velocities, corner=None)), parts)
+    return Pattern(CompiledQuestion(index), CompiledQuestion(velocities), parts)

@@ -15,7 +15,9 @@ from inerter.methods.method import Estimate
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak, hinf_norm
 from inerter.systems.descriptor import Descriptor, describe
-from inerter.systems.linear import LinearSystem, with_high_pass
+from inerter.systems.filtered import filtered
+from inerter.systems.filters import Filter, high_pass
+from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -23,14 +25,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Conventions:
-    """How the wheelbase delay is taken, which filter stands in for 1/s where the road arrives at several axles, and
-    for how long simulated roads are held.
+    """How the wheelbase delay is taken, which filter stands in for 1/s in the definition of tyre loads where the road
+    arrives at several axles, and for how long simulated roads are held.
     """
 
     name: str
     sentence: str  # which tells them in a report
     pade_order: int | None
-    corner: float | None  # [rad/s]
+    load_filter: Filter | None
     hold: float | None  # [s]
 
 
@@ -41,7 +43,7 @@ CONVENTIONS = {
             "exact",
             "The delay from one axle to the next is exact, and no filter is added to what the indices define.",
             pade_order=None,
-            corner=None,
+            load_filter=None,
             hold=None,
         ),
         Conventions(
@@ -50,7 +52,7 @@ CONVENTIONS = {
             "from one axle to the next, and where the road arrives at two axles tyre loads are taken over "
             "s + 2 pi rad/s.",
             pade_order=5,
-            corner=2.0 * math.pi,
+            load_filter=high_pass(2.0 * math.pi),
             hold=1e-3,
         ),
     )
@@ -68,10 +70,14 @@ class LinearProblem:
     """A question put to the linear model of a mechanism: a descriptor, and what to do with its system."""
 
     question: Question
-    descriptor: Descriptor
+    unfiltered: Descriptor
     delays: Array  # [s], one an input of the descriptor, in rising order
     pade_order: int | None
-    corner: float | None  # [rad/s]
+
+    @cached_property
+    def descriptor(self) -> Descriptor:
+        """With the filters on its outputs."""
+        return filtered(self.unfiltered, self.question.filters)
 
     @cached_property
     def weights(self) -> Array:
@@ -82,18 +88,18 @@ class LinearProblem:
 
     def part(self, which: NDArray[np.bool_] | slice) -> LinearProblem:
         """The problem with some of its outputs."""
-        d, chosen = self.descriptor, np.arange(len(self.descriptor.outputs))[which]
+        d, chosen = self.unfiltered, np.arange(len(self.unfiltered.outputs))[which]
         outputs = tuple(d.outputs[i] for i in chosen)
         sizes = (*d.sizes[:3], *(stack[:, chosen] for stack in d.sizes[3:]))
         Y_eta, Y_x, Y_u = d.Y_eta[:, chosen], d.Y_x[:, chosen], d.Y_u[:, chosen]
         descriptor = replace(d, Y_eta=Y_eta, Y_x=Y_x, Y_u=Y_u, outputs=outputs, sizes=sizes)
-        question = replace(self.question, outputs=tuple(self.question.outputs[i] for i in chosen))
-        return replace(self, question=question, descriptor=descriptor)
+        filters = tuple(self.question.filters[i] for i in chosen)
+        question = replace(self.question, outputs=tuple(self.question.outputs[i] for i in chosen), filter=filters)
+        return replace(self, question=question, unfiltered=descriptor)
 
     def system(self, closed: LinearSystem) -> LinearSystem:
-        """The closed descriptor with delays and filter."""
-        delayed = closed if self.question.road is None else closed.delayed("road", self.delays.tolist())
-        return delayed if self.corner is None else with_high_pass(delayed, self.corner)
+        """The closed descriptor with delays."""
+        return closed if self.question.road is None else closed.delayed("road", self.delays.tolist())
 
     def estimate(self, closed: LinearSystem) -> Estimate:
         """The value of the index."""
@@ -112,18 +118,22 @@ class LinearProblem:
 
 
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
-    """The descriptor for `question`, with delays from the road's speed and the filter that the conventions ask for.
+    """The descriptor for `question`, with delays from the road's speed and the filters that the conventions ask for.
 
-    Raises `IndicatorError` for a peak gain of anything but one output of one force without a filter.
+    Raises `IndicatorError` for a peak gain of anything but one output of one force.
     """
-    if question.combination is Combination.PEAK_GAIN and (
-        len(question.outputs) != 1 or len(question.inputs) != 1 or question.road or question.high_pass
-    ):
-        raise IndicatorError("A peak gain goes from one force to one output, without a road and without a filter.")
+    check_peak_gain(question)
     inputs, delays = arrivals(mechanism, question)
-    corner = corner_of(question, delays, conventions)
+    asked = under(conventions, mechanism, question)
     descriptor = describe(mechanism, inputs, [output.output for output in question.outputs])
-    return LinearProblem(question, descriptor, delays, conventions.pade_order, corner)
+    return LinearProblem(asked, descriptor, delays, conventions.pade_order)
+
+
+def check_peak_gain(question: Question) -> None:
+    """Raises `IndicatorError` for a peak gain of anything but one output of one force."""
+    alone = len(question.outputs) == 1 and len(question.inputs) == 1 and not question.road
+    if question.combination is Combination.PEAK_GAIN and not alone:
+        raise IndicatorError("A peak gain goes from one force to one output, without a road.")
 
 
 def arrivals(mechanism: Mechanism, question: Question) -> tuple[tuple[str, ...], Array]:
@@ -135,8 +145,13 @@ def arrivals(mechanism: Mechanism, question: Question) -> tuple[tuple[str, ...],
     return inputs, np.array([distance[name] for name in inputs]) / question.road.speed
 
 
-def corner_of(question: Question, delays: Array, conventions: Conventions) -> float | None:
-    """The corner [rad/s] of the high-pass filter on every output: the question's own, or that of the conventions."""
-    if question.high_pass is None and question.over_s and np.ptp(delays) > 0.0:
-        return conventions.corner
-    return question.high_pass
+def under(conventions: Conventions, mechanism: Mechanism, question: Question) -> Question:
+    """The question with the filters that the conventions add to its own."""
+    if conventions.load_filter is None or np.ptp(arrivals(mechanism, question)[1]) == 0.0:
+        return question
+    loads = {weighted.output for weighted in mechanism.measures.tyre_load}
+    filters = tuple(
+        conventions.load_filter if own is None and weighted.output in loads else own
+        for weighted, own in zip(question.outputs, question.filters, strict=True)
+    )
+    return replace(question, filter=filters)

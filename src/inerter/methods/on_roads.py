@@ -62,7 +62,8 @@ class OnRoads:
     def runs(self, first: int, stop: int, pool: Executor) -> list[Ran]:
         """The realisations `first`, ..., `stop` - 1."""
         seeds = realisation_seeds(self.seed, first, stop)
-        return list(pool.map(partial(run, self.system, self.way, self.outputs, self.frictions), seeds))
+        outputs = (*self.outputs, *self.frictions)
+        return list(pool.map(partial(run, self.system, self.way, outputs, self.question.filters), seeds))
 
 
 @dataclass(frozen=True, eq=False)

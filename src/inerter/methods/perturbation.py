@@ -93,11 +93,13 @@ def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> Firs
     on_columns, on_eta = _over_slip(system, question)
     rows = on_columns + on_eta @ slip[integration.eta]
     direct = on_eta @ forces[integration.eta]
-    filtered = 1.0 if way.corner is None else (1j * omega / (1j * omega + way.corner))[:, None]
-    outputs = (states @ rows[:, :n].T + inputs @ rows[:, n : n + nu].T) * filtered
+    outputs = states @ rows[:, :n].T + inputs @ rows[:, n : n + nu].T
     responses = np.einsum("oi,kij,jf->kof", rows[:, :n], resolvent, forces[:n]) + direct
-    if way.corner is not None:
-        responses = responses * (1j * omega / (1j * omega + way.corner))[:, None, None]
+    for i, one in enumerate(question.filters):
+        if one is not None:
+            passed = one.response(omega)
+            outputs[:, i] *= passed
+            responses[:, i] *= passed[:, None]
     guards = slip[integration.guards]
     velocities = states @ guards[:, :n].T + inputs @ guards[:, n : n + nu].T
     power = 0.5 * (np.abs(outputs) ** 2 * amplitudes[:, None] ** 2).sum(axis=0)

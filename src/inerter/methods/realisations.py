@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status
 from inerter.indices.question import Question
-from inerter.methods.linear import Conventions, corner_of
+from inerter.methods.linear import Conventions
+from inerter.methods.steady_squares import steady_squares
 from inerter.signals.harmonics import Harmonics, multisine
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
-from inerter.simulation.observe import trajectory_of
 from inerter.simulation.start import initial_state
-from inerter.simulation.steady import FEW_PERIODS, mean_squares, settle
+from inerter.simulation.steady import FEW_PERIODS
+from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -36,7 +37,6 @@ class Drive:
     delays: tuple[float, ...]  # of each road input [s]
     forces: int  # external forces, which stay zero
     hold: float | None  # [s]
-    corner: float | None  # of a high-pass filter on the outputs [rad/s]
     period: int = PERIOD  # of a realisation [s]
 
     def signal(self, seed: int) -> Harmonics:
@@ -48,7 +48,7 @@ class Drive:
 class Ran:
     """One period of the steady state on one road."""
 
-    power: Array  # mean squares of the filtered outputs and of the plain ones, nan where there are none
+    power: Array  # mean squares of the filtered outputs and of those without a filter, nan where there are none
     status: Status
     periods: int  # until it repeated
 
@@ -58,9 +58,7 @@ def drive(system: PiecewiseSystem, question: Question, conventions: Conventions,
     assert question.road is not None
     mechanism, road = system.mechanism, question.road
     delays = np.array([r.distance for r in mechanism.roads]) / road.speed
-    corner = corner_of(question, delays, conventions)
-    forces = len(mechanism.forces)
-    return Drive(road, tuple(delays.tolist()), forces, conventions.hold, corner, period or PERIOD)
+    return Drive(road, tuple(delays.tolist()), len(mechanism.forces), conventions.hold, period or PERIOD)
 
 
 def table(way: Drive, seed: int) -> InputTable:
@@ -87,28 +85,14 @@ def check_drive(system: PiecewiseSystem, way: Drive) -> None:
         check_holds(system, [held for _ in way.delays])
 
 
-def run(system: PiecewiseSystem, way: Drive, outputs: Sequence[str], plain: Sequence[str], seed: int) -> Ran:
-    """One period of the steady state on the road of a realisation's seed; `plain` outputs are not filtered."""
-    names = [*outputs, *plain]
+def run(
+    system: PiecewiseSystem, way: Drive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
+) -> Ran:
+    """One period of the steady state on the road of a realisation's seed; the first outputs pass through filters."""
     inputs = table(way, seed)
     state = initial_state(system, inputs.value[0], "rest")
-    if way.corner is None:
-        most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / way.period))
-        found, integration, periods = mean_squares(system, inputs, names, state, most)
-        if not integration.status.ok:
-            return Ran(np.full(len(names), np.nan), integration.status, periods)
-        return Ran(found, integration.warning, periods)
-    integration, steady = settle(system, inputs, state, energy=False)
-    integration.advance(inputs.time.size - 1)
-    trajectory = trajectory_of(integration, steady, "")
-    if not integration.status.ok:
-        return Ran(np.full(len(names), np.nan), integration.status, steady.periods)
-    count = trajectory.time.size - 1
-    s = 2j * np.pi * np.fft.rfftfreq(count, way.hold or STEP)
-    lines = np.array([np.abs(np.fft.rfft(trajectory[name][:count])) ** 2 for name in names])
-    lines[: len(outputs)] *= np.abs(s / (s + way.corner)) ** 2
-    lines[:, 1 : (count + 1) // 2] *= 2.0
-    return Ran(lines.sum(axis=1) / count**2, trajectory.status, steady.periods)
+    most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / way.period))
+    return Ran(*steady_squares(system, inputs, outputs, filters, state, most))
 
 
 def realisation_seeds(seed: int, first: int, stop: int) -> list[int]:

@@ -28,6 +28,7 @@ from inerter.errors import DesignError, LinearSystemError, MechanismError
 from inerter.networks.elements import Element, Free, Inerter
 from inerter.networks.elements.roles import Linear
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
+from inerter.systems.filters import Filter
 from inerter.systems.graph import Branch, Graph, full_graph, linear_graph
 from inerter.systems.linear import Fine, LinearSystem, Origin
 from inerter.systems.outputs import Output, find, main_outputs, outputs
@@ -62,6 +63,7 @@ class Descriptor:
     sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
     mechanism: Mechanism
     graph: Graph
+    filters: tuple[Filter | None, ...] = ()  # that the outputs pass through, if any do (see `filtered`)
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
@@ -128,7 +130,10 @@ def _solved(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tup
 def _functions(
     descriptor: Descriptor, values: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
 ) -> TransferFunctions:
-    return transfer_functions(descriptor.mechanism, descriptor.graph, values, inputs, outputs)
+    functions = transfer_functions(descriptor.mechanism, descriptor.graph, values, inputs, outputs)
+    filters = dict(zip(descriptor.outputs, descriptor.filters, strict=False))
+    chosen = [filters.get(name) for name in outputs]
+    return functions.filtered([None if one is None else one.whole for one in chosen]) if any(chosen) else functions
 
 
 def describe(

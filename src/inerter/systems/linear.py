@@ -150,37 +150,6 @@ def check_system(system: object) -> None:
         raise LinearSystemError(f"Expected a LinearSystem, such as assemble(vehicle), got {system!r}.")
 
 
-def with_high_pass(system: LinearSystem, omega: float) -> LinearSystem:
-    """`system` with every output filtered by s/(s + omega), omega in rad/s.
-
-    Raises `LinearSystemError` unless omega is positive.
-    """
-    if not omega > 0.0 or not np.isfinite(omega):
-        raise LinearSystemError(f"A high-pass filter needs a corner above 0 rad/s, got {omega!r}.")
-    p = len(system.outputs)
-    matrices = _filtered((system.A, system.B, system.C, system.D), omega * np.eye(p))
-    origin, fine = system.origin, system.fine
-    if origin is not None and fine is not None:
-        functions = origin.functions
-        filtered = Fine(_filtered(fine.matrices, omega * np.eye(p)), _filtered(fine.errors, np.zeros((p, p))))
-        origin = Origin(
-            lambda chosen, wanted: functions(chosen, wanted).filtered(omega),
-            matrices,
-            filtered,
-            system.inputs,
-            system.outputs,
-        )
-    A, B, C, D = matrices
-    states = (*system.states, *(f"{name}_low_pass" for name in system.outputs))
-    return replace(system, A=A, B=B, C=C, D=D, states=states, origin=origin)
-
-
-def _filtered(matrices: tuple[Matrix, ...], corner: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    A, B, C, D = matrices
-    none = np.zeros((A.shape[0], corner.shape[0]))
-    return np.block([[A, none], [C, -corner]]), np.vstack([B, D]), np.hstack([C, -corner]), D
-
-
 def check_names(what: str, names: object) -> tuple[str, ...]:
     """`names` as a tuple of texts, one text alone being one name; raises `LinearSystemError` if it is neither."""
     given = (names,) if isinstance(names, str) else tuple(names) if isinstance(names, Sequence) else (names,)

@@ -235,8 +235,17 @@ class TransferFunctions:
     denominator: Polynomial
     numerators: tuple[tuple[Polynomial, ...], ...]
 
-    def filtered(self, corner: float) -> TransferFunctions:
-        """Every output filtered by s/(s + corner)."""
-        top, bottom = corner.as_integer_ratio()
-        numerators = tuple(tuple(multiply([0, bottom], n) for n in row) for row in self.numerators)
-        return TransferFunctions(multiply(self.denominator, [top, bottom]), numerators)
+    def filtered(self, filters: Sequence[tuple[Polynomial, Polynomial] | None]) -> TransferFunctions:
+        """Each output times a fraction, or none: all over the product of the fractions' denominators."""
+        bottoms = list(dict.fromkeys(tuple(one[1]) for one in filters if one is not None))
+        rows = []
+        for row, one in zip(self.numerators, filters, strict=True):
+            factor = [1] if one is None else one[0]
+            for bottom in bottoms:
+                if one is None or bottom != tuple(one[1]):
+                    factor = multiply(factor, list(bottom))
+            rows.append(tuple(multiply(factor, numerator) for numerator in row))
+        denominator = self.denominator
+        for bottom in bottoms:
+            denominator = multiply(denominator, list(bottom))
+        return TransferFunctions(denominator, tuple(rows))

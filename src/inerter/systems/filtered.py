@@ -1,0 +1,77 @@
+"""Descriptors whose outputs pass through filters: each filter is one more equation, and as many states as its order.
+
+With a filter b(s)/a(s) on an output y, and z the solution of a(d/dt) z = y, the filtered output is b(d/dt) z. The
+states are z and its derivatives but the highest, which is an unknown of the equation. So the coefficients enter as they
+were given, and what an output owes to the design variables stays affine in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from inerter.systems.descriptor import Descriptor
+from inerter.systems.filters import Filter
+
+Stacks = tuple[Any, ...]  # S, R, F, Y_eta, Y_x, Y_u
+Filtered = list[tuple[int, Filter, slice]]  # output, filter, its states
+
+
+def filtered(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descriptor:
+    """`descriptor` with a filter, or none, on each output."""
+    d, n = descriptor, descriptor.X_x.shape[0]
+    chosen = [(i, f) for i, f in enumerate(filters) if f is not None]
+    if not chosen:
+        return d
+    edges = n + np.cumsum([0, *(f.order for _, f in chosen)])
+    places = [(i, f, slice(int(a), int(b))) for (i, f), (a, b) in zip(chosen, pairwise(edges), strict=True)]
+    e, states, unknowns = d.S.shape[1], int(edges[-1]), d.S.shape[1] + len(chosen)
+    X_eta, X_x, X_u = np.zeros((states, unknowns)), np.zeros((states, states)), np.zeros((states, d.X_u.shape[1]))
+    X_eta[:n, :e], X_x[:n, :n], X_u[:n] = d.X_eta, d.X_x, d.X_u
+    for unknown, (_, one, at) in enumerate(places, start=e):
+        rows = np.arange(at.start, at.stop)
+        X_x[rows[:-1], rows[1:]] = one.scaled[0]
+        X_eta[rows[-1:], unknown] = one.scaled[0]
+    S, R, F, Y_eta, Y_x, Y_u = _with_equations((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), places, states)
+    names = [f"{d.outputs[i]}_filter_{k + 1}" for i, f, _ in places for k in range(f.order)]
+    return replace(
+        d,
+        S=S,
+        R=R,
+        F=F,
+        X_eta=X_eta,
+        X_x=X_x,
+        X_u=X_u,
+        Y_eta=Y_eta,
+        Y_x=Y_x,
+        Y_u=Y_u,
+        states=(*d.states, *names),
+        sizes=_with_equations(d.sizes, places, states, sizes=True),
+        filters=tuple(filters),
+    )
+
+
+def _with_equations(stacks: Stacks, places: Filtered, states: int, sizes: bool = False) -> Stacks:
+    """The stacks with an equation for each filter, a(d/dt) z = y, and b(d/dt) z in the place of y; or their sizes."""
+    S, R, F, Y_eta, Y_x, Y_u = stacks
+    _, e, n = R.shape
+    both, q = (1.0, len(places)) if sizes else (-1.0, len(places))
+    S2, R2, F2 = (_grown(s, e + q, width) for s, width in ((S, e + q), (R, states), (F, F.shape[2])))
+    Y_eta2, Y_x2, Y_u2 = _grown(Y_eta, Y_eta.shape[1], e + q), _grown(Y_x, Y_x.shape[1], states), Y_u.copy()
+    for unknown, (output, one, at) in enumerate(places, start=e):
+        _, top, bottom = (abs(c) for c in one.scaled) if sizes else one.scaled
+        S2[:, unknown, :e], R2[:, unknown, :n], F2[:, unknown] = both * Y_eta[:, output], Y_x[:, output], Y_u[:, output]
+        S2[0, unknown, unknown], R2[0, unknown, at] = bottom[-1], both * bottom[:-1]
+        Y_eta2[:, output], Y_x2[:, output], Y_u2[:, output] = 0.0, 0.0, 0.0
+        Y_eta2[0, output, unknown], Y_x2[0, output, at] = top[-1], top[:-1]
+    return S2, R2, F2, Y_eta2, Y_x2, Y_u2
+
+
+def _grown(stack: Any, rows: int, columns: int) -> Any:
+    result = np.zeros((stack.shape[0], rows, columns), stack.dtype)
+    result[:, : stack.shape[1], : stack.shape[2]] = stack
+    return result

@@ -15,6 +15,7 @@ from inerter.identification.choice import Choice as Choice
 from inerter.identification.choice import choose as choose
 from inerter.identification.fit import Fit as Fit
 from inerter.identification.identify import identify as identify
+from inerter.identification.options import FitOptions as FitOptions
 from inerter.identification.response import linear_response as linear_response
 from inerter.identification.response import model_response as model_response
 from inerter.identification.staged import Staged as Staged

@@ -46,7 +46,13 @@ class SimulationError(InerterError, ValueError):
 
 
 class RecordError(InerterError, ValueError):
-    """A measured record, or a file of one, that cannot be used."""
+    """A measured record, or a file of one, that cannot be used.
+
+    Its `args` are the parts of the message: text, and remedies, which the command line says in its own words.
+    """
+
+    def __str__(self) -> str:
+        return "".join(map(str, self.args))
 
 
 class IdentificationError(InerterError, ValueError):

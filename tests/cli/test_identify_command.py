@@ -15,7 +15,7 @@ from troubled_rig import Device, Sensors, Tones, measured
 import inerter as it
 from inerter.cli.main import call
 from inerter.files.identification import running as identification_run
-from inerter.identification.fit import Told
+from inerter.identification.identifiability import Identifiability, Verdict
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
 CONFIG = """
@@ -149,9 +149,9 @@ def test_a_fit_that_is_not_ok_is_written_and_returns_1(
 
     def poor(*arguments: object, **settings: object) -> it.Fit:
         (fit,) = fits
-        untold = {n: Told(False, f"{n}: cannot be told, since ...") for n in fit.parameters}
+        verdicts = {n: Identifiability(n, Verdict.WITHHELD) for n in fit.parameters}
         parameters = {n: replace(p, value=float("nan")) for n, p in fit.parameters.items()}
-        return replace(fit, status=bad, identifiable=untold, parameters=parameters)
+        return replace(fit, status=bad, identifiable=verdicts, parameters=parameters)
 
     monkeypatch.setattr(identification_run, "identify", poor)
     folder = fitted / "poor"
@@ -159,7 +159,7 @@ def test_a_fit_that_is_not_ok_is_written_and_returns_1(
     assert call(["identify", *arguments]) == 1
     out, err = capsys.readouterr()
     assert "explains 12.0 %" in err
-    assert "cannot be told" in out
+    assert "not identifiable" in out
     assert "not to be relied on" in out
     assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
     assert "Not to be relied on" in (folder / "report.html").read_text(encoding="utf-8")

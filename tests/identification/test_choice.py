@@ -152,10 +152,10 @@ def test_friction_that_falls_with_speed_is_stribecks(size):
 
 def test_what_cannot_be_told_is_said():
     none = it.VirtualRig(SHAFT - it.Inerter(5.0), seed=0).run(it.cosine(1e-3, 0.1), 20.0)
-    assert friction_law(none, 5.0).law == "untold"
+    assert friction_law(none, 5.0).law == "not identifiable"
     assert "no friction shows" in friction_law(none, 5.0).sentence
     short = slow(0).trim(0.0, 0.3)
-    assert friction_law(short, 5.0).law == "untold"
+    assert friction_law(short, 5.0).law == "not identifiable"
     assert np.isnan(friction_law(short, 5.0).p_value)
     with pytest.raises(IdentificationError, match="a record or a fit"):
         friction_law("record")
@@ -168,4 +168,4 @@ def test_residuals_of_a_fit_tell_of_a_damper_that_it_lacks():
     lacking = it.identify(record, model, starts=8)
     whole = it.identify(record_of(SHAFT - FLYWHEEL, 0), model, starts=8)
     assert friction_law(lacking).law == "viscous"
-    assert friction_law(whole).law in ("coulomb", "untold")
+    assert friction_law(whole).law in ("coulomb", "not identifiable")

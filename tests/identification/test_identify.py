@@ -37,7 +37,7 @@ def test_the_experiment_of_the_paper(paper):
     assert gap.interval[0] == 0.0
     assert gap.interval[1] < 1e-6
     assert not paper.identifiable["gap"]
-    assert "cannot be told from 0 m below" in paper.identifiable["gap"].sentence
+    assert "not identifiable; all values from 0 m to" in paper.identifiable["gap"].sentence
     assert any(sentence.startswith("gap:") for sentence in paper.next_experiment)
 
 
@@ -175,7 +175,7 @@ def test_residuals_like_those_of_the_sensors_are_white_and_others_are_not():
         ({"check": 0.9}, "fraction from 0 to 0.6"),
         ({"starts": 2}, "from 8 on"),
         ({"delay": -1.0}, "delay"),
-        ({"gain": True}, "cannot be told"),
+        ({"gain": True}, "not identifiable"),
         ({"lead": 99.0}, "shorter"),
     ],
 )

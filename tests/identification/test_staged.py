@@ -38,7 +38,7 @@ def test_the_papers_experiment():
             assert np.isnan(p.value)
             assert p.interval[0] == 0.0
             assert p.interval[1] < 2e-5
-            assert "cannot be told from 0" in p.sentence
+            assert "not identifiable; all values from 0" in p.sentence
         else:
             assert abs(p.difference) < 0.02
     assert found.status == "ok"

@@ -115,7 +115,7 @@ BAD = {
     "a name that is nearly right": (columns(time, x, ("Load_1 [N]", F)), {"force": "load1"}, "mean 'Load_1'"),
     "a number that is too large": (good, {"force": 3}, "force=3 is not among its 3 channels, which are counted from 0"),
     "no obvious displacement": (columns(time, ("s1 [m]", X), force), {}, "no channel has an obvious name for the disp"),
-    "no obvious time": (columns(("s0 [s]", T), x, force), {}, "or give interval=1e-3"),
+    "no obvious time": (columns(("s0 [s]", T), x, force), {}, "or give interval=0.001"),
     "a channel that is no name": (good, {"force": 1.5}, "the name or the number of a channel, got 1.5"),
     "one channel for two": (good, {"force": "x"}, "'x' cannot be both the displacement and the force"),
     "two channels of one name": (columns(time, x, force, force), {}, "by number: force=2"),

@@ -7,7 +7,6 @@ import inspect
 import json
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,16 +16,23 @@ import pytest
 import inerter as it
 from inerter.errors import OK, Status, StatusKind
 from inerter.files.identification.running import Candidate, Identified, Reading, responses
-from inerter.identification.fit import Explanation, Misfit, Told
+from inerter.identification.fit import Explanation, Misfit
 from inerter.identification.guess import chain_of
+from inerter.identification.hypotheses import Hypothesis
+from inerter.identification.identifiability import Identifiability, Verdict
+from inerter.identification.kinds import FitFinding
 from inerter.identification.laws import laws
+from inerter.networks.elements.roles import Linear
 from inerter.networks.parser import written
 from inerter.records.finding import Finding
+from inerter.records.kinds import RecordFinding
+from inerter.records.remedy import Action, Remedy, in_python
 from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_figures import window
-from inerter.report.identification_text import as_options, identification_text, share
+from inerter.report.identification_text import identification_text, share
 from inerter.report.identified_values import elements_block, single, value_and_interval
+from inerter.report.options import as_options
 
 VOID = {"meta", "wbr", "br"}
 SHAFT = it.Spring(1e6, name="ks") | it.Damper(3200.0, name="cs")
@@ -68,17 +74,17 @@ def found() -> Identified:
     rig = it.VirtualRig(SHAFT - (it.Inerter(113.0) | it.Friction(10.0)), seed=1, sampling=400.0)
     record = rig.run(it.cosine(amplitude=1e-3, frequency=4.0), duration=1.0)
     fit = it.identify(record, MODEL, seed=0, starts=8)
-    warned = Finding("hum", "warning", "The force holds hum & <more>: 0.3 N at -50 Hz.")
+    warned = Finding(RecordFinding.HUM, "warning", "force", {"amplitude": 0.3, "frequency": -50.0})
     reading = Reading(record, record, (warned,))
     return Identified("a <b>", "custom", it.Rig(MODEL).device, fit.device, (reading,), fit, {"seed": 0})
 
 
-def untold(found: Identified, name: str, interval: tuple[float, float]) -> Identified:
+def without(found: Identified, name: str, interval: tuple[float, float]) -> Identified:
     fit = found.fit
     changed = replace(fit.parameters[name], value=math.nan, interval=interval)
-    sentence = f"{name}: cannot be told from 0 N below 3 N."
-    told = {**fit.identifiable, name: Told(False, sentence)}
-    return replace(found, fit=replace(fit, parameters={**fit.parameters, name: changed}, identifiable=told))
+    verdict = Identifiability(name, Verdict.BELOW, "N", (0.0, 3.0), role=Linear.OPEN)
+    verdicts = {**fit.identifiable, name: verdict}
+    return replace(found, fit=replace(fit, parameters={**fit.parameters, name: changed}, identifiable=verdicts))
 
 
 def test_the_page_holds_the_numbers_and_every_figure(found: Identified, tmp_path) -> None:
@@ -91,7 +97,7 @@ def test_the_page_holds_the_numbers_and_every_figure(found: Identified, tmp_path
         assert value in page.text
         assert interval in page.text
     assert "a <b>" in page.text
-    assert "hum & <more>: 0.3 N at −50 Hz" in page.text
+    assert "hum of the mains: 0.3 N at −50 Hz" in page.text
     assert elements_block(found).replace("\n", " ").replace("  ", " ")[:60] in page.text.replace("  ", " ")
     assert page.tags.count("svg") == len(list((tmp_path / "figures").glob("*.svg"))) == 7
     assert all(link.startswith("#") for link in page.links)
@@ -108,30 +114,30 @@ def test_the_page_holds_the_numbers_and_every_figure(found: Identified, tmp_path
 
 
 def test_data_are_json_to_the_last_number(found: Identified) -> None:
-    data = json.loads(json.dumps(identification_data(untold(found, "f", (0.0, 3.0))), allow_nan=False))
+    data = json.loads(json.dumps(identification_data(without(found, "f", (0.0, 3.0))), allow_nan=False))
     assert data["parameters"]["f"]["value"] is None
     assert data["parameters"]["b"]["value"] == found.fit.parameters["b"].value
     assert data["parameters"]["b"]["bounds"] == [1.0, 500.0]
     assert data["records"][0]["findings"][0]["kind"] == "hum"
 
 
-def test_what_cannot_be_told_is_said_everywhere(found: Identified) -> None:
-    less = untold(found, "f", (0.0, 3.0))
-    assert value_and_interval(less, "f") == ("cannot be told", "below 3 N")
-    assert value_and_interval(untold(found, "f", (2.0, 100.0)), "f") == ("cannot be told", "above 2 N")
-    assert "# cannot be told: below 3 N" in elements_block(less)
+def test_what_is_not_identifiable_is_said_everywhere(found: Identified) -> None:
+    less = without(found, "f", (0.0, 3.0))
+    assert value_and_interval(less, "f") == ("not identifiable", "below 3 N")
+    assert value_and_interval(without(found, "f", (2.0, 100.0)), "f") == ("not identifiable", "above 2 N")
+    assert "# not identifiable: below 3 N" in elements_block(less)
     text = identification_text(less)
-    assert "f: cannot be told from 0 N below 3 N." in text
-    assert "b: told." not in text
+    assert "f: not identifiable; all values from 0 N to 3 N explain the records as well." in " ".join(text.split())
+    assert "b: identified." not in text
 
 
 def test_a_model_that_explains_nothing_has_no_intervals(found: Identified) -> None:
     fit = found.fit
-    told = {name: Told(False, f"{name}: cannot be told, since ...") for name in fit.parameters}
+    verdicts = {name: Identifiability(name, Verdict.WITHHELD) for name in fit.parameters}
     parameters = {name: replace(p, value=math.nan) for name, p in fit.parameters.items()}
     status = Status(StatusKind.INACCURATE, "the model explains 3 % of the force only")
-    poor = replace(found, fit=replace(fit, status=status, identifiable=told, parameters=parameters))
-    assert value_and_interval(poor, "b") == ("cannot be told", "")
+    poor = replace(found, fit=replace(fit, status=status, identifiable=verdicts, parameters=parameters))
+    assert value_and_interval(poor, "b") == ("not identifiable", "")
     assert "not to be relied on" in elements_block(poor)
 
 
@@ -141,9 +147,10 @@ def test_several_models_are_listed_best_first(found: Identified) -> None:
         Candidate("custom", 1, 1.02, 0.01, 0.02, True, OK),
         Candidate("ideal", 1, 7.5, 6.5, 0.3, False, Status(StatusKind.INACCURATE, "it explains little")),
     )
-    text = identification_text(replace(found, candidates=rows, choice=("The choice is clear.",)))
+    clear = Finding(FitFinding.NOT_REACHED, "warning", "ideal", {"other": "friction"})
+    text = identification_text(replace(found, candidates=rows, choice=(clear,)))
     assert text.index("friction ") < text.index("* custom ") < text.index("ideal ")
-    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30  inaccurate", "The choice is clear."):
+    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30  inaccurate", "ideal: does not reach friction"):
         assert words in text
     assert max(map(len, text.splitlines())) <= 80
 
@@ -185,14 +192,19 @@ def test_the_response_is_of_the_force_without_its_offset(found: Identified) -> N
     assert abs(answered.model.value / answered.measured.value - 1.0).max() < 0.05
 
 
+def middle(hypothesis: Hypothesis) -> dict[str, float]:
+    """A value for each unknown of a hypothesis, and those of the model."""
+    return {"b": 113.0, "f": 10.0} | {u.name: 0.5 * (u.lower + u.upper) for u in hypothesis.unknowns}
+
+
 @pytest.mark.parametrize("sound", [True, False])
 def test_nothing_is_said_of_values_that_are_not_there(found: Identified, sound: bool) -> None:
     """Whatever law explains a misfit, "what to do" holds whether its values are shown or not."""
-    chain = chain_of(MODEL)
+    chain = chain_of(it.Rig(MODEL).device)
     assert chain is not None
     left = Misfit(1.0 if sound else 3.0, 1.0 if sound else 3.0, (1.2, 1.2))
     proposed = [
-        Explanation(h.name, "friction is odd", 0.9, left, {}, {"b": (113.0, 0.1), "f": (10.0, 0.1)}, h.remedy)
+        Explanation(h.name, 0.9, left, {}, {"b": (113.0, 0.1), "f": (10.0, 0.1)}, h.details(middle(h)))
         for h in laws(chain, 0.02, 1e-3)
         if h.device is None
     ]
@@ -211,27 +223,35 @@ def test_all_is_found_only_in_a_fit_that_can_be_relied_on(found: Identified) -> 
     status = Status(StatusKind.INACCURATE, "the model leaves 3 times what the errors of the sensors would leave")
     doubted = replace(found, fit=replace(found.fit, status=status))
     good, poor = (Page(identification_page(each, {})).text for each in (found, doubted))
-    assert good.count("Told: b, f. That is all there was to find.") == 1
-    assert poor.count("Told: b, f.") == 1
+    assert good.count("Identified: b, f. That is all there was to find.") == 1
+    assert poor.count("Identified: b, f.") == 1
     assert "That is all" not in poor
 
 
-def sentences(tree: ast.Module) -> Iterator[str]:
-    """The texts of a module without its docstrings, with something in the place of what is filled in."""
-    inner = {id(n.value) for n in ast.walk(tree) if isinstance(n, ast.Expr)}
-    for node in (n for n in ast.walk(tree) if isinstance(n, ast.JoinedStr)):
-        inner |= {id(part) for part in node.values}
-        parts = (
-            p.value if isinstance(p, ast.Constant) else "'1'" if p.conversion == ord("r") else "1" for p in node.values
-        )  # type: ignore[attr-defined]
-        yield "".join(map(str, parts))
-    yield from (str(n.value) for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in inner)
+VALUES = {
+    Action.CHANNEL: ("force", "Load"),
+    Action.UNIT: ("force", "kgf"),
+    Action.INTERVAL: 1e-3,
+    Action.GAPS: "fill",
+    Action.SHIFT_FORCE: 1e-3,
+}
 
 
-def test_no_sentence_of_the_library_reaches_a_terminal_with_the_words_of_python() -> None:
-    """Every message on records names options of the command line, never arguments of a call."""
-    words = rf"\b({'|'.join(inspect.signature(it.read_record).parameters)})=\S*"
+@pytest.mark.parametrize("action", Action)
+def test_no_remedy_reaches_a_terminal_with_the_words_of_python(action: Action) -> None:
+    """Every step on a record is a call in Python, and an option or a key of a configuration for the command line."""
+    text = ("What to do: ", Remedy(action, VALUES.get(action)), ".")
+    unquoted = re.sub(r'"[^"]*"', "", as_options(text))
+    assert re.search(r"\(record|(?<![-\w])[a-z_]+=", unquoted) is None
+    assert action is Action.REVERSE_FORCE or in_python(text) != as_options(text)
+
+
+def test_the_library_knows_steps_on_records_as_data_alone() -> None:
+    """No text of the package for records writes a call or an argument out: that is done in one place."""
+    words = rf"\b({'|'.join(inspect.signature(it.read_record).parameters)})=\S"
     folder = Path(inspect.getfile(it.Record)).parent
-    told = [text for path in folder.glob("*.py") for text in sentences(ast.parse(path.read_text(encoding="utf-8")))]
-    assert sum(re.search(words, text) is not None for text in told) > 8
-    assert [said[0] for text in told if (said := re.search(words, as_options(text)))] == []
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in folder.glob("*.py") if path.stem != "remedy"]
+    docs = {id(n.value) for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Expr)}
+    texts = [n for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in docs]
+    assert len(texts) > 100
+    assert [n.value for n in texts if isinstance(n.value, str) and re.search(words, n.value)] == []

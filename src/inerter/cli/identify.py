@@ -18,7 +18,8 @@ from inerter.files.identification.running import FIT, read, run_identification
 from inerter.files.identification.shape import channel_units, gap_treatment
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
-from inerter.report.identification_text import as_options, identification_text
+from inerter.report.identification_text import identification_text
+from inerter.report.options import as_options
 from inerter.units import parse_quantity
 
 _QUANTITIES = {
@@ -52,7 +53,7 @@ def identify(
             with fraction(f"reading {path.name}") as callback:
                 readings.append(read(path, request.record, callback))
         except RecordError as error:
-            raise RecordError(as_options(str(error))) from None
+            raise RecordError(as_options(error.args)) from None
     folder = output or Path(f"{paths[0].stem}-results")
     inputs = (*paths, *(() if config is None else (config,)))
     intent = Intent(folder, "identify", OWN, inputs, force=force)
@@ -71,7 +72,7 @@ def identify(
             with fraction("drawing") as callback:
                 write_identification(found, results.draft, callback)
     except RecordError as error:
-        raise RecordError(as_options(str(error))) from None
+        raise RecordError(as_options(error.args)) from None
     print(f"inerter: report: {folder / REPORT}", file=sys.stderr, flush=True)
     if not found.fit.status.ok:
         print(f"inerter: {found.title}: {found.fit.status}", file=sys.stderr, flush=True)

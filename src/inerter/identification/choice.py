@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,14 @@ from inerter.identification.concluding import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.given import checked_records, model_of
 from inerter.identification.identify import solution_of
+from inerter.identification.kinds import FitFinding
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, yardstick
-from inerter.identification.search import POINTS
-from inerter.identification.solving import Request, Solution
+from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
+from inerter.identification.solving import Solution
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
+from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
 
@@ -57,7 +60,12 @@ class Choice:
     candidates: tuple[Candidate, ...]  # the best first
     device: Network  # the chosen candidate with its best values
     status: Status
-    notes: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The findings in sentences."""
+        return tuple(finding.sentence for finding in self.findings)
 
     @property
     def fit(self) -> Fit:
@@ -68,22 +76,16 @@ class Choice:
 def choose(
     records: Record | Sequence[Record],
     models: Mapping[str, Network] | Iterable[str] | None = None,
+    options: FitOptions = DEFAULTS,
     *,
-    seed: int = 0,
-    offset: bool = True,
-    gain: bool = False,
-    delay: bool | float | None = None,
-    check: float = 0.2,
-    bandwidth: float | None = None,
-    lead: float | None = None,
-    starts: int = POINTS,
     progress: Callable[[float], None] | None = None,
+    **changes: Unpack[OptionChanges],
 ) -> Choice:
     """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
 
     `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
-    chosen one with a damper, with and without friction. What else there is, is as in
-    `identify`.
+    chosen one with a damper, with and without friction. Options and keywords are
+    those of `identify`.
 
     **The criterion.** Each candidate is fitted with the weights that its own residuals ask for, so its likelihood
     compares with no other's. Here all are judged by one yardstick: the last part `check` of each record, which none
@@ -95,16 +97,16 @@ def choose(
     Breiman et al. 1984). Of those as good, the one with the fewest unknowns is chosen.
 
     Raises `IdentificationError` if no candidate can be fitted or nothing is kept for the check; a candidate that
-    fails among others is told in `notes`.
+    fails among others is in `findings`.
     """
     given = _named(models)
     records = checked_records(records)
-    if not 0.0 < check <= 0.6:
-        raise IdentificationError(f"Candidates are compared on the part kept for the check, 0 to 0.6, got {check!r}.")
-    asked = Request(offset, gain, delay, check, bandwidth, lead, starts, seed)
+    asked = options.changed(**changes)
+    if not asked.check > 0.0:
+        raise IdentificationError(f"Candidates are compared on the part kept for the check, got {asked.check!r}.")
     solutions: dict[str, Solution] = {}
     fits: dict[str, Fit] = {}
-    failed: list[str] = []
+    failed: list[Finding] = []
     expected = len(given) + (2 if models is None else 0)
 
     def fit_all(candidates: Mapping[str, Network]) -> None:
@@ -115,7 +117,7 @@ def choose(
                 solutions[name] = solution_of(records, model, asked, part)
                 fits[name] = fit_of(solutions[name], explain=False)
             except InerterError as error:
-                failed.append(f"{name}: cannot be fitted. {error}")
+                failed.append(Finding(FitFinding.FAILED, "warning", name, {"error": error.args}))
 
     def again(candidates: Mapping[str, Network]) -> None:
         """Candidates that a relative shows to be far from their best fit are fitted anew near that relative's."""
@@ -130,7 +132,7 @@ def choose(
 
     fit_all(given)
     if not fits:
-        raise IdentificationError(f"No candidate can be fitted. {' '.join(failed)}")
+        raise IdentificationError(f"No candidate can be fitted. {' '.join(finding.sentence for finding in failed)}")
     again(given)
     if models is None:
         first = _chosen(compare(fits))
@@ -149,12 +151,9 @@ def choose(
         candidates=ranked,
         device=with_values(Rig(given[name]).device, values),
         status=_status(fit),
-        notes=(
-            _sentence(ranked, name),
-            *(
-                f"{c}: does not reach {o}, of the same parts, so this is not its best fit; try more starts."
-                for c, o in _stuck(ranked, fits)
-            ),
+        findings=(
+            _reason(ranked, name),
+            *(Finding(FitFinding.NOT_REACHED, "warning", c, {"other": o}) for c, o in _stuck(ranked, fits)),
             *failed,
         ),
     )
@@ -235,32 +234,26 @@ def _status(fit: Fit) -> Status:
     return fit.status
 
 
-def _unknowns(c: Candidate) -> str:
-    return "one unknown" if c.unknowns == 1 else f"{c.unknowns} unknowns"
-
-
-def _sentence(ranked: Sequence[Candidate], name: str) -> str:
-    chosen = next(c for c in ranked if c.name == name)
-    best = ranked[0]
+def _reason(ranked: Sequence[Candidate], name: str) -> Finding:
+    """Why a candidate was chosen."""
+    chosen, best = next(c for c in ranked if c.name == name), ranked[0]
     others = [c for c in ranked if not c.as_good]
-    worse = ""
-    if others:
-        ratio = others[0].loss / best.loss
-        how = f"{ratio:.3g} times" if ratio > 2.0 else f"{100.0 * (ratio - 1.0):.2g} % above"
-        worse = f" The next, {others[0].name}, leaves {how} the loss of the best."
-    if chosen is best:
-        return f"{name}: predicts the check part best, with {_unknowns(chosen)}.{worse}"
-    return (
-        f"{name}: with {_unknowns(chosen)} it predicts the check part as well as {best.name} with "
-        f"{best.unknowns} (loss larger by {100.0 * chosen.behind / best.loss:.2g} %).{worse}"
-    )
+    numbers = {
+        "unknowns": chosen.unknowns,
+        "best": best.name,
+        "best_unknowns": best.unknowns,
+        "behind": chosen.behind / best.loss,
+        "next": others[0].name if others else None,
+        "ratio": others[0].loss / best.loss if others else None,
+    }
+    return Finding(FitFinding.BEST if chosen is best else FitFinding.FEWEST_UNKNOWNS, "info", name, numbers)
 
 
 def _stuck(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iterator[tuple[str, str]]:
     """Candidates that could predict better than they do, each with the relative that shows it.
 
     One that is worse than a part of itself could at least equal that. And a part of the best one could equal that, if
-    nothing that the best one has beyond it can be told.
+    nothing that the best one has beyond it is identifiable.
     """
     best = ranked[0]
     for c in ranked:
@@ -269,8 +262,8 @@ def _stuck(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iterator[tup
         if part is not None and _worse(ranked, c.name, part):
             yield c.name, part
         whole = fits[best.name]
-        untold = not any(whole.identifiable[name] for name in set(whole.parameters) - mine)
-        if mine < set(whole.parameters) and untold and _worse(ranked, c.name, best.name):
+        idle = not any(whole.identifiable[name] for name in set(whole.parameters) - mine)
+        if mine < set(whole.parameters) and idle and _worse(ranked, c.name, best.name):
             yield c.name, best.name
 
 

@@ -12,79 +12,75 @@ from numpy.typing import NDArray
 from inerter.errors import OK, Status, StatusKind
 from inerter.identification.experiment import saturated
 from inerter.identification.explaining import explanations
-from inerter.identification.fit import Comparison, Explanation, Fit, Parameter, Told
+from inerter.identification.fit import Comparison, Explanation, Fit, Parameter
+from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import Optimum, Profile
+from inerter.identification.kinds import FitFinding
 from inerter.identification.models import unmounted
 from inerter.identification.problem import Problem
 from inerter.identification.solving import Solution
 from inerter.identification.space import Space
-from inerter.identification.telling import suggestions, told
+from inerter.identification.verdicts import identifiability, suggestions
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.networks.transform import with_values
-from inerter.units import format_quantity
+from inerter.records.finding import Finding
 
 Matrix = NDArray[np.float64]
 ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
 _SATURATED = 0.2  # of the samples, from which on a record tells little
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
 _FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
-_WIDER = "holds what the explanations make of it too."
 _NOTICED = 0.05  # of the friction: an offset that may be one of the friction
 _MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
 
 
 def fit_of(solution: Solution, explain: bool = True) -> Fit:
-    """What a solution tells. Where it leaves more than the sensors would, hypotheses are tried if `explain`."""
+    """What follows from a solution. Where it leaves more than the sensors would, hypotheses are tried if `explain`."""
     problem, optimum, found = solution.problem, solution.optimum, solution.profiles
     space = problem.space
     comparisons = _comparisons(solution)
     values = space.named(optimum.point)
     slopes = space.slopes(optimum.point)
     likely = explanations(problem, optimum, solution.judge, solution.misfit) if explain else []
-    notes = (*solution.notes, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
+    findings = (*solution.findings, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
     draft = Fit(
         parameters={}, identifiable={}, correlation=_correlation(optimum.covariance),
         covariance=optimum.covariance * np.outer(slopes, slopes),
         device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
         criterion=_criterion(problem, optimum), costs=solution.costs,
         simulations=sum(e.tally.total for e in problem.experiments), predicted=solution.predicted,
-        misfit=solution.misfit, explanations=tuple(likely), notes=notes, settings={"seed": solution.seed},
+        misfit=solution.misfit, explanations=tuple(likely), findings=findings, settings={"seed": solution.seed},
     )  # fmt: skip
-    status = status_of(draft)
+    doubt = doubt_of(draft)
     parameters, identifiable = {}, {}
     for i, name in enumerate(space.names):
         p = _parameter(space, i, optimum, found[i], values[name])
-        said = told(space.kinds[i], p, found[i], space, i, comparisons, values)
-        p, said = _restated(p, said, draft)
-        parameters[name], identifiable[name] = (p if said else replace(p, value=float("nan"))), said
+        p, verdict = _restated(p, identifiability(p, found[i], space, i, comparisons), draft)
+        parameters[name], identifiable[name] = (p if verdict else replace(p, value=float("nan"))), verdict
     return replace(
         draft,
         parameters=parameters,
         identifiable=identifiable,
-        status=status,
-        next_experiment=tuple(suggestions(space, parameters, identifiable, comparisons)),
+        status=OK if doubt is None else Status(StatusKind.INACCURATE, doubt.sentence),
+        suggestions=tuple(suggestions(space, parameters, identifiable, comparisons)),
     )
 
 
-def status_of(fit: Fit) -> Status:
-    """Whether the model explains the records, and what is the likeliest reason if it does not."""
+def doubt_of(fit: Fit) -> Finding | None:
+    """Why a fit is not to be relied on, with the likeliest reason; None if it is."""
     lost = sum(float(saturated(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
     best = _likeliest(fit)
     if fit.predicted < ENOUGH and best is None:
         changed = 100.0 * min(1.0 - fit.predicted, 1.0)
-        return Status(
-            StatusKind.INACCURATE,
-            f"errors as small as those of the encoder change {changed:.1f} % of the force of this device, so none of "
-            f"its parameters can be told; try a record in which it rattles less",
-        )
+        return Finding(FitFinding.UNPREDICTABLE, "warning", numbers={"changed": changed})
     if fit.misfit.sound and best is not None:
-        return Status(StatusKind.INACCURATE, best.sentence)
+        return Finding(FitFinding.SUSPECTED, "warning", numbers={"likeliest": best})
     if not fit.misfit.sound or fit.explained < ENOUGH:
-        return Status(StatusKind.INACCURATE, _misfit(fit, best))
+        return _misfit(fit, best)
     if lost > _SATURATED:
-        return Status(StatusKind.INACCURATE, f"the load cell was saturated in {100.0 * lost:.0f} % of the samples")
-    return OK
+        return Finding(FitFinding.SATURATED, "warning", numbers={"share": lost})
+    return None
 
 
 def _likeliest(fit: Fit) -> Explanation | None:
@@ -93,58 +89,47 @@ def _likeliest(fit: Fit) -> Explanation | None:
     return best if best is not None and best.explained >= _MOST else None
 
 
-def _misfit(fit: Fit, best: Explanation | None) -> str:
-    """A wrong model or sensor, in a sentence."""
-    times = f"the model leaves {fit.misfit.worst:.2g} times what the errors of the sensors leave"
-    explained = 100.0 * max(fit.explained, 0.0)
-    share = f", and explains {explained:.1f} % of the force only" if fit.explained < ENOUGH else ""
-    if best is None:
-        return f"{times}{share}; nothing that was tried explains it"
+def _misfit(fit: Fit, best: Explanation | None) -> Finding:
+    """A wrong model or sensor."""
+    explained = 100.0 * max(fit.explained, 0.0) if fit.explained < ENOUGH else None
     second = next((e for e in fit.explanations[1:2] if e.misfit.sound), None)
-    other = "" if second is None else f", or {second.sentence}, which explains it too"
-    return f"{times}{share}; likeliest: {best.sentence}{other}"
+    numbers = {"times": fit.misfit.worst, "explained": explained, "likeliest": best, "second": second}
+    return Finding(FitFinding.MISFIT, "warning", numbers=numbers)
 
 
-def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[Comparison]) -> Iterator[str]:
+def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[Comparison]) -> Iterator[Finding]:
     """What an offset of the load cell may be instead."""
     kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
     friction = sum(v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is Linear.OPEN)
     for c in comparisons:
         if abs(c.offset) > _NOTICED * friction > 0.0:
-            size = format_quantity(c.offset, "N", 3)
-            yield (
-                f"{c.record.source}: the offset of {size} may be one of the load cell or asymmetric friction, larger "
-                f"in one direction, of which the friction told is the mean."
-            )
+            yield Finding(FitFinding.OFFSET, "info", c.record.source, {"offset": c.offset})
 
 
-def _of_masses(problem: Problem) -> Iterator[str]:
+def _of_masses(problem: Problem) -> Iterator[Finding]:
     """What an inertance may be besides."""
     names = zip(problem.space.names, problem.space.kinds, strict=True)
     free = [name for name, kind in names if kind is not None and kind.linear is Linear.MASS]
     if free and any(e.record.fixture_mass is None for e in problem.experiments):
-        yield (
-            f"{', '.join(free)}: holds what moves with the table between load cell and device, which the records do "
-            f"not tell from an inertance; weigh it, and give it, fixture_mass=."
-        )
+        yield Finding(FitFinding.MOVING_MASS, "info", ", ".join(free))
 
 
-def _restated(p: Parameter, said: Told, fit: Fit) -> tuple[Parameter, Told]:
+def _restated(p: Parameter, verdict: Identifiability, fit: Fit) -> tuple[Parameter, Identifiability]:
     """An interval is one of a right model: else it is widened to what the likely explanations say, or withheld."""
     if fit.predicted < ENOUGH:
-        return _withheld(p, "cannot be told: nobody can predict the force of this device")
+        return _without_interval(p), replace(verdict, verdict=Verdict.UNPREDICTABLE)
     if not fit.explanations and fit.misfit.sound:
-        return p, said
+        return p, verdict
     right = [e for e in fit.explanations if e.misfit.excess <= _FAIRLY]
     if not right or any(p.name not in e.estimates for e in right):
-        return _withheld(p, "withheld, for the model leaves more than the errors of the sensors")
+        return _without_interval(p), replace(verdict, verdict=Verdict.WITHHELD)
     ends = [end for e in right for end in _ends(*e.estimates[p.name])]
     interval = min(p.interval[0], *ends), max(p.interval[1], *ends)
-    return replace(p, interval=interval), Told(bool(said), f"{said.sentence} Its interval {_WIDER}")
+    return replace(p, interval=interval), replace(verdict, widened=True)
 
 
-def _withheld(p: Parameter, why: str) -> tuple[Parameter, Told]:
-    return replace(p, interval=(math.nan, math.nan)), Told(False, f"{p.name}: {why}.")
+def _without_interval(p: Parameter) -> Parameter:
+    return replace(p, interval=(math.nan, math.nan))
 
 
 def _ends(value: float, error: float) -> tuple[float, float]:

@@ -21,12 +21,12 @@ from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
 from inerter.identification.problem import Problem
 from inerter.identification.space import Space, space_of
+from inerter.identification.suspects import Suspect
 from inerter.records.lost import losses, restored
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS, _ACCURACY = 25, 1e-5
-_FILL = "read the file with gaps='fill', which puts them in"
 _BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
 _LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
 _STEP = 0.02  # of what a hypothesis would be seen at, for differences
@@ -43,7 +43,7 @@ class Trial:
 
 def explanations(problem: Problem, optimum: Optimum, by: Judge, before: Misfit) -> list[Explanation]:
     """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway."""
-    found: dict[str, Explanation] = {}
+    found: dict[Suspect, Explanation] = {}
     lost = lost_samples(problem.experiments)
     known = [] if lost is None else [lost]
     for hypothesis in known if before.sound else [*known, *hypotheses(problem)]:
@@ -67,14 +67,13 @@ def hypotheses(problem: Problem) -> list[Hypothesis]:
 def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
     """Samples that the displacement shows to be lost, put in again; None if there are none."""
     whole: dict[int, tuple[Experiment, NDArray[np.bool_]]] = {}
-    said = []
+    places = []
     for e in experiments:
         lost = losses(e.record)
         if lost:
             record, measured = restored(e.record, lost)
             whole[id(e.record)] = (replace(experiment_of(record), tally=e.tally), measured)
-            at = ", ".join(f"{loss.count} at {e.record.time[loss.after]:.4g} s" for loss in lost[:4])
-            said.append(at + (", ..." if len(lost) > 4 else ""))
+            places.append(tuple((loss.count, float(e.record.time[loss.after])) for loss in lost))
     if not whole:
         return None
 
@@ -88,8 +87,7 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
                 return np.where(doubtful, other.record.force, force)[measured]
         return force
 
-    sentence = f"samples are lost while the clock goes on ({'; '.join(said)})"
-    return Hypothesis("lost samples", moved=moved, read=read, said=lambda values: sentence, remedy=_FILL)
+    return Hypothesis(Suspect.LOST_SAMPLES, moved=moved, read=read, details=lambda values: {"places": tuple(places)})
 
 
 def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge) -> Trial:
@@ -126,12 +124,11 @@ def _explanation(trial: Trial, by: Judge, before: Misfit) -> Explanation:
     parts = zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True)
     return Explanation(
         name=hypothesis.name,
-        sentence=hypothesis.said(values),
-        remedy=hypothesis.remedy,
         explained=min((_explained(now, then) for now, then, limit in parts if then > limit), default=1.0),
         misfit=after,
         values={name: values[name] for name in own},
         estimates={n: (values[n], float(e)) for n, e in zip(space.names, errors, strict=True) if n not in own},
+        details=hypothesis.details(values),
     )
 
 

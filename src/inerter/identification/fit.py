@@ -1,4 +1,4 @@
-"""What an identification found: parameters with intervals, what cannot be told, and how well the model fits."""
+"""What an identification found: parameters with intervals, what is not identifiable, and how well the model fits."""
 
 from __future__ import annotations
 
@@ -10,28 +10,21 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status
 from inerter.identification.experiment import Experiment
+from inerter.identification.identifiability import Identifiability
+from inerter.identification.suspects import Details, Suspect
 from inerter.networks.elements import Network
+from inerter.records.finding import Finding
 from inerter.records.record import Record
+from inerter.records.remedy import in_python
 
 Matrix = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Told:
-    """Whether the records tell a parameter, and a sentence for the reader. True where they do."""
-
-    told: bool
-    sentence: str
-
-    def __bool__(self) -> bool:
-        return self.told
 
 
 @dataclass(frozen=True)
 class Parameter:
     """One identified value with its 95 % interval.
 
-    `value` is nan where the records cannot tell it: the interval then still holds, and says what is known, such as
+    `value` is nan where the records do not identify it: the interval then still holds, and says what is known, such as
     an upper bound. `best` is the value of the best fit in any case, to go on computing with.
     """
 
@@ -72,13 +65,22 @@ class Misfit:
 class Explanation:
     """A hypothesis about the device or its sensors, and what it explains of a misfit."""
 
-    name: str
-    sentence: str
+    name: Suspect
     explained: float  # part of the misfit, squared, beyond what the sensors leave; of the check part if it shows there
     misfit: Misfit  # that it leaves
     values: dict[str, float]  # of the unknowns of the hypothesis
     estimates: dict[str, tuple[float, float]]  # of the device's under the hypothesis, and their standard errors
-    remedy: str = ""  # what would put it right
+    details: Details = field(default_factory=dict)  # the numbers of its sentence
+
+    @property
+    def sentence(self) -> str:
+        """What it says, to go on after a colon."""
+        return self.name.sentence(self.details)
+
+    @property
+    def remedy(self) -> str:
+        """What would put it right, in Python."""
+        return in_python(self.name.remedy(self.details))
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +95,7 @@ class Comparison:
     draws: Matrix  # (draws, samples) [N] residuals such as errors of the sensors alone would leave
     whitened: Matrix  # residuals after weighting and whitening, of the fitted samples
     lead: float  # [s] at the start that were left out
-    whiteness: float  # p-value of residuals that hang together no more than errors of the sensors do
+    whiteness: float  # p-value of residuals no more autocorrelated than errors of the sensors
     openings: Mapping[str, int]  # how often each gap opened in the model
 
     @property
@@ -129,7 +131,7 @@ class Fit:
     """The result of `identify`."""
 
     parameters: dict[str, Parameter]
-    identifiable: dict[str, Told]
+    identifiable: dict[str, Identifiability]
     correlation: Matrix  # (parameters, parameters)
     covariance: Matrix  # the same shape, in units of the values
     device: Network  # the model with the best values
@@ -141,9 +143,19 @@ class Fit:
     misfit: Misfit
     explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the likeliest first
     status: Status = OK
-    notes: tuple[str, ...] = ()
-    next_experiment: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()  # what has to be known about the estimates
+    suggestions: tuple[Finding, ...] = ()  # what the next experiment may be
     settings: dict[str, object] = field(default_factory=dict)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The findings in sentences."""
+        return tuple(finding.sentence for finding in self.findings)
+
+    @property
+    def next_experiment(self) -> tuple[str, ...]:
+        """The suggestions in sentences."""
+        return tuple(finding.sentence for finding in self.suggestions)
 
     @property
     def explained(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -20,7 +21,8 @@ from inerter.records.record import Record
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 
 Matrix = NDArray[np.float64]
-Law = Literal["coulomb", "viscous", "stribeck", "other", "untold"]
+Law = Literal["coulomb", "viscous", "stribeck", "other", "not identifiable"]
+Reason = Literal["", "samples", "friction", "speeds"]  # of which there are too few, or too little
 SURE = 0.01  # p-value below which friction depends on the speed
 _BLOCKS = 24
 _FEWEST = 200  # samples in which the device slides
@@ -33,22 +35,28 @@ _OUTLIER, _NINETY = 4.0, 1.645  # standard deviations; 90 % of normal errors lie
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """What a record tells of friction: its `level`, and its slopes over the speed.
+    """The friction of a record: its `level`, and its slopes over the speed.
 
     `law` is "coulomb" where no dependence shows, "viscous" where it grows with speed, "stribeck" where it falls at low
-    speed, "other" where it does neither, and "untold" where the record cannot say.
+    speed, "other" where it does neither, and "not identifiable" where the record does not say, for a `reason`.
     """
 
     law: Law
-    sentence: str
     level: float  # [N] mean size of the friction while it slides; of a fit, what its model leaves of it
     interval: tuple[float, float]  # [N] of the level, 95 %
-    p_value: float  # of a friction that does not depend on the speed; nan if untold
+    p_value: float  # of a friction that does not depend on the speed; nan if not identifiable
     slow: float  # [N s/m] slope below `_SLOW` of the largest speed
     slow_interval: tuple[float, float]  # 95 %
     fast: float  # [N s/m] slope above
     fast_interval: tuple[float, float]
     speeds: tuple[float, float]  # [m/s] least and largest at which it slides
+    samples: int  # in which it slides
+    reason: Reason = ""
+
+    @property
+    def sentence(self) -> str:
+        """For a reader."""
+        return _SENTENCES[self.law](self)
 
 
 def friction_law(source: Record | Fit, inertance: float = 0.0) -> FrictionLaw:
@@ -58,7 +66,7 @@ def friction_law(source: Record | Fit, inertance: float = 0.0) -> FrictionLaw:
     below and above 0.3 of the largest, besides an offset, and a force in proportion to the displacement (`inertance`
     [kg] times the acceleration is taken away first). After each reversal, what is moved while the shaft winds up is
     left out. The p-value is of Wald's test that both slopes are zero, with errors summed over 24 blocks of time, so
-    that what hangs together does not count as many (Liang and Zeger 1986), and never less than those of independent
+    that what is autocorrelated does not count as many (Liang and Zeger 1986), and never less than those of independent
     errors. Below 0.01 the friction depends on speed: viscous where it grows, Stribeck's where it falls at low speed
     (Armstrong-Helouvry, Dupont and Canudas de Wit 1994). Of a fit, the slowest record is looked at, and the level is
     what the model leaves of it.
@@ -84,7 +92,7 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     use = use & (speed > _NOISES * motion.velocity_noise)
     blocks = np.minimum(_BLOCKS * np.cumsum(use) // max(int(use.sum()), 1), _BLOCKS - 1)[use]
     if use.sum() < _FEWEST:
-        return _untold(f"the device slides in {int(use.sum())} samples only; record more, with larger strokes")
+        return _not_identifiable("samples", int(use.sum()))
     v, y = motion.velocity[use], force[use]
     top = float(np.abs(v).max())
     speeds = (float(np.abs(v).min()), top)
@@ -98,11 +106,9 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     quantile = float(student.ppf(0.975, _BLOCKS - 1))
     interval = (level - quantile * error, level + quantile * error)
     if rough and level < 3.0 * float(np.std(plain[2])) / math.sqrt(use.sum() / _BLOCKS):
-        return _untold(f"no friction shows beside the noise, {level:.3g} N", level, interval, speeds)
+        return _not_identifiable("friction", int(use.sum()), level, interval, speeds)
     if speeds[0] > top / _RANGE:
-        return _untold(
-            f"it slides from {speeds[0]:.3g} to {top:.3g} m/s only; use larger strokes", level, interval, speeds
-        )
+        return _not_identifiable("speeds", int(use.sum()), level, interval, speeds)
     low, high = np.minimum(np.abs(v), slow), np.maximum(np.abs(v) - slow, 0.0)
     solution, covariance, _ = _solved(y, [direction, direction * low, direction * high, *nuisance], blocks)
     slopes, of_slopes = solution[1:3], covariance[1:3, 1:3]
@@ -111,42 +117,85 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     p = float(fisher.sf(wald, 2, degrees - 1))
     widths = quantile * np.sqrt(np.maximum(np.diag(of_slopes), 0.0))
     ends = [(float(s - w), float(s + w)) for s, w in zip(slopes, widths, strict=True)]
-    law, sentence = _judged(p, slopes, ends, top, level)
-    return FrictionLaw(law, sentence, level, interval, p, float(slopes[0]), ends[0], float(slopes[1]), ends[1], speeds)
-
-
-def _judged(p: float, slopes: Matrix, ends: list[tuple[float, float]], top: float, level: float) -> tuple[Law, str]:
-    if p >= SURE:
-        unseen = max(abs(end) for end in ends[1])
-        return "coulomb", (
-            f"No dependence on speed up to {top:.3g} m/s (p = {p:.2g}); a viscous part of more than {unseen:.3g} "
-            f"N s/m, {unseen * top:.2g} N at that speed, would have shown."
-        )
-    if ends[0][1] < 0.0:
-        return "stribeck", (
-            f"Friction falls with speed at low speed, by {-slopes[0]:.3g} N s/m below {_SLOW * top:.3g} m/s "
-            f"(p = {p:.2g}): a Stribeck effect, which Coulomb's law leaves out."
-        )
-    if ends[1][0] > 0.0 or ends[0][0] > 0.0:
-        slope = slopes[1] if ends[1][0] > 0.0 else slopes[0]
-        return "viscous", (
-            f"Friction grows with speed, by {slope:.3g} N s/m (p = {p:.2g}): add a damper beside the inerter."
-        )
-    return "other", (
-        f"Friction depends on speed (p = {p:.2g}), yet neither as a damper nor as Stribeck's law: slopes "
-        f"{slopes[0]:.3g} and {slopes[1]:.3g} N s/m."
+    return FrictionLaw(
+        law=_judged(p, *ends),
+        level=level,
+        interval=interval,
+        p_value=p,
+        slow=float(slopes[0]),
+        slow_interval=ends[0],
+        fast=float(slopes[1]),
+        fast_interval=ends[1],
+        speeds=speeds,
+        samples=int(use.sum()),
     )
 
 
-def _untold(
-    why: str,
+def _judged(p: float, slow: tuple[float, float], fast: tuple[float, float]) -> Law:
+    if p >= SURE:
+        return "coulomb"
+    if slow[1] < 0.0:
+        return "stribeck"
+    return "viscous" if fast[0] > 0.0 or slow[0] > 0.0 else "other"
+
+
+def _not_identifiable(
+    reason: Reason,
+    samples: int,
     level: float = math.nan,
     interval: tuple[float, float] = (0.0, math.inf),
     speeds: tuple[float, float] = (0.0, 0.0),
 ) -> FrictionLaw:
     nothing = (-math.inf, math.inf)
-    sentence = f"The law of friction cannot be told: {why}."
-    return FrictionLaw("untold", sentence, level, interval, math.nan, math.nan, nothing, math.nan, nothing, speeds)
+    return FrictionLaw(
+        "not identifiable", level, interval, math.nan, math.nan, nothing, math.nan, nothing, speeds, samples, reason
+    )
+
+
+def _of_coulomb(law: FrictionLaw) -> str:
+    unseen, top = max(abs(end) for end in law.fast_interval), law.speeds[1]
+    return (
+        f"No dependence on speed up to {top:.3g} m/s (p = {law.p_value:.2g}); a viscous part of more than {unseen:.3g} "
+        f"N s/m, {unseen * top:.2g} N at that speed, would have shown."
+    )
+
+
+def _of_stribeck(law: FrictionLaw) -> str:
+    return (
+        f"Friction falls with speed at low speed, by {-law.slow:.3g} N s/m below {_SLOW * law.speeds[1]:.3g} m/s "
+        f"(p = {law.p_value:.2g}): a Stribeck effect, which Coulomb's law leaves out."
+    )
+
+
+def _of_viscous(law: FrictionLaw) -> str:
+    slope = law.fast if law.fast_interval[0] > 0.0 else law.slow
+    return f"Friction grows with speed, by {slope:.3g} N s/m (p = {law.p_value:.2g}): add a damper beside the inerter."
+
+
+def _of_other(law: FrictionLaw) -> str:
+    return (
+        f"Friction depends on speed (p = {law.p_value:.2g}), yet neither as a damper nor as Stribeck's law: slopes "
+        f"{law.slow:.3g} and {law.fast:.3g} N s/m."
+    )
+
+
+def _of_none(law: FrictionLaw) -> str:
+    low, high = law.speeds
+    why = {
+        "samples": f"the device slides in {law.samples} samples only; record more, with larger strokes",
+        "friction": f"no friction shows beside the noise, {law.level:.3g} N",
+        "speeds": f"it slides from {low:.3g} to {high:.3g} m/s only; use larger strokes",
+    }
+    return f"The law of friction is not identifiable: {why[law.reason]}."
+
+
+_SENTENCES: dict[Law, Callable[[FrictionLaw], str]] = {
+    "coulomb": _of_coulomb,
+    "stribeck": _of_stribeck,
+    "viscous": _of_viscous,
+    "other": _of_other,
+    "not identifiable": _of_none,
+}
 
 
 def _solved(y: Matrix, columns: list[Matrix], blocks: NDArray[np.int64]) -> tuple[Matrix, Matrix, Matrix]:

@@ -19,9 +19,11 @@ from scipy.optimize import lsq_linear
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment
+from inerter.identification.kinds import FitFinding
 from inerter.networks.elements import Element, Free, Network, Parallel, Series
 from inerter.networks.elements.roles import Linear
 from inerter.records.filtering import low_pass
+from inerter.records.finding import Finding
 
 Matrix = NDArray[np.float64]
 _ROUNDS = 4
@@ -90,7 +92,7 @@ def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[flo
     return best
 
 
-def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, list[str]]:
+def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, list[Finding]]:
     """The experiment with the force counted as tension, and what was done to that end.
 
     A device takes energy from the table, whatever it is made of; where it takes hardly any, a chain has to explain the
@@ -108,8 +110,7 @@ def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, li
         right = share >= 0.0
     if right:
         return experiment, []
-    note = f"{experiment.record.source}: the force counted compression as positive; it was reversed."
-    return turned, [note]
+    return turned, [Finding(FitFinding.FORCE_REVERSED, "info", experiment.record.source)]
 
 
 def _solved(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[Element | None, float, float]]]:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment
+from inerter.identification.suspects import Details, Suspect
 from inerter.networks.elements import Network
-from inerter.units import format_quantity
 
 Matrix = NDArray[np.float64]
 Values = Mapping[str, float]
@@ -44,8 +44,8 @@ def _as_read(force: Matrix, experiment: Experiment, values: Values) -> Matrix:
     return force
 
 
-def _unsaid(values: Values) -> str:
-    return ""
+def _none(values: Values) -> Details:
+    return {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,13 +55,12 @@ class Hypothesis:
     `device` takes the place of the model; its free values that the model does not have are unknowns too.
     """
 
-    name: str
+    name: Suspect
     unknowns: tuple[Unknown, ...] = ()
     device: Network | None = None
     moved: Callable[[Experiment, Values], Experiment] = _as_it_was
     read: Callable[[Matrix, Experiment, Values], Matrix] = _as_read  # of the first samples
-    said: Callable[[Values], str] = _unsaid
-    remedy: str = ""
+    details: Callable[[Values], Details] = _none  # the numbers that are told of it
     slow: int | None = None  # degree over time of what it leaves open in each part of a record
     starts: tuple[Values, ...] = ({},)  # where to begin, unless it is at the sizes, or at zero if it may be negative
 
@@ -69,25 +68,18 @@ class Hypothesis:
 def gain() -> Hypothesis:
     """A load cell that reads in proportion."""
     unknown = Unknown(GAIN, "", *_GAINS, 1.0)
-    return Hypothesis("gain", (unknown,), read=lambda force, e, values: values[GAIN] * force)
+    return Hypothesis(Suspect.GAIN, (unknown,), read=lambda force, e, values: values[GAIN] * force)
 
 
 def delay(longest: float) -> Hypothesis:
     """A force that is late against the displacement, or early where the displacement is late."""
     unknown = Unknown(DELAY, "s", -longest, longest, 0.1 * longest)
     return Hypothesis(
-        "delay",
+        Suspect.DELAY,
         (unknown,),
         moved=lambda e, values: e.late(values[DELAY]),
-        said=_of_delay,
-        remedy="fit the delay too, with delay=True",
+        details=lambda values: {"delay": values[DELAY]},
     )
-
-
-def _of_delay(values: Values) -> str:
-    late = values[DELAY]
-    what = "force" if late > 0.0 else "displacement"
-    return f"the {what} is late by {1e3 * abs(late):.3g} ms"
 
 
 def filtered_displacement(order: int) -> Hypothesis:
@@ -102,11 +94,9 @@ def filtered_displacement(order: int) -> Hypothesis:
         x = motion.displacement + first * T * motion.velocity + second * T**2 * motion.acceleration
         return e.moved(x, motion.velocity + first * T * motion.acceleration + second * T**2 * jerk)
 
-    def said(values: Values) -> str:
-        return f"the displacement went through a low pass of {_corner(values[name])}"
-
-    remedy = "take the displacement before the filter, or make the filter of the force the same"
-    return Hypothesis("filtered displacement", (unknown,), moved=moved, said=said, remedy=remedy)
+    return Hypothesis(
+        Suspect.FILTERED_DISPLACEMENT, (unknown,), moved=moved, details=lambda values: {"time": values[name]}
+    )
 
 
 def filtered_force() -> Hypothesis:
@@ -117,11 +107,7 @@ def filtered_force() -> Hypothesis:
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         return low_passed(force, e.record.interval, values[name])
 
-    def said(values: Values) -> str:
-        return f"the force went through a low pass of {_corner(values[name])}"
-
-    remedy = "give the bandwidth of the load cell and its amplifier, force_bandwidth="
-    return Hypothesis("filtered force", (unknown,), read=read, said=said, remedy=remedy)
+    return Hypothesis(Suspect.FILTERED_FORCE, (unknown,), read=read, details=lambda values: {"time": values[name]})
 
 
 def drift() -> Hypothesis:
@@ -135,11 +121,10 @@ def drift() -> Hypothesis:
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         return np.asarray(force + path(values, e.size)[: force.size])
 
-    def said(values: Values) -> str:
-        return f"the zero of the load cell drifts, by {format_quantity(float(np.ptp(path(values, 101)[:81])), 'N', 2)}"
+    def details(values: Values) -> Details:
+        return {"drift": float(np.ptp(path(values, 101)[:81]))}
 
-    remedy = "warm the load cell up, or take the drift away, detrend(record)"
-    return Hypothesis("drift", unknowns, read=read, said=said, slow=2, remedy=remedy)
+    return Hypothesis(Suspect.DRIFT, unknowns, read=read, details=details, slow=2)
 
 
 def fixture() -> Hypothesis:
@@ -151,11 +136,7 @@ def fixture() -> Hypothesis:
         moved = e.motion.acceleration[: force.size]
         return np.asarray(force + values[name] * through_cell(moved, e))
 
-    def said(values: Values) -> str:
-        return f"{format_quantity(values[name], 'kg')} move with the table between load cell and device"
-
-    remedy = "weigh what moves with the table between load cell and device, and give it, fixture_mass="
-    return Hypothesis("fixture mass", (unknown,), read=read, said=said, remedy=remedy)
+    return Hypothesis(Suspect.FIXTURE_MASS, (unknown,), read=read, details=lambda values: {"mass": values[name]})
 
 
 def sensors(offset: bool) -> list[Hypothesis]:
@@ -175,16 +156,11 @@ def _offset() -> Hypothesis:
     name = "force offset"
     unknown = Unknown(name, "N", -1e3, 1e3, 1.0)
 
-    def said(values: Values) -> str:
-        size = format_quantity(abs(values[name]), "N")
-        return f"the load cell has an offset of {size}, or friction is larger in one direction by as much"
-
     return Hypothesis(
-        "offset or asymmetric friction",
+        Suspect.OFFSET,
         (unknown,),
         read=lambda force, e, values: force + values[name],
-        said=said,
-        remedy="fit the offset too, with offset=True",
+        details=lambda values: {"offset": values[name]},
     )
 
 
@@ -200,7 +176,3 @@ def through_cell(force: Matrix, experiment: Experiment) -> Matrix:
     """A force as the load cell reads it, as far as its bandwidth is known."""
     bandwidth = experiment.record.force_bandwidth
     return force if bandwidth is None else low_passed(force, experiment.record.interval, 0.5 / math.pi / bandwidth)
-
-
-def _corner(time: float) -> str:
-    return "any size" if time <= 0.0 else format_quantity(0.5 / math.pi / time, "Hz")

@@ -30,7 +30,7 @@ class Optimum:
     jacobian: Matrix  # weighted as the robust cost asks
     variance: float  # of a whitened residual
     covariance: Matrix  # of the coordinates
-    widening: Matrix  # of the threshold of each profile, for residuals that still hang together
+    widening: Matrix  # of the threshold of each profile, for residuals that are still autocorrelated
     samples: int
 
     @property
@@ -83,10 +83,10 @@ def _widening(jacobian: Matrix, residual: Matrix, variance: float) -> Matrix:
 
 @dataclass(frozen=True)
 class Side:
-    """One end of an interval, in coordinates; `told` if the record sets it and not the bound of the search."""
+    """One end of an interval, in coordinates; `known` if the record sets it and not the bound of the search."""
 
     end: float
-    told: bool
+    known: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,7 @@ class Profile:
 
     def moved(self, by: float) -> Profile:
         """The same profile elsewhere; ends at the bounds of the search stay there."""
-        lower, upper = (replace(side, end=side.end + by) if side.told else side for side in (self.lower, self.upper))
+        lower, upper = (replace(side, end=side.end + by) if side.known else side for side in (self.lower, self.upper))
         return Profile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
 

@@ -18,13 +18,12 @@ from numpy.typing import NDArray
 from inerter.identification.experiment import Experiment
 from inerter.identification.guess import Chain
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.identification.suspects import Details, Suspect
 from inerter.kernels.declare import kernel, part
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, free
 from inerter.networks.parser import written
-from inerter.units import format_quantity
 
 Matrix = NDArray[np.float64]
-_LAW = "no model has such friction; the values with it, where there are any, are the ones to go by"
 _STEPS = 30.0  # in a period of the shaft's resonance, at least
 _MOST_PARTS = 64  # of a sampling interval
 _FINEST = 1.25e-4  # [s] of a step, at most
@@ -61,79 +60,70 @@ def _parts(chain: Chain) -> Iterator[Hypothesis]:
     """The chain with a part more or less."""
     if chain.friction is None:
         friction = Friction(free(0.0, 500.0, name="dry_friction"))
-        said = "the device has dry friction"
-        yield _other(
-            "dry friction", replace(chain, friction=friction), said, "one with friction", {"dry_friction": 1.0}
-        )
+        with_it = replace(chain, friction=friction)
+        yield _other(Suspect.DRY_FRICTION, with_it, "one with friction", {"dry_friction": 1.0})
     if chain.drag is None:
         drag = Damper(free(1e-3, 1e5, name="viscous"))
-        said = "friction grows with speed"
-        yield _other("viscous friction", replace(chain, drag=drag), said, "one with a damper", {"viscous": 10.0})
+        yield _other(Suspect.VISCOUS_FRICTION, replace(chain, drag=drag), "one with a damper", {"viscous": 10.0})
     if chain.spring is None:
         spring, damper = Spring(free(1e4, 1e9, name="shaft")), Damper(free(1.0, 1e6, name="shaft_damping"))
         starts = ({"shaft": k, "shaft_damping": 3e-3 * k} for k in (2e5, 1e6, 5e6))
         elastic = replace(chain, spring=spring, damper=damper)
-        yield _other("elastic device", elastic, "the device gives way", "elastic or elastic-friction", *starts)
+        yield _other(Suspect.ELASTIC, elastic, "elastic or elastic-friction", *starts)
         return
     rigid = replace(chain, spring=None, damper=None, gap=None)
-    yield _other("rigid device", rigid, "nothing in the device gives way", "ideal or friction")
+    yield _other(Suspect.RIGID, rigid, "ideal or friction")
     if chain.gap is None:
         play = replace(chain, gap=Gap(free(0.0, 2e-3, name="play")))
-        said = "the device has backlash"
-        yield _other("backlash", play, said, "backlash or ball-screw", {"play": 1e-5}, {"play": 1e-4})
+        yield _other(Suspect.BACKLASH, play, "backlash or ball-screw", {"play": 1e-5}, {"play": 1e-4})
 
 
-def _other(name: str, chain: Chain, sentence: str, kind: str, *starts: Values) -> Hypothesis:
+def _other(name: Suspect, chain: Chain, model: str, *starts: Values) -> Hypothesis:
     device = chain.network()
     layout = written(device, [e.label for e in device.elements()])
-    remedy = f"take a model such as {layout} ({kind})"
-    return Hypothesis(name, device=device, starts=starts or ({},), said=lambda values: sentence, remedy=remedy)
+    details = {"layout": layout, "model": model}
+    return Hypothesis(name, device=device, starts=starts or ({},), details=lambda values: details)
 
 
 def _stribeck(chain: Chain, fastest: float) -> Hypothesis:
     rise = Unknown("rise of the friction", "N", 0.0, 1e3, 1.0)
     speed = Unknown("Stribeck speed", "m/s", 1e-3 * fastest, fastest, 0.1 * fastest)
 
-    def said(values: Values) -> str:
+    def details(values: Values) -> Details:
         low = _value(chain.friction, values)
-        return (
-            f"friction falls with speed (Stribeck), from {format_quantity(low + values[rise.name], 'N', 3)} at rest to "
-            f"{format_quantity(low, 'N', 3)} beyond {format_quantity(2.0 * values[speed.name], 'm/s', 2)}"
-        )
+        return {"at_rest": low + values[rise.name], "beyond": low, "speed": 2.0 * values[speed.name]}
 
     starts = tuple({speed.name: share * fastest} for share in (0.05, 0.2))
-    return _changed(chain, "Stribeck friction", {"rise": rise, "speed": speed}, said, starts)
+    return _changed(chain, Suspect.STRIBECK, {"rise": rise, "speed": speed}, details, starts)
 
 
 def _place(chain: Chain, stroke: float) -> Hypothesis:
     tilt = Unknown("tilt of the friction", "N/m", -1e3 / stroke, 1e3 / stroke, 1.0 / stroke)
     bend = Unknown("bend of the friction", "N/m^2", -1e3 / stroke**2, 1e3 / stroke**2, 1.0 / stroke**2)
 
-    def said(values: Values) -> str:
+    def details(values: Values) -> Details:
         x = np.linspace(-stroke, stroke, 101)
         level = _value(chain.friction, values) + values[tilt.name] * x + values[bend.name] * x**2
-        over = np.maximum(level, 0.0)
-        return f"friction depends on the position, by {format_quantity(float(np.ptp(over)), 'N', 3)} over the stroke"
+        return {"range": float(np.ptp(np.maximum(level, 0.0)))}
 
-    return _changed(chain, "friction by position", {"tilt": tilt, "bend": bend}, said, ({},))
+    return _changed(chain, Suspect.BY_POSITION, {"tilt": tilt, "bend": bend}, details, ({},))
 
 
 def _direction(chain: Chain) -> Hypothesis:
     skew = Unknown("skew of the friction", "", -_ONE_SIDED, _ONE_SIDED, 0.1)
 
-    def said(values: Values) -> str:
+    def details(values: Values) -> Details:
         mean, more = _value(chain.friction, values), values[skew.name]
-        up, down = (format_quantity(size, "N", 3) for size in (mean * (1.0 + more), mean * (1.0 - more)))
-        return f"friction is {up} in one direction and {down} in the other"
+        return {"up": mean * (1.0 + more), "down": mean * (1.0 - more)}
 
-    return _changed(chain, "asymmetric friction", {"skew": skew}, said, ({},))
+    return _changed(chain, Suspect.ASYMMETRIC, {"skew": skew}, details, ({},))
 
 
 def _changed(
     chain: Chain,
-    name: str,
+    name: Suspect,
     unknowns: dict[str, Unknown],
-    said: Callable[[Values], str],
+    details: Callable[[Values], Details],
     starts: tuple[Values, ...],
 ) -> Hypothesis:
     """A hypothesis that changes some of the numbers of a chain."""
@@ -143,7 +133,7 @@ def _changed(
         other = replace(plain, **{what: values[unknown.name] for what, unknown in unknowns.items()})
         return np.asarray(force + through_cell(stepped(other, e, force.size) - stepped(plain, e, force.size), e))
 
-    return Hypothesis(name, tuple(unknowns.values()), read=read, said=said, starts=starts, remedy=_LAW)
+    return Hypothesis(name, tuple(unknowns.values()), read=read, details=details, starts=starts)
 
 
 def _numbers(chain: Chain, values: Values) -> Chained:

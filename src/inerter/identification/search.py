@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import qmc
 
+from inerter.identification.options import POINTS
 from inerter.identification.problem import Problem
 
 Matrix = NDArray[np.float64]
-POINTS = 128
 Stages = tuple[tuple[float, int, int], ...]  # horizon, candidates, and evaluations of each
 QUICK: Stages = ((1 / 16, 12, 6), (1 / 8, 8, 6), (1 / 4, 5, 6), (1 / 2, 3, 6), (1.0, 2, 12))
 THOROUGH: Stages = ((1 / 16, 24, 10), (1 / 8, 12, 8), (1 / 4, 6, 8), (1 / 2, 4, 8), (1.0, 2, 12))

@@ -17,11 +17,13 @@ from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.intervals import Optimum, Profile, optimum_of, profiles, robust_cost, steps_of
 from inerter.identification.judging import Judge, check_parts, judge_of
 from inerter.identification.noise import plain, whitening_of, yardstick
+from inerter.identification.options import FitOptions
 from inerter.identification.problem import Problem
 from inerter.identification.redrawing import redrawn
 from inerter.identification.search import QUICK, THOROUGH, search, soft, wander
 from inerter.identification.sensors import sound, unavoidable
 from inerter.identification.space import space_of
+from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
 
@@ -34,20 +36,6 @@ _FAIR = 1.5  # between them: over what the errors of the sensors leave
 _SAME = 1e-3  # relative difference of what two searches leave that have come to the same
 
 
-@dataclass(frozen=True)
-class Request:
-    """How records are to be fitted, in the words of `identify`."""
-
-    offset: bool
-    gain: bool
-    delay: bool | float | None
-    check: float
-    bandwidth: float | None
-    lead: float | None
-    starts: int
-    seed: int
-
-
 @dataclass(frozen=True, eq=False)
 class Solution:
     """The best fit of a model, what is known about it, and the judge of what it leaves."""
@@ -58,7 +46,7 @@ class Solution:
     checked: tuple[NDArray[np.bool_], ...]  # samples of each record that were kept for the check
     leads: tuple[float, ...]
     costs: tuple[float, ...]
-    notes: tuple[str, ...]
+    findings: tuple[Finding, ...]
     predicted: float
     judge: Judge
     misfit: Misfit
@@ -66,18 +54,18 @@ class Solution:
 
 
 def solve(
-    records: Sequence[Record], rig: Rig, assumed: tuple[Hypothesis, ...], asked: Request, progress: Progress | None
+    records: Sequence[Record], rig: Rig, assumed: tuple[Hypothesis, ...], asked: FitOptions, progress: Progress | None
 ) -> Solution:
     """The best fit of a rig's free values to records.
 
     Raises `IdentificationError` and `RecordError` for records that cannot be used, or that no best fit can follow.
     """
     chain = chain_of(rig.device)
-    whole, notes = [], []
+    whole, findings = [], []
     for record in records:
-        turned, said = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead))
+        turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead))
         whole.append(turned)
-        notes += said
+        findings += found_of_sign
     problem = Problem(rig, space_of(rig, assumed), _for_fit(whole, asked.check), [], asked.offset, assumed)
     problem.whitenings = [
         plain(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
@@ -97,7 +85,7 @@ def solve(
     if progress is not None:
         progress(1.0)
     return Solution(
-        problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(notes),
+        problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(findings),
         anew.predicted, judge, judge.misfit(problem, optimum.point), asked.seed,
     )  # fmt: skip
 
@@ -197,11 +185,11 @@ def _straightened(
 ) -> tuple[Optimum, list[Profile]]:
     """The best fit and its profiles without what the sensors' errors did to them.
 
-    Where a record tells a value on one side only, or not at all, the curvature says nothing of how far that is.
+    Where a record bounds a value on one side only, or not at all, the curvature says nothing of how far that is.
     """
     lower, upper = problem.space.bounds
-    told_on_both_sides = np.array([p.lower.told and p.upper.told for p in found])
-    point = np.clip(optimum.point - np.where(told_on_both_sides, lean, 0.0), lower, upper)
+    on_both_sides = np.array([p.lower.known and p.upper.known for p in found])
+    point = np.clip(optimum.point - np.where(on_both_sides, lean, 0.0), lower, upper)
     if robust_cost(problem.residual(point)) > optimum.cost + 2.0 * float(np.max(optimum.threshold)):
         return optimum, list(found)
     by = point - optimum.point

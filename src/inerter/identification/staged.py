@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from inerter.checks import check_positive
 from inerter.errors import IdentificationError, Status
 from inerter.identification.experiment import saturated
-from inerter.identification.fit import Fit, Parameter, Told
+from inerter.identification.fit import Fit, Parameter
 from inerter.identification.friction_law import FrictionLaw, friction_law
+from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.identify import identify
 from inerter.identification.models import MODELS
+from inerter.identification.options import POINTS
 from inerter.identification.response import linear_response, model_response
-from inerter.identification.search import POINTS
 from inerter.networks.elements import Element, Free, Network, free
 from inerter.networks.elements.roles import Linear
 from inerter.networks.transform import map_elements, with_values
@@ -59,7 +60,13 @@ class Band:
     phase: float  # [rad] model less measurement
     scatter: float  # half the width of the measurement's 95 % band, as a part of the gain
     agrees: bool
-    verdict: str
+
+    @property
+    def verdict(self) -> str:
+        """For a reader."""
+        how = "agrees" if self.agrees else "differs"
+        sizes = f"gain is {100.0 * self.gain:+.1f} %, its phase {math.degrees(self.phase):+.1f} degrees off"
+        return f"{self.lower:.3g} to {self.upper:.3g} Hz: {how}; the model's {sizes}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +85,7 @@ class Staged:
     """The result of `staged`."""
 
     parameters: dict[str, Parameter]
-    identifiable: dict[str, Told]
+    identifiable: dict[str, Identifiability]
     device: Network  # with the best values
     friction: FrictionTest
     fit: Fit  # of the second stage, in which the friction could move within its interval
@@ -164,10 +171,11 @@ def _with(device: Network, label: str, value: float | Free) -> Network:
     return map_elements(device, change)
 
 
-def _friction(law: FrictionLaw) -> tuple[Parameter, Told]:
+def _friction(law: FrictionLaw) -> tuple[Parameter, Identifiability]:
     error = 0.5 * (law.interval[1] - law.interval[0]) / 1.96
     interval = (max(law.interval[0], 0.0), law.interval[1])
-    return Parameter(_FRICTION, "N", law.level, interval, law.level, error), Told(True, f"{_FRICTION}: told.")
+    verdict = Identifiability(_FRICTION, Verdict.IDENTIFIED, "N", interval, role=Linear.OPEN)
+    return Parameter(_FRICTION, "N", law.level, interval, law.level, error), verdict
 
 
 def _friction_test(device: Network, record: Record, law: FrictionLaw, shaft_inertance: float | None) -> FrictionTest:
@@ -214,9 +222,7 @@ def _bands(measured: Response, model: Response) -> list[Band]:
         gain, phase, wide = abs(middle) - 1.0, math.atan2(middle.imag, middle.real), float(np.median(scatter[here]))
         agrees = abs(middle - 1.0) <= wide or (abs(gain) <= _CLOSE[0] and abs(phase) <= _CLOSE[1])
         low, high = float(frequency[here].min()), float(frequency[here].max())
-        sizes = f"the model's gain is {100.0 * gain:+.1f} %, its phase {math.degrees(phase):+.1f} degrees off"
-        said = f"{low:.3g} to {high:.3g} Hz: {'agrees' if agrees else 'differs'}; {sizes}."
-        result.append(Band(low, high, int(here.sum()), gain, phase, wide, agrees, said))
+        result.append(Band(low, high, int(here.sum()), gain, phase, wide, agrees))
     return result
 
 
@@ -248,10 +254,10 @@ def _notes(
             f"model's response has in it: move less."
         )
     if response is not None:
-        told = [b for b in response.bands if not b.agrees]
+        differ = [b for b in response.bands if not b.agrees]
         notes.append(
             f"The check agrees in all of {len(response.bands)} octaves."
-            if response.bands and not told
-            else f"The check differs in {len(told)} of {len(response.bands)} octaves."
+            if response.bands and not differ
+            else f"The check differs in {len(differ)} of {len(response.bands)} octaves."
         )
     return notes

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from inerter.errors import RecordError
 from inerter.records.channels import Channel, Contents
+from inerter.records.remedy import Action, Remedy
 from inerter.records.scales import fits
 
 ROLES = ("time", "displacement", "force", "velocity", "acceleration")
@@ -38,7 +39,8 @@ def choose(source: str, contents: Contents, asked: dict[str, str | int | None], 
         elif role in ("displacement", "force"):
             raise RecordError(
                 f"{source}: no channel has an obvious name for the {role} (such as {', '.join(OBVIOUS[role][:3])}); "
-                f"there {listed(contents.channels)}. Name it: {role}={example(contents.channels, role)}."
+                f"there {listed(contents.channels)}. Name it: ",
+                *(example(contents.channels, role), "."),
             )
     _distinct(source, chosen)
     return chosen
@@ -53,8 +55,8 @@ def named(source: str, channels: Sequence[Channel], role: str, given: str | int)
         if 0 <= given < len(channels):
             return channels[given]
         raise RecordError(
-            f"{source}: {role}={given} is not among its {len(channels)} channels, which are counted from 0; "
-            f"there {listed(channels)}."
+            *(f"{source}: ", Remedy(Action.CHANNEL, (role, given))),
+            f" is not among its {len(channels)} channels, which are counted from 0; there {listed(channels)}.",
         )
     if not isinstance(given, str):
         raise RecordError(f"{role} must be the name or the number of a channel, got {given!r}.")
@@ -90,8 +92,9 @@ def _unclear(source: str, channels: Sequence[Channel], role: str, matches: Seque
     numbers = [channels.index(channel) for channel in matches]
     names = " and ".join(f"{channel.name!r} (number {at})" for channel, at in zip(matches, numbers, strict=True))
     alike = len({channel.name for channel in matches}) < len(matches)
-    way = f"by number: {role}={numbers[0]}" if alike else f"by name: {role}={matches[0].name!r}"
-    return RecordError(f"{source}: {names} may all be the {role}. Say which, {way}.")
+    way, which = ("number", numbers[0]) if alike else ("name", matches[0].name)
+    remedy = Remedy(Action.CHANNEL, (role, which))
+    return RecordError(f"{source}: {names} may all be the {role}. Say which, by {way}: ", remedy, ".")
 
 
 def _distinct(source: str, chosen: dict[str, Channel]) -> None:
@@ -111,10 +114,10 @@ def _nearest(given: str, channels: Sequence[Channel]) -> str | None:
     return by_key[close[0]] if close else None
 
 
-def example(channels: Sequence[Channel], role: str) -> str:
-    """What to give for a role in a message: the first channel whose unit is one of it."""
-    likely = [channel.name for channel in channels if fits(role, channel.unit)]
-    return repr(likely[0]) if likely else "'name'"
+def example(channels: Sequence[Channel], role: str) -> Remedy:
+    """What to name for a role: the first channel whose unit is one of it."""
+    likely = (channel.name for channel in channels if fits(role, channel.unit))
+    return Remedy(Action.CHANNEL, (role, next(likely, "name")))
 
 
 def _full(channel: Channel) -> str:

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from scipy.signal import welch
 
 from inerter.records import signs
-from inerter.records.finding import Finding
+from inerter.records.finding import Finding, Severity
 from inerter.records.gaps import runs
+from inerter.records.kinds import COARSE, LARGE, RecordFinding
 from inerter.records.lost import losses
-from inerter.records.record import CHANNELS, UNIFORM, Record
+from inerter.records.record import UNIFORM, Record
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 
 Vector = NDArray[np.float64]
@@ -38,51 +39,40 @@ def findings(record: Record) -> list[Finding]:
 
 
 def _of_motion(record: Record, motion: Motion) -> list[Finding]:
-    noise = {"bandwidth": motion.bandwidth, "highest": motion.highest, "noise": motion.noise}
+    names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [
         *_swapped(record),
         *_hum(record, motion),
         *signs.sign(record, motion),
         *signs.delay(record, motion),
-        Finding("bandwidth", "info", motion.sentence, noise),
+        Finding(RecordFinding.BANDWIDTH, "info", numbers={name: getattr(motion, name) for name in names}),
     ]
 
 
 def _count(record: Record) -> list[Finding]:
     if record.time.size >= FEW:
         return []
-    said = f"There are only {record.time.size} samples; a fit needs hundreds, over several periods of the motion."
-    return [Finding("few-samples", "warning", said, {"samples": float(record.time.size)})]
+    return [Finding(RecordFinding.FEW_SAMPLES, "warning", numbers={"samples": float(record.time.size)})]
 
 
 def _sampling(record: Record) -> list[Finding]:
     steps = np.diff(record.time)
     usual = float(np.median(steps))
     numbers = {"interval": usual, "samples": float(record.time.size), "duration": record.duration}
-    said = f"{record.time.size} samples over {record.duration:.6g} s, every {usual:.6g} s ({1.0 / usual:.6g} Hz)"
     if record.uniform:
-        return [Finding("sampling", "info", f"{said}, evenly spaced.", numbers)]
+        return [Finding(RecordFinding.SAMPLING, "info", numbers={**numbers, "even": True})]
     gaps = steps > 1.5 * usual
     result = []
     if gaps.any():
         lost = int(np.sum(np.round(steps[gaps] / usual) - 1))
         numbers |= {"gaps": float(gaps.sum()), "lost": float(lost), "longest": float(steps.max())}
-        at = float(record.time[int(np.argmax(gaps))])
-        said_of_gaps = (
-            f"{said}, with {int(gaps.sum())} gaps of up to {steps.max():.4g} s, the first at {at:.6g} s: about {lost} "
-            f"samples are lost. Use fill_gaps(record, longest) for short ones, trim for long ones."
-        )
-        result.append(Finding("gaps", "warning", said_of_gaps, dict(numbers)))
+        first = {"first": float(record.time[int(np.argmax(gaps))])}
+        result.append(Finding(RecordFinding.GAPS, "warning", numbers={**numbers, **first}))
     jitter = float(np.std(steps[~gaps])) / usual
     if jitter > UNIFORM:
-        step = resolution(record.time)
-        rounded = f" The times are written in steps of {step:.3g} s." if step > 0.0 else ""
-        said_of_jitter = (
-            f"{said}, but unevenly: the intervals scatter by {100.0 * jitter:.3g} %.{rounded} If the clock was even, "
-            f"read the file with interval={usual:.6g}; else use resample(record)."
-        )
-        result.append(Finding("jitter", "warning", said_of_jitter, {**numbers, "jitter": jitter}))
-    return result or [Finding("sampling", "info", f"{said}, not quite evenly spaced.", numbers)]
+        scatter = {"jitter": jitter, "step": resolution(record.time)}
+        result.append(Finding(RecordFinding.JITTER, "warning", numbers={**numbers, **scatter}))
+    return result or [Finding(RecordFinding.SAMPLING, "info", numbers={**numbers, "even": False})]
 
 
 def _lost(record: Record) -> list[Finding]:
@@ -90,20 +80,17 @@ def _lost(record: Record) -> list[Finding]:
     if not lost:
         return []
     count, at = sum(loss.count for loss in lost), float(record.time[lost[0].after])
-    said = (
-        f"The displacement leaps along itself at {len(lost)} places, the first at {at:.4g} s: about {count} samples "
-        f"are lost while the clock goes on. Read the file with gaps='fill', which puts them in."
-    )
-    return [Finding("lost-samples", "warning", said, {"places": float(len(lost)), "samples": float(count)})]
+    numbers = {"places": float(len(lost)), "samples": float(count), "first": at}
+    return [Finding(RecordFinding.LOST_SAMPLES, "warning", "displacement", numbers)]
 
 
 def _filled(record: Record) -> list[Finding]:
     result = []
     for role, (count, longest) in record.meta.get("filled", {}).items():
-        said = f"Samples of the {role} that were missing and interpolated: {count}, up to {longest} in a row."
-        result.append(Finding("filled", "warning", said, {"samples": float(count), "longest": float(longest)}))
+        numbers = {"samples": float(count), "longest": float(longest)}
+        result.append(Finding(RecordFinding.FILLED, "warning", role, numbers))
     if record.meta.get("cut"):
-        result.append(Finding("cut", "warning", "The file was cut short; its last samples are missing."))
+        result.append(Finding(RecordFinding.CUT, "warning"))
     return result
 
 
@@ -112,11 +99,7 @@ def _constant(record: Record) -> list[Finding]:
     for role in ("displacement", "force"):
         values = getattr(record, role)
         if np.ptp(values) <= 1e-12 * np.max(np.abs(values)):
-            said = (
-                f"The {role} is constant, {values[0]:.6g} {CHANNELS[role]}, so nothing can be fitted. Was the sensor "
-                f"connected, and is it the right channel?"
-            )
-            result.append(Finding("constant", "error", said, {"value": float(values[0])}))
+            result.append(Finding(RecordFinding.CONSTANT, "error", role, {"value": float(values[0])}))
     return result
 
 
@@ -125,8 +108,7 @@ def _sizes(record: Record) -> list[Finding]:
     for role, most in PLAUSIBLE.items():
         size = 0.5 * float(np.ptp(getattr(record, role)))
         if size > most:
-            said = f"The {role} has an amplitude of {size:.4g} {CHANNELS[role]}, hard to believe. Is its unit right?"
-            result.append(Finding("implausible", "warning", said, {"amplitude": size}))
+            result.append(Finding(RecordFinding.IMPLAUSIBLE, "warning", role, {"amplitude": size}))
     return result
 
 
@@ -138,10 +120,7 @@ def _saturation(record: Record) -> list[Finding]:
         at = np.abs(force) >= limit - max(0.5 * step, 1e-6 * limit)
         share = float(np.mean(at))
         if share > 0.0:
-            said = (
-                f"The load cell is at its limit of {limit:.6g} N for {100.0 * share:.2g} % of the samples: {_LIMITED}"
-            )
-            return [Finding("saturation", "warning", said, {"share": share, "limit": limit})]
+            return [Finding(RecordFinding.SATURATION, "warning", "force", {"share": share, "limit": limit})]
         return []
     flat = []
     for value in (float(np.max(force)), float(np.min(force))):
@@ -151,12 +130,9 @@ def _saturation(record: Record) -> list[Finding]:
             flat.append((value, longest, float(np.mean(near))))
     if not flat:
         return []
-    where = " and ".join(f"{value:.6g} N for {longest} samples" for value, longest, _ in flat)
-    numbers = {"share": sum(share for *_, share in flat), "limit": max(abs(value) for value, *_ in flat)}
-    return [Finding("saturation", "warning", f"The force stays at an extreme of {where} in a row: {_LIMITED}", numbers)]
-
-
-_LIMITED = "it looks cut off there, and what lies above is lost. Reduce the motion, or trim those stretches away."
+    size = {"share": sum(share for *_, share in flat), "limit": max(abs(value) for value, *_ in flat)}
+    extremes = [(value, longest) for value, longest, _ in flat]
+    return [Finding(RecordFinding.SATURATION, "warning", "force", {**size, "extremes": extremes})]
 
 
 def _expected_at_turn(force: Vector, extreme: float, step: float) -> float:
@@ -176,11 +152,9 @@ def _steps(record: Record) -> list[Finding]:
         if step == 0.0:
             continue
         levels = float(np.ptp(values)) / step
-        said = f"The {role} is read in steps of {step:.3g} {CHANNELS[role]}, {levels:.0f} of them over its range."
-        coarse = levels < 20.0
-        said += " That is coarse: use more of the sensor's range." if coarse else ""
-        numbers = {"step": step, "levels": levels}
-        result.append(Finding(f"{role}-steps", "warning" if coarse else "info", said, numbers))
+        kind = RecordFinding(f"{role}-steps")
+        severity: Severity = "warning" if levels < COARSE else "info"
+        result.append(Finding(kind, severity, role, {"step": step, "levels": levels}))
     return result
 
 
@@ -189,13 +163,9 @@ def _offsets(record: Record) -> list[Finding]:
     for role in ("displacement", "force"):
         values = getattr(record, role)
         offset, size = float(np.mean(values)), 0.5 * float(np.ptp(values))
-        large = abs(offset) > 0.5 * size
-        said = (
-            f"The {role} has a mean of {offset:.4g} {CHANNELS[role]}, with an amplitude of {size:.4g} {CHANNELS[role]}."
-        )
-        said += " If it should be zero at rest, use remove_offset(record)." if large else ""
+        severity: Severity = "warning" if abs(offset) > LARGE * size else "info"
         numbers = {"mean": offset, "amplitude": size}
-        result.append(Finding(f"{role}-offset", "warning" if large else "info", said, numbers))
+        result.append(Finding(RecordFinding(f"{role}-offset"), severity, role, numbers))
     return result
 
 
@@ -212,11 +182,8 @@ def _drift(record: Record) -> list[Finding]:
         changes = float(np.median(last) - np.median(first)), float(_middle(last) - _middle(first))
         change, size = min(changes, key=abs), float(np.ptp(values))
         if changes[0] * changes[1] > 0.0 and abs(change) > 0.1 * size:
-            said = (
-                f"The {role} drifts by {change:.4g} {CHANNELS[role]} from the first quarter to the last, "
-                f"{100.0 * abs(change) / size:.0f} % of its range. Use detrend(record)."
-            )
-            result.append(Finding(f"{role}-drift", "warning", said, {"change": change}))
+            numbers = {"change": change, "range": size}
+            result.append(Finding(RecordFinding(f"{role}-drift"), "warning", role, numbers))
     return result
 
 
@@ -229,11 +196,7 @@ def _swapped(record: Record) -> list[Finding]:
     rough = {role: _roughness(getattr(record, role)) for role in ("displacement", "force")}
     if rough["displacement"] < 10.0 * rough["force"] or rough["displacement"] < 1e-3:
         return []
-    said = (
-        f"The displacement is {rough['displacement'] / max(rough['force'], 1e-12):.3g} times as rough as the force "
-        f"from sample to sample, where motion is the smoother one. Are the two columns swapped?"
-    )
-    return [Finding("swapped", "warning", said, rough)]
+    return [Finding(RecordFinding.SWAPPED, "warning", numbers=rough)]
 
 
 def _roughness(values: Vector) -> float:
@@ -263,8 +226,6 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
         amplitude = math.sqrt(2.0 * float(np.sum(density[line])) * float(frequency[1]))
         stands_out = float(np.max(density[line])) > 4.0 * float(np.max(density[beside]))
         if stands_out and amplitude > 1e-3 * float(np.std(record.force)):
-            said = (
-                f"The force holds hum of the mains: {amplitude:.3g} N at {mains:g} Hz. Check the grounding of the cell."
-            )
-            return [Finding("hum", "warning", said, {"frequency": mains, "amplitude": amplitude})]
+            numbers = {"frequency": mains, "amplitude": amplitude}
+            return [Finding(RecordFinding.HUM, "warning", "force", numbers)]
     return []

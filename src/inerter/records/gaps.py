@@ -10,6 +10,7 @@ from scipy.ndimage import binary_dilation, find_objects, label
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.channels import Samples
+from inerter.records.remedy import Action, Remedy
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -34,7 +35,9 @@ def mend(
     if "time" in bad:
         raise RecordError(
             f"{source}: {int(bad['time'].sum())} times are missing or no finite numbers, the first at sample "
-            f"{int(np.argmax(bad['time']))}. Remove those rows, or give interval= instead of the times."
+            f"{int(np.argmax(bad['time']))}. Remove those rows, or give ",
+            Remedy(Action.INTERVAL),
+            " instead of the times.",
         )
     if gaps == "refuse":
         raise _refusal(source, bad)
@@ -139,8 +142,10 @@ def _refusal(source: str, bad: dict[str, Mask]) -> RecordError:
     longest = max(stop - start for start, stop in found)
     return RecordError(
         f"{source}: the {role} has {int(mask.sum())} samples that are missing or no finite numbers, in {len(found)} "
-        f"runs of up to {longest}, the first at sample {found[0][0]}. Read it with gaps='fill' (short ones are "
-        f"interpolated), gaps=0.05 (those up to 0.05 s) or gaps='longest' (the longest stretch without any is kept)."
+        f"runs of up to {longest}, the first at sample {found[0][0]}. Read it with ",
+        *(Remedy(Action.GAPS, "fill"), " (short ones are interpolated), "),
+        *(Remedy(Action.GAPS, 0.05), " (those up to 0.05 s) or "),
+        *(Remedy(Action.GAPS, "longest"), " (the longest stretch without any is kept)."),
     )
 
 
@@ -176,7 +181,8 @@ def _filled(
         if time[stop] - time[start] > limit:
             raise RecordError(
                 f"{source}: the {role} misses {stop - start} samples in a row from {time[start]:g} s on, too many to "
-                f"fill ({limit:g} s at most). Use gaps='longest', or a number of s if you trust an interpolation."
+                f"fill ({limit:g} s at most). Use ",
+                *(Remedy(Action.GAPS, "longest"), ", or a number of s if you trust an interpolation."),
             )
         cut[role] = fill(time, cut[role], mask[first:last])
         count, longest = int(mask[first:last].sum()), max(b - a for a, b in found)

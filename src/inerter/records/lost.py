@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from inerter.errors import RecordError
 from inerter.records.gaps import LONGEST, fill
 from inerter.records.record import Record
+from inerter.records.remedy import Action, Remedy
 from inerter.records.smoothing import resolution
 
 Vector = NDArray[np.float64]
@@ -109,7 +110,8 @@ def mended(record: Record, gaps: str | float) -> Record:
     if most.count > limit:
         raise RecordError(
             f"{record.source}: {most.count} samples are lost at {record.time[most.after]:g} s while the clock goes on, "
-            f"too many to put in ({limit} at most). Use gaps='longest', or a number of s if you trust an interpolation."
+            f"too many to put in ({limit} at most). Use ",
+            *(Remedy(Action.GAPS, "longest"), ", or a number of s if you trust an interpolation."),
         )
     return restored(record, lost)[0]
 

@@ -19,6 +19,7 @@ from inerter.records.choosing import choose, example
 from inerter.records.gaps import alike, mend, onto_force
 from inerter.records.lost import mended
 from inerter.records.record import Record
+from inerter.records.remedy import Action, Remedy
 from inerter.records.scales import check_units, fits, scale
 
 Vector = NDArray[np.float64]
@@ -201,8 +202,8 @@ def _timed(
     timed = "time" not in channels and interval is None
     if timed and any(time is None for time in rasters.values()):
         raise RecordError(
-            f"{source}: no channel has an obvious name for the time, and no other gives the sampling. Name it, such as "
-            f"time={example(contents.channels, 'time')}, or give interval=1e-3 in s."
+            f"{source}: no channel has an obvious name for the time, and no other gives the sampling. Name it, such ",
+            *("as ", example(contents.channels, "time"), ", or give ", Remedy(Action.INTERVAL, 1e-3), "."),
         )
     if timed and not alike([time for time in rasters.values() if time is not None]):
         return onto_force(source, channels)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import RecordError
+from inerter.records.remedy import Action, Remedy
 
 Matrix = NDArray[np.float64]
 CHANNELS = {"time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2"}
@@ -61,7 +62,8 @@ class Record:
             if bad.size:
                 raise RecordError(
                     f"The {name} of {self.source!r} has {bad.size} samples that are no finite numbers, the first at "
-                    f"sample {bad[0]}. Trim them away, or read the file with gaps='fill'."
+                    f"sample {bad[0]}. Trim them away, or read the file with ",
+                    *(Remedy(Action.GAPS, "fill"), "."),
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
@@ -71,7 +73,8 @@ class Record:
             at = int(np.argmax(np.diff(self.time) <= 0.0)) + 1
             raise RecordError(
                 f"The times of {self.source!r} must increase, but do not at sample {at} (t = {self.time[at]:g} s). "
-                f"Where a file rounds or repeats its times, read it with interval= instead."
+                f"Where a file rounds or repeats its times, read it with ",
+                *(Remedy(Action.INTERVAL), " instead."),
             )
         for name in ("force_range", "force_bandwidth", "force_noise", "displacement_noise", "fixture_mass", "period"):
             value = getattr(self, name)

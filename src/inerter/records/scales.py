@@ -7,6 +7,7 @@ import re
 from inerter.errors import RecordError, UnitError
 from inerter.records.channels import Channel
 from inerter.records.record import CHANNELS
+from inerter.records.remedy import Action, Remedy, Text
 from inerter.units import parse_quantity
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
@@ -35,15 +36,15 @@ def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[
         raise RecordError(f"The unit of the {role} must be a text such as {_first(role)!r}, got {unit!r}.")
     if not unit.strip():
         raise RecordError(
-            f"{source}: {channel.name!r} has no unit. Name the unit of the {role}, such as "
-            f"units={{{role!r}: {_first(role)!r}}}."
+            f"{source}: {channel.name!r} has no unit. Name the unit of the {role}, such as ",
+            *(Remedy(Action.UNIT, (role, _first(role))), "."),
         )
     plain = unit.strip()
     if role == "force" and given is not None:
         plain = _WEIGHTS.get(plain, plain)
     value = _value(role, plain)
     if value is None:
-        raise RecordError(f"{source}: {_problem(role, channel, unit, given)}")
+        raise RecordError(f"{source}: ", *_problem(role, channel, unit, given))
     return value, unit, _note(role, channel, unit, given, value)
 
 
@@ -86,18 +87,21 @@ def _value(role: str, unit: str) -> float | None:
     return None
 
 
-def _problem(role: str, channel: Channel, unit: str, given: str | None) -> str:
+def _problem(role: str, channel: Channel, unit: str, given: str | None) -> Text:
     whose = f"the unit {unit!r} of {channel.name!r}" if given is None else f"the unit {unit!r} that was named"
     if role == "force" and unit.strip().lower() in _WEIGHTS:
         force = _WEIGHTS[unit.strip().lower()]
         return (
-            f"{whose} is a mass, not a force. If the load cell shows the weight of that mass, say so with "
-            f"units={{'force': {force!r}}} (1 {force} = {parse_quantity('1 ' + force, 'N'):.6g} N)."
+            f"{whose} is a mass, not a force. If the load cell shows the weight of that mass, say so with ",
+            Remedy(Action.UNIT, (role, force)),
+            f" (1 {force} = {parse_quantity('1 ' + force, 'N'):.6g} N).",
         )
     return (
-        f"{whose} is not known as a unit of {role}, which is one such as {_EXAMPLES[role]}. Name the unit, "
-        f"units={{{role!r}: {_first(role)!r}}}, or what one count or volt of the file is worth, "
-        f"units={{{role!r}: '250 {CHANNELS[role]}'}}."
+        f"{whose} is not known as a unit of {role}, which is one such as {_EXAMPLES[role]}. Name the unit, ",
+        Remedy(Action.UNIT, (role, _first(role))),
+        ", or what one count or volt of the file is worth, ",
+        Remedy(Action.UNIT, (role, f"250 {CHANNELS[role]}")),
+        ".",
     )
 
 

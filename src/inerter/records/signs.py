@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from inerter.records.accelerance import Lines, force_over_acceleration, lines
 from inerter.records.finding import Finding
+from inerter.records.kinds import CLEAR, SEEN, RecordFinding
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, smooth_displacement
 
 Vector = NDArray[np.float64]
-CLEAR = 0.3  # least correlation that says anything
 STIFF = 0.3  # of the mass: more than that is elasticity near its resonance
 WIDE = 3.0  # highest over lowest frequency of an excitation that can tell a delay from a damper
 
@@ -28,30 +28,10 @@ def sign(record: Record, motion: Motion) -> list[Finding]:
     inertia = _correlation(force, motion.acceleration if record.acceleration is None else record.acceleration)
     loss = _correlation(force, motion.velocity if record.velocity is None else record.velocity)
     numbers = {"with_acceleration": inertia, "with_velocity": loss}
-    said = f"correlation {inertia:+.2f} with the acceleration, {loss:+.2f} with the velocity"
-    if max(abs(inertia), abs(loss)) < CLEAR:
-        return [Finding("sign", "info", f"The force follows neither motion nor its rates clearly ({said}).", numbers)]
-    reversed_ = (inertia < -CLEAR and loss < 0.05) or (loss < -CLEAR and inertia < CLEAR)
-    if reversed_:
-        return [
-            Finding(
-                "force-reversed",
-                "warning",
-                f"The force is reversed: it goes against the motion, and the device gives out work ({said}). Force is "
-                f"positive in tension, displacement when the device grows longer. Use reverse_force(record).",
-                numbers,
-            )
-        ]
-    if inertia < -CLEAR:
-        return [
-            Finding(
-                "sign",
-                "info",
-                f"The force goes against the acceleration but takes in work ({said}), as that of a spring does.",
-                numbers,
-            )
-        ]
-    return [Finding("sign", "info", f"The force has the sign of inertia and losses ({said}).", numbers)]
+    clear = max(abs(inertia), abs(loss)) >= CLEAR
+    if clear and ((inertia < -CLEAR and loss < 0.05) or (loss < -CLEAR and inertia < CLEAR)):
+        return [Finding(RecordFinding.FORCE_REVERSED, "warning", "force", numbers)]
+    return [Finding(RecordFinding.SIGN, "info", "force", numbers)]
 
 
 def delay(record: Record, motion: Motion) -> list[Finding]:
@@ -65,16 +45,12 @@ def delay(record: Record, motion: Motion) -> list[Finding]:
     if record.acceleration is not None:
         found = lines(motion.acceleration, record.acceleration, record.interval, highest=motion.highest)
         if not found.omega.size:
-            return [_unknown("the measured acceleration does not follow that of the displacement")]
-        late, error = _late(found, (1,))
-        what = "The measured acceleration is {late} than the displacement, so presumably is the force"
-        return [_reported(record, late, error, what)]
+            return [_unknown("acceleration")]
+        return [_reported(record, *_late(found, (1,)), "acceleration")]
     found = _inertial(force_over_acceleration(record, motion))
     if found.omega.size < 6 or found.spread < WIDE:
-        return [_unknown("it is not excited over a wide enough band below the resonance of the device")]
-    late, error = _cautious(found)
-    what = "The force is {late} than the displacement, if the device is inertia, losses and elasticity below resonance"
-    return [_reported(record, late, error, what)]
+        return [_unknown("force")]
+    return [_reported(record, *_cautious(found), "force")]
 
 
 def estimate_delay(record: Record) -> tuple[float, float]:
@@ -118,22 +94,14 @@ def _late(found: Lines, powers: tuple[int, ...]) -> tuple[float, float]:
     return -float(solution[0]) / (mass * scale), float(np.sqrt(covariance[0, 0])) / abs(mass * scale)
 
 
-def _reported(record: Record, late: float, error: float, what: str) -> Finding:
+def _reported(record: Record, late: float, error: float, by: str) -> Finding:
+    unseen = abs(late) < SEEN * error or abs(late) < 0.05 * record.interval
     numbers = {"delay": late, "standard_error": error}
-    said = what.format(late=f"{1e3 * abs(late):.3g} ms {'later' if late >= 0.0 else 'earlier'}")
-    margin = f"(standard error {1e3 * error:.2g} ms)"
-    if abs(late) < 3.0 * error or abs(late) < 0.05 * record.interval:
-        return Finding("delay", "info", f"No delay between force and motion is seen {margin}.", numbers)
-    return Finding("delay", "warning", f"{said} {margin}. shift_force(record, {late:.3g}) removes it.", numbers)
+    return Finding(RecordFinding.DELAY, "info" if unseen else "warning", by, numbers)
 
 
-def _unknown(why: str) -> Finding:
-    return Finding(
-        "delay",
-        "info",
-        f"A delay between force and displacement cannot be told from this record alone: {why}. Record a sweep or "
-        f"multisine, or an acceleration, or leave the delay free when the model is fitted.",
-    )
+def _unknown(by: str) -> Finding:
+    return Finding(RecordFinding.DELAY, "info", by)
 
 
 def _correlation(a: Vector, b: Vector) -> float:

@@ -20,6 +20,7 @@ from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.filtering import HIGHEST, gain, low_pass
 from inerter.records.record import Record
+from inerter.records.remedy import Action, Remedy
 
 Vector = NDArray[np.float64]
 MARGIN = 4.0  # the bandwidth over the highest frequency in the displacement
@@ -48,7 +49,7 @@ class Motion:
     noise: float  # [m] r.m.s. of the noise in the displacement as measured
     velocity_noise: float  # [m/s] r.m.s. of what is left of it in the velocity
     acceleration_noise: float  # [m/s^2] and in the acceleration
-    sentence: str = ""
+    asked: bool = False  # whether the bandwidth was given
 
     @cached_property
     def acceleration(self) -> Vector:
@@ -73,7 +74,8 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
     """
     if not record.uniform:
         raise RecordError(
-            f"The samples of {record.source!r} are not evenly spaced, which a filter needs. Use resample(record) first."
+            f"The samples of {record.source!r} are not evenly spaced, which a filter needs. Use ",
+            *(Remedy(Action.RESAMPLE), " first."),
         )
     if bandwidth is not None and (not is_number(bandwidth) or bandwidth <= 0.0):
         raise RecordError(f"A bandwidth must be a positive number of Hz, got {bandwidth!r}.")
@@ -95,7 +97,7 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
         noise=noise.rms,
         velocity_noise=noises[0],
         acceleration_noise=noises[1],
-        sentence=_sentence(chosen, bandwidth is not None, noise.highest, attenuation, noises),
+        asked=bandwidth is not None,
     )
 
 
@@ -215,11 +217,3 @@ def _noises(floor: float, interval: float, bandwidth: float) -> tuple[float, flo
     squares = (trapezoid((passed * slope**n) ** 2, frequency) for n in (1, 2))
     velocity, acceleration = (float(np.sqrt(square)) for square in squares)
     return velocity, acceleration
-
-
-def _sentence(bandwidth: float, asked: bool, highest: float, attenuation: float, noises: tuple[float, float]) -> str:
-    why = "as asked" if asked else f"the displacement stands out of its noise up to {highest:.3g} Hz"
-    return (
-        f"Smoothed to {bandwidth:.4g} Hz ({why}), which takes {100.0 * attenuation:.2g} % at {highest:.3g} Hz and "
-        f"leaves noise of {noises[0]:.2g} m/s in the velocity and {noises[1]:.2g} m/s^2 in the acceleration (r.m.s.)."
-    )

@@ -15,18 +15,16 @@ from inerter.report.identification_data import identification_data, response_dat
 from inerter.report.identification_figures import figures
 from inerter.report.identification_text import (
     about,
-    as_options,
     behind,
     done,
     explained,
     misfit,
-    plainly,
     remarks,
     share,
     whiteness,
 )
 from inerter.report.identified_values import (
-    UNTOLD,
+    NOT_IDENTIFIABLE,
     WITHHELD,
     elements_block,
     plain,
@@ -34,6 +32,7 @@ from inerter.report.identified_values import (
     single,
     value_and_interval,
 )
+from inerter.report.options import as_options
 from inerter.report.page import PageFigure, environment, inline
 from inerter.work.origin import versions
 from inerter.writing import write_text
@@ -53,7 +52,7 @@ class ParameterRow:
     interval: str
     error: str
     bounds: str
-    told: bool
+    identified: bool
 
 
 @dataclass(frozen=True)
@@ -98,11 +97,11 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             title=found.title,
             model=model_title(found),
             layout=written(found.model, [e.label for e in found.model.elements()]),
-            status="" if fit.status.ok else as_options(fit.status.message),
+            status="" if fit.status.ok else fit.status.message,
             answers=list(_answers(found)),
             rows=list(_rows(found)),
-            told=[name for name, told in fit.identifiable.items() if plainly(told)],
-            sentences=[told.sentence for told in fit.identifiable.values() if not plainly(told)],
+            identified=[name for name, verdict in fit.identifiable.items() if verdict.plain],
+            sentences=[verdict.sentence for verdict in fit.identifiable.values() if not verdict.plain],
             names=list(fit.parameters),
             correlation=[[f"{value:+.2f}".replace("-", "−") for value in row] for row in fit.correlation.tolist()],
             next_experiment=fit.next_experiment,
@@ -114,7 +113,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             remarks=list(remarks(found)),
             explanations=list(explained(found)),
             candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), str(c.status)) for c in found.candidates],
-            choice=found.choice,
+            choice=[as_options(finding.text) for finding in found.choice],
             chosen=found.name,
             drawn=drawn,
             notes=notes,
@@ -127,7 +126,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
 def _answers(found: Identified) -> Iterator[str]:
     for name in found.fit.parameters if found.explains else ():
         value, interval = value_and_interval(found, name)
-        if value in (UNTOLD, WITHHELD):
+        if value in (NOT_IDENTIFIABLE, WITHHELD):
             yield f"{name} {value}: {interval}".rstrip(": ") + "."
         else:
             yield f"{name} = {value}, with 95 % confidence {interval}."
@@ -141,15 +140,15 @@ def _rows(found: Identified) -> Iterator[ParameterRow]:
         value, interval = value_and_interval(found, name)
         bounds = found.bounds(name)
         sought = "" if bounds is None else f"{single(bounds[0], p.unit)} to {single(bounds[1], p.unit)}"
-        told, own = bool(found.fit.identifiable[name]), scale_of(p.best, p.unit)
-        error = f"{plain(p.standard_error * own.factor, 2)} {own.unit}".rstrip() if told else ""
-        yield ParameterRow(name, value, interval, error, sought, told)
+        identified, own = bool(found.fit.identifiable[name]), scale_of(p.best, p.unit)
+        error = f"{plain(p.standard_error * own.factor, 2)} {own.unit}".rstrip() if identified else ""
+        yield ParameterRow(name, value, interval, error, sought, identified)
 
 
 def _records(found: Identified) -> Iterator[RecordText]:
     for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
         by_severity = {
-            title: [as_options(f.sentence) for f in reading.findings if f.severity == severity]
+            title: [as_options(f.text) for f in reading.findings if f.severity == severity]
             for severity, title in _SEVERITIES.items()
         }
         yield RecordText(
@@ -180,7 +179,7 @@ def _computation(found: Identified) -> str:
         f"The model was moved as the displacement was, smoothed, and its force compared with the measured one; no "
         f"measured motion was differentiated twice. Least squares from many starts, with residuals weighted and "
         f"whitened; {fit.simulations} simulations.{starts} Intervals of 95 % are from profile likelihoods and "
-        f"from records drawn anew from the fit. Settings: {settings}. Schwarz's criterion (lower is better): "
+        f"from a parametric bootstrap. Settings: {settings}. Schwarz's criterion (lower is better): "
         f"{fit.criterion:.1f}."
     )
     return text.replace(": -", ": −")

@@ -19,7 +19,7 @@ from inerter.writing import whole
 
 
 def identification_data(found: Identified) -> dict[str, Any]:
-    """All numbers of a fit but its residuals; infinite ones are text, those that cannot be told null."""
+    """All numbers of a fit but its residuals; infinite ones are text, those that are not identifiable null."""
     fit = found.fit
     data = {
         "title": found.title,
@@ -35,7 +35,9 @@ def identification_data(found: Identified) -> dict[str, Any]:
                 "best": p.best,
                 "standard_error": p.standard_error,
                 "bounds": found.bounds(name),
-                "told": bool(fit.identifiable[name]),
+                "identified": bool(fit.identifiable[name]),
+                "verdict": fit.identifiable[name].verdict,
+                "told": bool(fit.identifiable[name]),  # the old name of "identified", for this version
                 "sentence": fit.identifiable[name].sentence,
                 "profile": p.profile,
             }
@@ -51,9 +53,11 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "simulations": fit.simulations,
         "predicted": fit.predicted,
         "misfit": vars(fit.misfit),
-        "explanations": [{**vars(e), "misfit": vars(e.misfit)} for e in fit.explanations],
+        "explanations": [
+            {**vars(e), "misfit": vars(e.misfit), "sentence": e.sentence, "remedy": e.remedy} for e in fit.explanations
+        ],
         "candidates": [{**vars(c), "status": str(c.status)} for c in found.candidates],
-        "choice": found.choice,
+        "choice": [finding.sentence for finding in found.choice],
         "settings": {**found.settings, **fit.settings},
         "elements": elements_block(found),
         "versions": versions(),
@@ -89,7 +93,7 @@ def _record(reading: Reading, comparison: Comparison) -> dict[str, Any]:
         "interval": record.interval,
         "duration": record.duration,
         "notes": record.notes,
-        "findings": [vars(finding) for finding in reading.findings],
+        "findings": [{**vars(finding), "sentence": finding.sentence} for finding in reading.findings],
         "bandwidth": motion.bandwidth,
         "highest": motion.highest,
         "lead": comparison.lead,

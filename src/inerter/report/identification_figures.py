@@ -21,7 +21,7 @@ from inerter.figures.identification import (
 )
 from inerter.files.identification.running import Identified, Responses
 from inerter.identification.fit import Comparison
-from inerter.report.identified_values import UNTOLD, WITHHELD, scale_of, value_and_interval
+from inerter.report.identified_values import NOT_IDENTIFIABLE, WITHHELD, scale_of, value_and_interval
 
 Matrix = NDArray[np.float64]
 _PERIODS = 4.0  # of the motion in a window that can be read
@@ -133,7 +133,7 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
         rises=points[:, 1],
         interval=(low * own.factor, high * own.factor),
         unit=own.unit,
-        remark=value if value in (UNTOLD, WITHHELD) else "",
+        remark=value if value in (NOT_IDENTIFIABLE, WITHHELD) else "",
     )
 
 

@@ -2,53 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from math import floor, log10
 from textwrap import wrap
 
 from inerter.figures.labels import measured
 from inerter.files.identification.running import Candidate, Identified, Reading, model_title
-from inerter.identification.fit import Comparison, Told
+from inerter.identification.fit import Comparison
 from inerter.report.identified_values import elements_block, single, value_and_interval
+from inerter.report.options import as_options
 from inerter.report.text import WIDTH
 
 INDEPENDENT = 1e-3  # a p-value above tells residuals without pattern
 LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not told, nor are more
-# What the library calls by the names of Python's arguments, in the words of the command line.
-_AS_OPTIONS = (
-    (r"units=\{'(\w+)': '([^']+)'\}", r'--unit "\1=\2"'),
-    (r"\bforce=(?=['\d])", "--force-channel "),
-    (r"\bgaps='(\w+)'", r"--gaps \1"),
-    (r"\bgaps=([\d.e-]+)", r'--gaps "\1 s"'),
-    (r"\binterval=1e-3(?: in s)?", '--interval "1 ms"'),
-    (r"\binterval=([\d.e-]+)", r'--interval "\1 s"'),
-    (r"\binterval=", "--interval"),
-    (r"\b(delay|offset)=True", r"\1 = true in [fit] of a --config"),
-    (r"\bforce_bandwidth=", "--force-bandwidth"),
-    (r"\bfixture_mass=", "--fixture-mass"),
-    (r"\b(time|displacement)=(?=['\d])", r"--\1 "),
-    (r"resample\(record\)", '--resample, such as --resample "1 ms"'),
-    (r"remove_offset\(record\)|detrend\(record\)", "detrend = true in [record] of a --config"),
-    (r" Use reverse_force\(record\)\.", ""),
-    (r"fill_gaps\(record, longest\)", "--resample"),
-    (r"\btrim\b(?=[ .])", "--trim"),
-)
-
-
-def as_options(sentence: str) -> str:
-    """A sentence of the library with the options of the command line in the place of Python's arguments.
-
-    >>> as_options("Name the unit, units={'force': 'N'}, or give interval=1e-3 in s.")
-    'Name the unit, --unit "force=N", or give --interval "1 ms".'
-    """
-    for pattern, replacement in _AS_OPTIONS:
-        sentence = re.sub(pattern, replacement, sentence)
-    return sentence
 
 
 def identification_text(found: Identified) -> str:
-    """Whether it can be relied on, records, estimates, what cannot be told, goodness, the next experiment, elements.
+    """Whether it can be relied on, records, estimates, goodness, the next experiment, elements.
 
     ASCII, 80 columns.
     """
@@ -57,7 +27,7 @@ def identification_text(found: Identified) -> str:
         _records(found),
         _candidates(found),
         _estimates(found),
-        _untold(found),
+        _not_identifiable(found),
         _goodness(found),
         _next(found),
         iter(elements_block(found).splitlines()),
@@ -71,7 +41,7 @@ def _warning(found: Identified) -> Iterator[str]:
     """A wrong model or sensor, before anything else, and what explains it."""
     if found.fit.status.ok:
         return
-    yield from wrap(f"Not to be relied on: {as_options(found.fit.status.message)}.", WIDTH)
+    yield from wrap(f"Not to be relied on: {found.fit.status.message}.", WIDTH)
     said = list(explained(found))
     if said:
         yield ""
@@ -94,7 +64,7 @@ def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
             for name, (value, error) in e.estimates.items()
             if name in units and e.misfit.sound
         )
-        yield e.sentence, f"{100.0 * e.explained:.0f} %", values, as_options(e.remedy)
+        yield e.sentence, f"{100.0 * e.explained:.0f} %", values, as_options(e.name.remedy(e.details))
 
 
 def misfit(found: Identified) -> str:
@@ -113,7 +83,7 @@ def about(reading: Reading) -> str:
 def done(found: Identified, reading: Reading, comparison: Comparison) -> Iterator[str]:
     """What was done to a record, in sentences."""
     yield from reading.used.notes
-    yield from (note for note in comparison.record.notes if note not in reading.used.notes)
+    yield from comparison.record.notes[len(reading.used.notes) :]
     motion = comparison.experiment.motion
     yield f"The displacement was smoothed to {motion.bandwidth:.4g} Hz; it shows motion up to {motion.highest:.4g} Hz."
     fitted, checked = int(comparison.fitted.sum()), int(comparison.checked.sum())
@@ -133,7 +103,7 @@ def _records(found: Identified) -> Iterator[str]:
             yield from wrap(sentence, WIDTH, initial_indent="    ", subsequent_indent="    ")
         for finding in reading.findings:
             if finding.severity == "warning":
-                said = f"Warning: {as_options(finding.sentence)}"
+                said = f"Warning: {as_options(finding.text)}"
                 yield from wrap(said, WIDTH, initial_indent="    ", subsequent_indent="    ")
 
 
@@ -146,8 +116,8 @@ def _candidates(found: Identified) -> Iterator[str]:
         mark = "*" if c.name == found.name else " "
         state = "" if c.status.ok else f"  {c.status.kind}"
         yield f"{mark} {c.name:<{width}}  {c.unknowns:>8}  {c.loss:>13.4g}  {behind(c)}{state}"
-    for sentence in found.choice:
-        yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="  ")
+    for finding in found.choice:
+        yield from wrap(as_options(finding.text), WIDTH, initial_indent="  ", subsequent_indent="  ")
 
 
 def behind(candidate: Candidate) -> str:
@@ -173,22 +143,17 @@ def _estimates(found: Identified) -> Iterator[str]:
 
 def remarks(found: Identified) -> Iterator[str]:
     """What has to be known about the estimates."""
-    if found.fit.explanations and any(map(plainly, found.fit.identifiable.values())):
+    if found.fit.explanations and any(verdict.plain for verdict in found.fit.identifiable.values()):
         yield "Intervals hold what the explanations make of the values too."
-    yield from map(as_options, found.fit.notes)
+    yield from (as_options(finding.text) for finding in found.fit.findings)
 
 
-def _untold(found: Identified) -> Iterator[str]:
-    said = [told.sentence for told in found.fit.identifiable.values() if not plainly(told)]
+def _not_identifiable(found: Identified) -> Iterator[str]:
+    said = [verdict.sentence for verdict in found.fit.identifiable.values() if not verdict.plain]
     if said:
-        yield "what the records do not tell"
+        yield "what is not identifiable"
     for sentence in said:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="    ")
-
-
-def plainly(told: Told) -> bool:
-    """Whether a parameter is told, and nothing needs saying about it."""
-    return bool(told) and ": told." in told.sentence
 
 
 def _goodness(found: Identified) -> Iterator[str]:
@@ -220,8 +185,8 @@ def whiteness(comparison: Comparison) -> str:
     if p >= INDEPENDENT:
         return f"What is left has no pattern in time that the sensors would not leave (p = {p:.2g})."
     return (
-        f"What is left hangs together in time more than what the sensors leave ({size}): a part of it is no "
-        f"noise. Intervals are widened for it."
+        f"What is left is more autocorrelated than what the sensors leave ({size}): a part of it is no noise. "
+        f"Intervals are widened for it."
     )
 
 

@@ -11,7 +11,7 @@ from inerter.networks.elements import Element, Free
 from inerter.networks.parser import written
 from inerter.units import format_quantity
 
-UNTOLD, WITHHELD = "cannot be told", "withheld"
+NOT_IDENTIFIABLE, WITHHELD = "not identifiable", "withheld"
 _FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
 _MOST_DIGITS = 6
 _SMALL: dict[str, Scale] = {"m": Scale(1e6, "um"), "s": Scale(1e3, "ms")}
@@ -27,11 +27,11 @@ def scale_of(value: float, unit: str) -> Scale:
 
 
 def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
-    """The value of a parameter, or that it cannot be told, and its interval of 95 %, empty if there is none."""
+    """The value of a parameter, or that it is not identifiable, and its interval of 95 %, empty if there is none."""
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
     low, high = parameter.interval
     if isnan(low) or not found.explains:
-        return WITHHELD if isnan(low) else UNTOLD, ""
+        return WITHHELD if isnan(low) else NOT_IDENTIFIABLE, ""
     own = scale_of(parameter.best or high, parameter.unit)
     decimals = _decimals(low * own.factor, high * own.factor)
     if parameter.value == parameter.value:
@@ -46,10 +46,10 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
     above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
     if above and not below:
-        return UNTOLD, f"below {single(high, parameter.unit)}"
+        return NOT_IDENTIFIABLE, f"below {single(high, parameter.unit)}"
     if below and not above:
-        return UNTOLD, f"above {single(low, parameter.unit)}"
-    return UNTOLD, f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
+        return NOT_IDENTIFIABLE, f"above {single(low, parameter.unit)}"
+    return NOT_IDENTIFIABLE, f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
 
 
 def single(value: float, unit: str, digits: int = 3) -> str:
@@ -79,7 +79,7 @@ def _decimals(low: float, high: float) -> int:
 def elements_block(found: Identified) -> str:
     """The identified device as sections of a study or simulation file: elements with their best values, one layout.
 
-    What the records do not tell has its best value too, so that the layout can be computed, and says so.
+    What is not identifiable has its best value too, so that the layout can be computed, and says so.
     """
     rows, expression = _rows(found)
     keys = max(len(name) for name in rows)
@@ -125,5 +125,5 @@ def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
     if not isinstance(free.value, Free):
         return value, "as given"
     name = str(free.value.name)
-    told, interval = value_and_interval(found, name)
-    return value, f"{told}: {interval}".rstrip(": ") if told in (UNTOLD, WITHHELD) else f"95 %: {interval}"
+    known, interval = value_and_interval(found, name)
+    return value, f"{known}: {interval}".rstrip(": ") if known in (NOT_IDENTIFIABLE, WITHHELD) else f"95 %: {interval}"

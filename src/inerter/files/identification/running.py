@@ -16,6 +16,7 @@ from inerter.identification.fit import Comparison, Fit
 from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
 from inerter.identification.models import VISCOUS, mounted
+from inerter.identification.options import FitOptions
 from inerter.identification.response import linear_response, model_response
 from inerter.networks.elements import Free, Network
 from inerter.networks.transform import with_values
@@ -78,7 +79,7 @@ class Identified:
     fit: Fit
     settings: dict[str, Any]
     candidates: tuple[Candidate, ...] = ()  # the best first
-    choice: tuple[str, ...] = ()  # what there is to say of the choice between them
+    choice: tuple[Finding, ...] = ()  # of the choice between them
 
     def bounds(self, parameter: str) -> tuple[float, float] | None:
         """Between which a parameter of the device was sought; None for one of the sensors."""
@@ -117,7 +118,7 @@ def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> 
         used = detrend(used)
     found = tuple(findings(used))
     if found and found[0].severity == "error":
-        raise RecordError(f"{used.source}: {found[0].sentence}")
+        raise RecordError(f"{used.source}: ", *found[0].text)
     return Reading(received, used, found)
 
 
@@ -134,7 +135,7 @@ def run_identification(
     if request.chooses:
         return _chosen(title, readings, request, settings, progress)
     ((name, model),) = request.models().items()
-    fit = identify(records, mounted(model), **settings, progress=progress)
+    fit = identify(records, mounted(model), FitOptions(**settings), progress=progress)
     named = Rig(model).device
     return Identified(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
 
@@ -148,14 +149,14 @@ def _chosen(
 ) -> Identified:
     models = request.models()
     given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
-    choice = choose([r.used for r in readings], models=given, **settings, progress=progress)
+    choice = choose([r.used for r in readings], given, FitOptions(**settings), progress=progress)
     candidates = tuple(
         Candidate(c.name, c.unknowns, c.loss, c.behind, c.error, c.as_good, choice.fits[c.name].status)
         for c in choice.candidates
     )
     named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
     return Identified(
-        title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings, candidates, choice.notes
+        title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings, candidates, choice.findings
     )
 
 

@@ -1,0 +1,171 @@
+"""What can be found in an identification, and how it is said: doubts, notes, the next experiment, the choice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+
+from inerter.records.finding import Finding
+from inerter.records.remedy import Action, Remedy, Text
+from inerter.units import format_quantity
+
+
+class FitFinding(StrEnum):
+    """The kinds of findings in an identification."""
+
+    # why a fit is not to be relied on
+    UNPREDICTABLE = "unpredictable"
+    SUSPECTED = "suspected"
+    MISFIT = "misfit"
+    SATURATED = "saturated"
+    # what has to be known about the estimates
+    FORCE_REVERSED = "force-reversed"
+    OFFSET = "offset"
+    MOVING_MASS = "moving-mass"
+    # the next experiment
+    FASTER_REVERSALS = "faster-reversals"
+    SLOW_COSINE = "slow-cosine"
+    LARGER_ACCELERATIONS = "larger-accelerations"
+    HIGHER_FREQUENCIES = "higher-frequencies"
+    # the choice between models
+    BEST = "best"
+    FEWEST_UNKNOWNS = "fewest-unknowns"
+    NOT_REACHED = "not-reached"
+    FAILED = "failed"
+
+    def text(self, finding: Finding) -> Text:
+        """The parts of the sentence of such a finding."""
+        return _TEXTS[self](finding)
+
+
+def _unpredictable(f: Finding) -> Text:
+    return (
+        f"errors as small as those of the encoder change {f.numbers['changed']:.1f} % of the force of this device, so "
+        f"none of its parameters is identifiable; try a record in which it rattles less",
+    )
+
+
+def _suspected(f: Finding) -> Text:
+    return (f.numbers["likeliest"].sentence,)
+
+
+def _misfit(f: Finding) -> Text:
+    n = f.numbers
+    times = f"the model leaves {n['times']:.2g} times what the errors of the sensors leave"
+    share = "" if n["explained"] is None else f", and explains {n['explained']:.1f} % of the force only"
+    if n["likeliest"] is None:
+        return (f"{times}{share}; nothing that was tried explains it",)
+    second = n["second"]
+    other = "" if second is None else f", or {second.sentence}, which explains it too"
+    return (f"{times}{share}; likeliest: {n['likeliest'].sentence}{other}",)
+
+
+def _saturated(f: Finding) -> Text:
+    return (f"the load cell was saturated in {100.0 * f.numbers['share']:.0f} % of the samples",)
+
+
+def _reversed(f: Finding) -> Text:
+    return (f"{f.about}: the force counted compression as positive; it was reversed.",)
+
+
+def _offset(f: Finding) -> Text:
+    size = format_quantity(f.numbers["offset"], "N", 3)
+    return (
+        f"{f.about}: the offset of {size} may be one of the load cell or asymmetric friction, larger in one direction, "
+        f"of which the friction identified is the mean.",
+    )
+
+
+def _moving_mass(f: Finding) -> Text:
+    return (
+        f"{f.about}: holds what moves with the table between load cell and device, which the records do not tell from "
+        f"an inertance; weigh it, and give it, ",
+        *(Remedy(Action.FIXTURE_MASS), "."),
+    )
+
+
+def _room(f: Finding) -> str:
+    """What the load cell still bears."""
+    limit = f.numbers["limit"]
+    return "" if limit is None else f", up to the {limit:.0f} N of the load cell"
+
+
+def _faster(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"{f.about}: a faster motion in which the force reverses often (now up to {n['fastest']:.3g} Hz and "
+        f"{n['peak']:.3g} N{_room(f)}), sampled so that crossing {format_quantity(n['width'], 'm')} takes several "
+        f"samples.",
+    )
+
+
+def _slow(f: Finding) -> Text:
+    return (f"{f.about}: a slow cosine, 0.1 Hz and {format_quantity(f.numbers['travel'], 'm')}, without the flywheel.",)
+
+
+def _larger(f: Finding) -> Text:
+    wider = format_quantity(f.numbers["travel"], "m")
+    return (f"{f.about}: larger accelerations: {wider} at the same frequency, or twice the frequency.",)
+
+
+def _higher(f: Finding) -> Text:
+    return (
+        f"{f.about}: a multisine or sweep of small amplitude up to twice the present {f.numbers['fastest']:.3g} Hz or "
+        f"more{_room(f)}.",
+    )
+
+
+def _next(f: Finding) -> str:
+    """How much the best of those that are not as good leaves."""
+    n = f.numbers
+    if n["next"] is None:
+        return ""
+    how = f"{n['ratio']:.3g} times" if n["ratio"] > 2.0 else f"{100.0 * (n['ratio'] - 1.0):.2g} % above"
+    return f" The next, {n['next']}, leaves {how} the loss of the best."
+
+
+def _unknowns(f: Finding) -> str:
+    many = f.numbers["unknowns"]
+    return "one unknown" if many == 1 else f"{many} unknowns"
+
+
+def _best(f: Finding) -> Text:
+    return (f"{f.about}: predicts the check part best, with {_unknowns(f)}.{_next(f)}",)
+
+
+def _fewest(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"{f.about}: with {_unknowns(f)} it predicts the check part as well as {n['best']} with {n['best_unknowns']} "
+        f"(loss larger by {100.0 * n['behind']:.2g} %).{_next(f)}",
+    )
+
+
+def _not_reached(f: Finding) -> Text:
+    return (
+        f"{f.about}: does not reach {f.numbers['other']}, of the same parts, so this is not its best fit; try more "
+        f"starts.",
+    )
+
+
+def _failed(f: Finding) -> Text:
+    return (f"{f.about}: cannot be fitted. ", *f.numbers["error"])
+
+
+_TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
+    FitFinding.UNPREDICTABLE: _unpredictable,
+    FitFinding.SUSPECTED: _suspected,
+    FitFinding.MISFIT: _misfit,
+    FitFinding.SATURATED: _saturated,
+    FitFinding.FORCE_REVERSED: _reversed,
+    FitFinding.OFFSET: _offset,
+    FitFinding.MOVING_MASS: _moving_mass,
+    FitFinding.FASTER_REVERSALS: _faster,
+    FitFinding.SLOW_COSINE: _slow,
+    FitFinding.LARGER_ACCELERATIONS: _larger,
+    FitFinding.HIGHER_FREQUENCIES: _higher,
+    FitFinding.BEST: _best,
+    FitFinding.FEWEST_UNKNOWNS: _fewest,
+    FitFinding.NOT_REACHED: _not_reached,
+    FitFinding.FAILED: _failed,
+}

@@ -1,0 +1,68 @@
+"""Which parameters the records identify and which they do not, and the experiment that would identify more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from inerter.identification.fit import Comparison, Parameter
+from inerter.identification.identifiability import Identifiability, Verdict
+from inerter.identification.intervals import Profile
+from inerter.identification.kinds import FitFinding
+from inerter.identification.space import Space
+from inerter.networks.elements.roles import Linear
+from inerter.records.finding import Finding
+
+_WIDE = 3.0  # ends of an interval this far apart, as a ratio, give an order of magnitude only
+_ROOM = 1.5  # times the largest force: a load cell that bears more has room
+
+
+def identifiability(
+    parameter: Parameter, profile: Profile, space: Space, index: int, comparisons: Sequence[Comparison]
+) -> Identifiability:
+    """Whether the records identify a parameter, and why not."""
+    low, high = parameter.interval
+    below, above = profile.lower.known, profile.upper.known
+    if below and above:
+        verdict = Verdict.MAGNITUDE if high > _WIDE * low else Verdict.IDENTIFIED
+    elif not below and not above:
+        verdict = Verdict.ANY
+    else:
+        verdict = Verdict.BELOW if above else Verdict.ABOVE
+    kind = space.kinds[index]
+    return Identifiability(
+        name=parameter.name,
+        verdict=verdict,
+        unit=parameter.unit,
+        interval=parameter.interval,
+        least=float(space.lower[index]),
+        role=None if kind is None else kind.linear,
+        openings=sum(sum(c.openings.values()) for c in comparisons),
+    )
+
+
+def suggestions(
+    space: Space,
+    parameters: Mapping[str, Parameter],
+    identifiable: Mapping[str, Identifiability],
+    comparisons: Sequence[Comparison],
+) -> Iterator[Finding]:
+    """The next experiment, for each parameter that the records do not identify."""
+    peak = max(float(np.abs(c.record.force).max()) for c in comparisons)
+    travel = max(0.5 * float(np.ptp(c.record.displacement)) for c in comparisons)
+    fastest = max(c.experiment.motion.highest for c in comparisons)
+    limit = min((c.record.force_range for c in comparisons if c.record.force_range is not None), default=0.0)
+    motion = {"fastest": fastest, "peak": peak, "limit": limit if limit > _ROOM * peak else None}
+    for name, kind in zip(space.names, space.kinds, strict=True):
+        if identifiable[name] or kind is None:
+            continue
+        if kind.linear is Linear.CLOSED:
+            width = {"width": 2.0 * parameters[name].interval[1]}
+            yield Finding(FitFinding.FASTER_REVERSALS, "info", name, {**motion, **width})
+        elif kind.linear is Linear.OPEN:
+            yield Finding(FitFinding.SLOW_COSINE, "info", name, {"travel": max(travel, 1e-3)})
+        elif kind.linear is Linear.MASS:
+            yield Finding(FitFinding.LARGER_ACCELERATIONS, "info", name, {"travel": 2.0 * travel})
+        else:
+            yield Finding(FitFinding.HIGHER_FREQUENCIES, "info", name, motion)

@@ -1,0 +1,70 @@
+"""What can be done about a fault of a record, as data: Python and the command line say it in words of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+
+class Action(StrEnum):
+    """What is done: an argument of `read_record`, a field of a record, a step on it, or a setting of a fit."""
+
+    CHANNEL = "channel"  # (role, name or number)
+    UNIT = "unit"  # (role, unit)
+    INTERVAL = "interval"  # [s], or None for any
+    GAPS = "gaps"  # "fill", "longest" or [s]
+    TRIM = "trim"
+    RESAMPLE = "resample"
+    FILL_GAPS = "fill-gaps"
+    DETREND = "detrend"
+    REMOVE_OFFSET = "remove-offset"
+    REVERSE_FORCE = "reverse-force"  # a whole sentence with a space before it: a fit does it by itself
+    SHIFT_FORCE = "shift-force"  # [s]
+    FORCE_BANDWIDTH = "force-bandwidth"
+    FIXTURE_MASS = "fixture-mass"
+    FIT_DELAY = "fit-delay"
+    FIT_OFFSET = "fit-offset"
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """One such step, with its value where it has one. As text it is written in Python."""
+
+    action: Action
+    value: Any = None
+
+    def __str__(self) -> str:
+        return _IN_PYTHON[self.action](self.value)
+
+
+Text = tuple[str | Remedy, ...]  # the parts of a sentence
+
+
+def in_python(text: Text) -> str:
+    """The sentence, with calls and arguments of Python.
+
+    >>> in_python(("Read the file with ", Remedy(Action.GAPS, "fill"), "."))
+    "Read the file with gaps='fill'."
+    """
+    return "".join(map(str, text))
+
+
+_IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
+    Action.CHANNEL: lambda value: f"{value[0]}={value[1]!r}",
+    Action.UNIT: lambda value: f"units={{{value[0]!r}: {value[1]!r}}}",
+    Action.INTERVAL: lambda value: "interval=" if value is None else f"interval={value:.6g}",
+    Action.GAPS: lambda value: f"gaps={value!r}",
+    Action.TRIM: lambda value: "trim",
+    Action.RESAMPLE: lambda value: "resample(record)",
+    Action.FILL_GAPS: lambda value: "fill_gaps(record, longest)",
+    Action.DETREND: lambda value: "detrend(record)",
+    Action.REMOVE_OFFSET: lambda value: "remove_offset(record)",
+    Action.REVERSE_FORCE: lambda value: " Use reverse_force(record).",
+    Action.SHIFT_FORCE: lambda value: f"shift_force(record, {value:.3g})",
+    Action.FORCE_BANDWIDTH: lambda value: "force_bandwidth=",
+    Action.FIXTURE_MASS: lambda value: "fixture_mass=",
+    Action.FIT_DELAY: lambda value: "delay=True",
+    Action.FIT_OFFSET: lambda value: "offset=True",
+}

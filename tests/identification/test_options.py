@@ -1,0 +1,59 @@
+"""The options of a fit: one value, the same as keywords."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import inerter as it
+from inerter.errors import IdentificationError
+from inerter.identification.identifiability import Identifiability, Verdict
+from inerter.identification.kinds import _TEXTS, FitFinding
+from inerter.identification.options import FitOptions, OptionChanges
+from inerter.identification.suspects import _REMEDIES, _SENTENCES, Suspect
+from inerter.records.kinds import _TEXTS as OF_RECORDS
+from inerter.records.kinds import RecordFinding
+from inerter.records.remedy import Action, Remedy
+from inerter.report.options import _OPTIONS
+
+
+def test_the_keywords_are_the_fields() -> None:
+    assert set(OptionChanges.__annotations__) == {field.name for field in fields(FitOptions)}
+
+
+@given(st.integers(0, 99), st.floats(0.0, 0.6), st.booleans())
+def test_a_changed_option_is_the_only_one_that_changes(seed: int, check: float, gain: bool) -> None:
+    options = FitOptions(seed=seed, gain=gain)
+    assert options.changed(check=check) == FitOptions(seed=seed, gain=gain, check=check)
+    assert it.FitOptions is FitOptions
+
+
+@pytest.mark.parametrize("function", [it.identify, it.choose])
+def test_an_option_that_there_is_not_is_refused_in_a_sentence(function) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(IdentificationError, match="no option 'sead' of a fit"):
+        function(None, None, sead=1)
+
+
+def test_every_kind_is_said() -> None:
+    """A kind that is added without its sentence does not pass."""
+    for kinds, texts in (
+        (RecordFinding, OF_RECORDS),
+        (FitFinding, _TEXTS),
+        (Suspect, _SENTENCES),
+        (Suspect, _REMEDIES),
+    ):
+        assert set(kinds) == set(texts)
+    assert set(Action) == set(_OPTIONS)
+    for verdict in Verdict:
+        said = Identifiability("b", verdict, "kg", (1.0, 2.0)).sentence
+        assert said.startswith("b: ")
+        assert said.endswith(".")
+    assert str(Remedy(Action.GAPS, 0.05)) == "gaps=0.05"
+
+
+def test_the_old_name_of_a_verdict_works_with_a_warning() -> None:
+    with pytest.warns(DeprecationWarning, match="identified"):
+        assert Identifiability("b", Verdict.IDENTIFIED).told

@@ -1,0 +1,133 @@
+"""With a token in the place of every sentence, decisions, values and exit codes are what they are with sentences."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from troubled_rig import Device, Sensors, Tones, measured
+
+import inerter as it
+from inerter.cli.main import call
+from inerter.errors import InerterError, RecordError, Status, StatusKind
+from inerter.files.study import running
+from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.loading import load_study
+from inerter.identification.friction_law import FrictionLaw
+from inerter.identification.identifiability import Identifiability
+from inerter.identification.kinds import FitFinding
+from inerter.identification.suspects import Suspect
+from inerter.records.kinds import RecordFinding
+from inerter.records.remedy import Remedy
+from inerter.records.writers import write_record
+
+TOKEN = "told."  # what was once looked for in sentences, and what begins a status, are the worst of tokens
+CONFIG = """
+[record]
+force_bandwidth = "300 Hz"
+[model]
+layout = "(ks | cs) - (b | f)"
+[elements]
+ks = "1000 kN/m"
+cs = "3200 N s/m"
+b = { from = "1 kg", to = "500 kg" }
+f = { from = "0 N", to = "100 N" }
+[fit]
+starts = 8
+"""
+WORDS = {
+    "sentence", "status", "message", "notes", "next_experiment", "remedy", "choice", "versions", "title", "model",
+}  # fmt: skip
+
+
+def opaque(patch: pytest.MonkeyPatch) -> None:
+    """Put a token in the place of every sentence that records, identification and statuses make."""
+    for kinds in (RecordFinding, FitFinding):
+        patch.setattr(kinds, "text", lambda kind, finding: (TOKEN,))
+    patch.setattr(Suspect, "sentence", lambda suspect, details: TOKEN)
+    patch.setattr(Suspect, "remedy", lambda suspect, details: (TOKEN,))
+    patch.setattr(Remedy, "__str__", lambda remedy: TOKEN)
+    for shown in (Identifiability, FrictionLaw):
+        patch.setattr(shown, "sentence", property(lambda found: TOKEN))
+    for error in (InerterError, RecordError):
+        patch.setattr(error, "__str__", lambda error: TOKEN)
+    made = Status.__init__
+
+    def other(status: Status, kind: StatusKind = StatusKind.OK, message: str = "") -> None:
+        made(status, kind, message and f"failed: {TOKEN}")
+
+    patch.setattr(Status, "__init__", other)
+
+
+def without_words(data: Any) -> Any:
+    """Data without what is there for a reader."""
+    if isinstance(data, dict):
+        return {key: without_words(value) for key, value in data.items() if key not in WORDS}
+    return [without_words(value) for value in data] if isinstance(data, list) else data
+
+
+@pytest.fixture(scope="module", params=["sound", "late", "saturated"])
+def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A record: of sensors without fault, of a late displacement, or of a load cell at its limit."""
+    folder = tmp_path_factory.mktemp(request.param)
+    sensors = Sensors(cell=300.0, displacement_late=4e-3 if request.param == "late" else 0.0)
+    device = Device(b=113.0, f=10.0, ks=1e6, cs=3200.0)
+    time, displacement, force = measured(device, Tones((1e-3, 3e-4), (4.0, 9.0), (0.0, 1.0)), sensors, 1.5, 1)
+    if request.param == "saturated":
+        force = np.clip(force, -70.0, 70.0)
+    write_record(it.Record(time, displacement, force), folder / "bench.csv")
+    (folder / "rig.toml").write_text(CONFIG, encoding="utf-8")
+    return folder
+
+
+def test_an_identification_is_the_same_with_tokens_for_words(bench: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ran = []
+    for name in ("sentences", "tokens"):
+        with pytest.MonkeyPatch.context() as patch:
+            if name == "tokens":
+                opaque(patch)
+            arguments = [str(bench / "bench.csv"), "--config", str(bench / "rig.toml"), "-o", str(bench / name)]
+            code = call(["identify", *arguments, "--json"])
+            out = capsys.readouterr().out
+            data = json.loads(out)
+            assert (TOKEN in data["records"][0]["findings"][-1]["sentence"]) == (name == "tokens")
+            ran.append((code, data["status"].partition(":")[0], without_words(data)))
+    assert ran[0] == ran[1]
+
+
+@pytest.mark.parametrize("force", [np.ones(400), np.full(400, np.nan), np.ones(3)], ids=["constant", "nan", "short"])
+def test_a_record_that_is_refused_is_refused_with_tokens_too(force: np.ndarray) -> None:
+    time = np.arange(force.size) / 200.0
+    with pytest.MonkeyPatch.context() as patch:
+        opaque(patch)
+        with pytest.raises(InerterError):
+            it.identify(it.Record(time, np.cos(time), force), "ideal")
+
+
+STUDY = load_study(Path(__file__).parents[2] / "examples" / "quarter-car.toml")
+
+
+@given(st.lists(st.sampled_from(StatusKind), min_size=1, max_size=3), st.sampled_from(list(StatusKind)))
+def test_a_study_has_failed_where_a_status_is_and_not_where_a_word_is(
+    kinds: list[StatusKind], word: StatusKind, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Messages that begin as a status does decide nothing."""
+    folder = tmp_path_factory.mktemp("study")
+    taken = iter([*kinds, *[StatusKind.OK] * 100])
+
+    def run_case(study: object, case: Case, threads: int = 1) -> Outcome:
+        status = {"norm": next(taken).value}
+        return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, status, f"{word}: {TOKEN}")
+
+    study = replace(STUDY, evaluate=("norm",), budgets=())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(running, "run_case", run_case)
+        result = running.run_study(study, folder / "out")
+    assert result.failed == (StatusKind.FAILED in kinds)
+    assert len(result.failures) == sum(kind is not StatusKind.OK for kind in kinds)

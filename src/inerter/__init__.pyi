@@ -9,6 +9,8 @@ from inerter.fields import quantity as quantity
 from inerter.files.common.folder import Intent as Intent
 from inerter.files.common.folder import claimed as claimed
 from inerter.files.common.signal_kinds import SIGNALS as SIGNALS
+from inerter.files.common.signal_kinds import SignalKey as SignalKey
+from inerter.files.common.signal_kinds import SignalKind as SignalKind
 from inerter.files.study.loading import load_study as load_study
 from inerter.files.study.running import run_study as run_study
 from inerter.identification.choice import Choice as Choice

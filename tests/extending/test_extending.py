@@ -188,12 +188,12 @@ print(len(found[0]), np.abs(found[0]).max() > 100.0, np.array_equal(*found))
     assert python(place, program, tmp_path) == "1001 True True\n"
 
 
-def test_a_simulation_file_knows_the_vehicle_and_the_element(place: Path, tmp_path: Path) -> None:
+def test_a_simulation_file_knows_the_vehicle_the_element_and_the_signal(place: Path, tmp_path: Path) -> None:
     text = BASE[: BASE.index("[study]")].replace("{ from", '"2 kN s/m" # { from', 1)
     text = text.replace('{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }', '"1e-3 kg m^2"')
-    end = '[signal]\nkind = "bump"\nheight = "20 mm"\nlength = "1 m"\n[simulation]\nlayout = "S3"\nduration = "0.2 s"\n'
-    (tmp_path / "bump.toml").write_text(text + end, encoding="utf-8")
-    said = inerter(place, "simulate", "bump.toml", cwd=tmp_path).stdout
+    end = '[signal]\nkind = "saw-tooth"\nheight = "20 mm"\n[simulation]\nlayout = "S3"\nduration = "0.2 s"\n'
+    (tmp_path / "slabs.toml").write_text(text + end, encoding="utf-8")
+    said = inerter(place, "simulate", "slabs.toml", cwd=tmp_path).stdout
     assert "seated-car, S3" in said
     assert "J_friction" in said
 
@@ -307,3 +307,21 @@ def test_help_looks_for_no_distribution(tmp_path: Path) -> None:
     assert "Usage: inerter COMMAND" in inerter(place, "--help", cwd=tmp_path).stdout
     inerter(place, "run", "--help", cwd=tmp_path)
     inerter(place, "reproduce", cwd=tmp_path, code=2)
+
+
+def test_the_page_shows_every_file_whole() -> None:
+    page = (HERE.parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
+    shown = {block.partition("\n")[2] for block in page.split("```")[1::2]}
+    files = [path for path in (HERE / "src").rglob("*.py") if path.name != "__init__.py"]
+    assert len(files) == 7
+    for path in (HERE / "pyproject.toml", *files):
+        assert path.read_text(encoding="utf-8") in shown, path.name
+
+
+def test_the_element_of_the_page_is_one(place: Path, tmp_path: Path) -> None:
+    page = (HERE.parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
+    entry = next(block for block in page.split("```")[1::2] if block.startswith("toml\nJ = ")).partition("\n")[2]
+    lines = [line for line in BASE.splitlines() if not line.startswith("J = ")]
+    lines.insert(lines.index("[layouts]"), entry.strip())
+    (tmp_path / "page.toml").write_text("\n".join(lines), encoding="utf-8")
+    assert "ok." in inerter(place, "check", "page.toml", cwd=tmp_path).stdout

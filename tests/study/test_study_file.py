@@ -1,8 +1,11 @@
 """Study files: what a good one means, that it survives being written out, and what is said about a bad one."""
 
+import ast
 import json
 import math
+import re
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -10,17 +13,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.errors import NetworkError, StudyError
+from inerter.fields import fields_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study, Sweep, write_resolved
+from inerter.indices.registry import INDICES as INDICES_TABLE
+from inerter.indices.registry import index_settings
+from inerter.methods.registry import METHODS
 from inerter.networks.elements import Damper, Free, Friction, Gap, Inerter, Spring
 from inerter.signals.road import Road
 from inerter.vehicle.half_car import HalfCar
 from inerter.vehicle.quarter_car import QuarterCar
+from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.rig import Rig
 
-EXAMPLES = sorted(
-    path for path in (Path(__file__).parents[2] / "examples").glob("*.toml") if "[study]" in path.read_text("utf-8")
-)
+ROOT = Path(__file__).parents[2]
+EXAMPLES = sorted(path for path in (ROOT / "examples").glob("*.toml") if "[study]" in path.read_text("utf-8"))
 
 GOOD = """
 title = "A quarter car"
@@ -272,6 +280,42 @@ def test_any_values_survive_to_the_last_bit(tmp_path_factory, numbers, seed):
         settings={"high_pass": omega},
     )
     assert_survives(study, tmp_path_factory.mktemp("study"))
+
+
+# --- what the page says, and what else knows a row ---
+
+
+def test_the_tables_of_the_page_are_those_of_the_rows():
+    page = (ROOT / "docs" / "study-file.md").read_text(encoding="utf-8")
+    judged = {model: kind for model, kind in VEHICLES.items() if kind.moved == "road"}
+    for model, kind in judged.items():
+        by_unit = groupby(fields_of(kind), key=lambda field: field.unit)
+        told = [f"{', '.join(f'`{field.key}`' for field in some)} [{unit}]" for unit, some in by_unit]
+        assert f"| | {model.replace('-', ' ')} | {', '.join(told)} |" in page
+    assert f"| `model` | {' or '.join(f'`{json.dumps(model)}`' for model in judged)} |" in page
+    assert f"| `indices` | any of {', '.join(f'`{json.dumps(symbol)}`' for symbol in INDICES_TABLE)} |" in page
+    for key, field in index_settings().items():
+        sentence = field.sentence.partition(";")[0].removesuffix(".")
+        told = (
+            f"| | `{key}` | {sentence[0].lower()}{sentence[1:]} [{field.unit}], such as `{json.dumps(field.example)}`;"
+        )
+        assert told in page
+    methods = page[page.index("## Methods") :]
+    assert re.findall(r'^[|] `"([a-z-]+)"` [|]', methods, re.MULTILINE) == list(METHODS)
+
+
+def test_no_module_but_its_own_names_a_row():
+    """Papers do, and the section [rig] has the name of a vehicle."""
+    keys = {*INDICES_TABLE, *METHODS, *VEHICLES}
+    named = {key: set() for key in keys}
+    sources = [path for path in (ROOT / "src" / "inerter").rglob("*.py") if "papers" not in path.parts]
+    for path in sources:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and node.value in keys:
+                named[node.value].add(path.parent.name)
+    assert len(sources) > 200
+    assert named.pop(Rig.key) == {"vehicle", "rig", "common"}
+    assert {key: places for key, places in named.items() if places not in ({"vehicle"}, {"indices"}, {"methods"})} == {}
 
 
 # --- what is said about a bad one: the file, the place, and the words that help ---

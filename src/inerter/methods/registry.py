@@ -19,6 +19,7 @@ METHODS: Rows[type[Method]] = Rows(
     ("words", "sees", "needs_amplitude", "searches", "estimate", "estimate_many", "objective"),
     (Norm, StatisticalLinearisation, ExpectedValue, ApproximateLinear),
 )
+DEFAULT = Norm.name  # judges the designs of a study that names no method
 
 
 def is_blind(name: str) -> bool:

@@ -23,15 +23,15 @@ _SQUARES = {"m": "m^2", "N": "N^2", "N m": "N^2 m^2"}
 _SIZES = {"m": "1 mm", "N": "100 N", "N m": "100 N m"}
 
 
-class Key(NamedTuple):
+class SignalKey(NamedTuple):
     """A key of [signal]. In `unit` and `example`, {unit}, {square} and {size} stand for those of the input."""
 
     unit: str  # empty for what has none
-    check: Callable[[str], PlainValidator]  # given the unit
     example: str
     default: Any = NEEDED
+    check: Callable[[str], PlainValidator] = positive  # given the unit: what a value may be
 
-    def of(self, unit: str) -> Key:
+    def of(self, unit: str) -> SignalKey:
         """The same key of a signal in `unit`."""
         words = {"unit": unit, "square": _SQUARES[unit], "size": _SIZES[unit]}
         return self._replace(unit=self.unit.format(**words), example=self.example.format(**words))
@@ -41,20 +41,20 @@ def _plain(check: Callable[[Any], Any]) -> Callable[[str], PlainValidator]:
     return lambda unit: PlainValidator(check)
 
 
-def _size(name: str) -> Key:
-    return Key("{unit}", quantity, f'{name} = "{{size}}"')
+def _size(name: str) -> SignalKey:
+    return SignalKey("{unit}", f'{name} = "{{size}}"', check=quantity)
 
 
-def _frequency(name: str, value: str, default: Any = NEEDED) -> Key:
-    return Key("Hz", positive, f'{name} = "{value} Hz"', default)
+def _frequency(name: str, value: str, default: Any = NEEDED) -> SignalKey:
+    return SignalKey("Hz", f'{name} = "{value} Hz"', default)
 
 
-_SEED = Key("", lambda unit: whole(0, 2**63 - 1), "seed = 0", 0)
-_FILE = Key("", _plain(text), 'file = "road.csv"')
+_SEED = SignalKey("", "seed = 0", 0, lambda unit: whole(0, 2**63 - 1))
+_FILE = SignalKey("", 'file = "road.csv"', check=_plain(text))
 _WAVE = {
     "amplitude": _size("amplitude"),
     "frequency": _frequency("frequency", "3"),
-    "phase": Key("rad", quantity, 'phase = "90 deg"', 0.0),
+    "phase": SignalKey("rad", 'phase = "90 deg"', 0.0, check=quantity),
 }
 
 
@@ -64,7 +64,7 @@ class SignalKind:
 
     key: str
     make: Callable[..., Signal]
-    keys: Mapping[str, Key]
+    keys: Mapping[str, SignalKey]
     given: tuple[str, ...] = ("speed",)
     needs: tuple[str, ...] = ()  # keys of [road]
     of_roads: bool = False  # a force cannot be of this kind
@@ -84,7 +84,7 @@ _OWN = (
         flat_multisine,
         {
             "seed": _SEED,
-            "rms": Key("{unit}", positive, 'rms = "{size}"'),
+            "rms": SignalKey("{unit}", 'rms = "{size}"'),
             "lowest": _frequency("lowest", "0.1"),
             "highest": _frequency("highest", "20"),
         },
@@ -98,17 +98,17 @@ _OWN = (
             "amplitude": _size("amplitude"),
             "lowest": _frequency("lowest", "0.5"),
             "highest": _frequency("highest", "20"),
-            "duration": Key("s", positive, 'duration = "10 s"'),
+            "duration": SignalKey("s", 'duration = "10 s"'),
         },
     ),
-    SignalKind("step", step, {"height": _size("height"), "time": Key("s", quantity, 'time = "1 s"', 0.0)}),
+    SignalKind("step", step, {"height": _size("height"), "time": SignalKey("s", 'time = "1 s"', 0.0, check=quantity)}),
     SignalKind(
         "bump",
         bump,
         {
             "height": _size("height"),
-            "length": Key("m", positive, 'length = "1 m"'),
-            "start": Key("s", quantity, 'start = "0.5 s"', 0.0),
+            "length": SignalKey("m", 'length = "1 m"'),
+            "start": SignalKey("s", 'start = "0.5 s"', 0.0, check=quantity),
         },
         needs=("speed",),
         of_roads=True,
@@ -118,9 +118,9 @@ _OWN = (
         held_noise,
         {
             "seed": _SEED,
-            "power": Key("{square}/Hz", positive, 'power = "1e-8 {square}/Hz"'),
-            "interval": Key("s", positive, 'interval = "1 ms"', 1e-3),
-            "duration": Key("s", positive, 'duration = "100 s"', 100.0),
+            "power": SignalKey("{square}/Hz", 'power = "1e-8 {square}/Hz"'),
+            "interval": SignalKey("s", 'interval = "1 ms"', 1e-3),
+            "duration": SignalKey("s", 'duration = "100 s"', 100.0),
         },
     ),
     SignalKind(
@@ -128,8 +128,8 @@ _OWN = (
         lambda file, **others: recorded(path=file, **others),
         {
             "file": _FILE,
-            "hold": Key("", _plain(one_of("a hold", HOLDS)), 'hold = "cubic"', "cubic"),
-            "periodic": Key("", _plain(yes_or_no), "periodic = true", False),
+            "hold": SignalKey("", 'hold = "cubic"', "cubic", _plain(one_of("a hold", HOLDS))),
+            "periodic": SignalKey("", "periodic = true", False, _plain(yes_or_no)),
         },
         given=("speed", "unit"),
     ),

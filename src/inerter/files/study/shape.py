@@ -43,7 +43,7 @@ from inerter.files.common.shape import (
 )
 from inerter.indices.registry import INDICES, index_settings
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.registry import METHODS, methods_that, searches
+from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
 from inerter.rows import made_of_rows
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
@@ -109,7 +109,7 @@ class Settings(Shape):
     indices: Annotated[tuple[str, ...], some_of("an index", INDICES)] = Field(examples=['indices = ["J1", "J3", "J5"]'])
     conventions: Annotated[str, PlainValidator(one_of("a set of conventions", CONVENTIONS))] = "exact"
     optimise: Annotated[str | None, PlainValidator(_search)] = None
-    evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = ("norm",)
+    evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = (DEFAULT,)
     baseline: Annotated[str | None, PlainValidator(text)] = None
     sweep: Annotated[dict[str, SweepEntry], AfterValidator(one_sweep)] | None = Field(
         default=None, examples=['sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }']

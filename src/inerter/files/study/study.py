@@ -16,7 +16,7 @@ from inerter.files.common.toml import as_toml
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
 from inerter.methods.method import Method
-from inerter.methods.registry import make_method
+from inerter.methods.registry import DEFAULT, make_method
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
 from inerter.signals.road import Road
@@ -46,7 +46,7 @@ class Study:
     indices: tuple[str, ...]
     conventions: str = "exact"
     optimise: str | None = None
-    evaluate: tuple[str, ...] = ("norm",)
+    evaluate: tuple[str, ...] = (DEFAULT,)
     baseline: str | None = None  # the layout that the others are compared with; None if there is but one
     sweep: Sweep | None = None
     seed: int = 0

@@ -78,8 +78,8 @@ def _offset(f: Finding) -> Text:
 
 def _moving_mass(f: Finding) -> Text:
     return (
-        f"{f.about}: holds what moves with the table between load cell and device, which the records do not tell from "
-        f"an inertance; weigh it, and give it, ",
+        f"{f.about}: holds what moves with the table between load cell and device, which the records do not separate "
+        f"from an inertance; weigh it, and give it, ",
         *(Remedy(Action.FIXTURE_MASS), "."),
     )
 

@@ -120,15 +120,15 @@ def staged(
     `model` is by default the ball screw of Wang and Su (2008), Figure 6b; any other needs a friction named f, and an
     inerter named b.
 
-    Raises `IdentificationError` where the friction cannot be told or the model does not fit; `RecordError` and
+    Raises `IdentificationError` where the friction is not identifiable or the model does not fit; `RecordError` and
     `IdentificationError` as `identify` does. Source: Wang and Su (2008), section 4.
     """
     device = _checked(MODELS["ball-screw"] if model is None else model, inertance, shaft_inertance)
     law = friction_law(friction, shaft_inertance or 0.0)
     if not law.level > 0.0 or not math.isfinite(law.interval[1]):
         raise IdentificationError(
-            f"The friction cannot be told from {friction.source!r}. {law.sentence} Move slowly, such as a cosine of "
-            f"0.1 Hz and 1 mm, without the flywheel."
+            f"The friction is not identifiable from {friction.source!r}. {law.sentence} Move slowly, such as a cosine "
+            f"of 0.1 Hz and 1 mm, without the flywheel."
         )
     half = max(law.level - law.interval[0], _NARROWEST * law.level)
     within = free(max(law.level - half, 0.0), law.level + half, _FRICTION)
@@ -206,7 +206,7 @@ def _response(device: Network, record: Record) -> ResponseCheck:
 
 
 def _bands(measured: Response, model: Response) -> list[Band]:
-    """Octaves from the lowest frequency that both tell."""
+    """Octaves from the lowest frequency that both have."""
     both = np.abs(model.omega[:, None] / measured.omega - 1.0) < 1e-6
     mine, its = np.nonzero(both)
     if not mine.size:

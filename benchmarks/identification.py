@@ -60,7 +60,7 @@ def command(values: dict[str, float], random: np.random.Generator) -> it.Signal:
 
 
 def case(number: int) -> tuple[int, dict[str, float], dict[str, tuple[bool, bool, float]], str, float]:
-    """For each parameter whether it was told, whether its interval holds the truth, and its relative error."""
+    """For each parameter whether it was identified, whether its interval holds the truth, and its relative error."""
     random = np.random.default_rng([7, number])
     values = truth(random)
     rig = it.VirtualRig(it.Rig(MODEL).with_values(values).device, seed=number, **SENSORS)
@@ -81,7 +81,7 @@ def case(number: int) -> tuple[int, dict[str, float], dict[str, tuple[bool, bool
 
 def coverage(count: int) -> None:
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
-    held, told, errors = Counter(), Counter(), {name: [] for name in NAMES}
+    held, identified, errors = Counter(), Counter(), {name: [] for name in NAMES}
     statuses, seconds = Counter(), []
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         for number, values, found, status, took in pool.map(case, range(count)):
@@ -92,14 +92,16 @@ def coverage(count: int) -> None:
                 shown = ", ".join(f"{name} = {values[name]:.4g} ({100 * found[name][2]:+.3f} %)" for name in missed)
                 print(f"  rig {number}: not in the interval: {shown}", flush=True)
             for name in NAMES:
-                told[name] += found[name][0]
+                identified[name] += found[name][0]
                 held[name] += found[name][0] and found[name][1]
                 if found[name][0]:
                     errors[name].append(abs(found[name][2]))
     print(f"{count} rigs: {dict(statuses)}; median {np.median(seconds):.1f} s a fit on busy cores")
     for name in NAMES:
-        share = held[name] / max(told[name], 1)
-        print(f"  {name:4s} told {told[name]:4d}, interval holds the truth in {100 * share:5.1f} %, ", end="")
+        share = held[name] / max(identified[name], 1)
+        print(
+            f"  {name:4s} identified {identified[name]:4d}, interval holds the truth in {100 * share:5.1f} %, ", end=""
+        )
         print(f"median error {100 * np.median(errors[name]):.3f} %")
 
 

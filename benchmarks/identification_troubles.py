@@ -40,7 +40,7 @@ def fitted(task: tuple[str, int]) -> dict[str, object]:
     fit = it.identify(record_of(case, number), model_of(case), seed=0)
     seconds = time.perf_counter() - begun
     parameters = {
-        name: {"told": bool(fit.identifiable[name]), "best": p.best, "interval": p.interval}
+        name: {"identified": bool(fit.identifiable[name]), "best": p.best, "interval": p.interval}
         for name, p in fit.parameters.items()
     }
     return {
@@ -75,7 +75,7 @@ def run(kind: str, count: int, processes: int) -> list[dict[str, object]]:
 def misses(kind: str, row: dict[str, object]) -> tuple[int, list[str]]:
     """How many intervals of parameters are given, and which of them do not hold the truth."""
     truth = case_of(kind, row["number"]).truth
-    given = {name: p for name, p in row["parameters"].items() if p["told"] and name in truth}
+    given = {name: p for name, p in row["parameters"].items() if p["identified"] and name in truth}
     missed = [n for n, p in given.items() if not p["interval"][0] <= truth[n] <= p["interval"][1]]
     return len(given), missed
 
@@ -84,10 +84,10 @@ def report(kind: str, rows: list[dict[str, object]]) -> None:
     warned = [row for row in rows if row["status"] != "ok"]
     seconds = np.median([row["seconds"] for row in rows])
     print(f"{len(rows)} {kind} rigs, {len(warned)} with a warning; median {seconds:.1f} s a fit")
-    for told, group in (("without a warning", [r for r in rows if r not in warned]), ("with a warning", warned)):
+    for which, group in (("without a warning", [r for r in rows if r not in warned]), ("with a warning", warned)):
         found = [(row, *misses(kind, row)) for row in group]
         given, missed = sum(n for _, n, _ in found), sum(len(m) for *_, m in found)
-        print(f"  {told}: {given} intervals, {missed} miss ({100 * missed / max(given, 1):.1f} %)")
+        print(f"  {which}: {given} intervals, {missed} miss ({100 * missed / max(given, 1):.1f} %)")
         for row, _, names in found:
             if names:
                 print(

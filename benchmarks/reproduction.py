@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 
 from inerter.papers.wang_su_2008 import reproduce as paper
 from inerter.papers.wang_su_2008.report.page import write_reproduction
-from inerter.work.pool import Crew
+from inerter.work.pool import Pool
 
 
 def main(only: tuple[str, ...]) -> None:
@@ -34,10 +34,10 @@ def main(only: tuple[str, ...]) -> None:
     start = time.perf_counter()
     with TemporaryDirectory() as name:
         folder = Path(name)
-        with Crew(jobs) as crew:
-            found = paper.reproduce(folder, only=only, jobs=crew, progress=progress)
+        with Pool(jobs) as pool:
+            found = paper.reproduce(folder, only=only, jobs=pool, progress=progress)
             computed = time.perf_counter()
-            write_reproduction(found, folder, crew)
+            write_reproduction(found, folder, pool)
         written = time.perf_counter()
         tasks: Counter[str] = Counter()
         for line in (folder / paper.JOURNAL).read_text(encoding="utf-8").splitlines()[1:]:

@@ -104,6 +104,6 @@ from inerter.vehicle.quarter_car import QuarterCar as QuarterCar
 from inerter.vehicle.registry import VEHICLES as VEHICLES
 from inerter.vehicle.rig import Rig as Rig
 from inerter.vehicle.vehicle import VehicleModel as VehicleModel
-from inerter.work.pool import crewed as crewed
+from inerter.work.pool import pooled as pooled
 
 __version__: str

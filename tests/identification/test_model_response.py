@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import inerter as it
-from inerter.errors import RecordError
+from inerter.errors import LinearSystemError
 from inerter.identification.response import smoothed
 
 SHAFT = it.Spring(1e6) | it.Damper(3200.0)
@@ -107,5 +107,5 @@ def test_smoothing_takes_the_steps_of_the_encoder_and_leaves_the_motion():
 
 def test_frequencies_that_are_none():
     for omega in ([0.0], [-1.0], [np.nan], [[1.0, 2.0]], "many"):
-        with pytest.raises(RecordError, match="positive frequencies"):
+        with pytest.raises(LinearSystemError, match="positive frequencies"):
             it.linear_response(BALL_SCREW, omega)

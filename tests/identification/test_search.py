@@ -7,12 +7,12 @@ import pytest
 from rigs import BALL_SCREW, device, fit_test
 
 import inerter as it
+from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import experiment_of
 from inerter.identification.intervals import optimum_of
 from inerter.identification.noise import plain
 from inerter.identification.problem import Problem
-from inerter.identification.redrawing import redrawn
-from inerter.identification.search import starts, wander
+from inerter.identification.search import basin_hopping, starts
 from inerter.identification.sensors import repeated, unavoidable
 from inerter.identification.space import space_of
 
@@ -66,7 +66,7 @@ def test_part_of_a_record_is_part_of_what_its_force_tells() -> None:
     table = it.VirtualRig(device(gap=0.0), seed=0)
     record = table.run(it.chirp(1e-3, lowest=0.5, highest=8.0, duration=4.0), duration=4.0)
     experiment = experiment_of(record)
-    samples = int(np.searchsorted(experiment.told, 0.25))
+    samples = int(np.searchsorted(experiment.information, 0.25))
     power = np.cumsum((record.force - np.median(record.force)) ** 2)
     assert samples > 0.5 * record.time.size
     assert power[samples] / power[-1] == pytest.approx(0.25, abs=0.02)
@@ -83,20 +83,20 @@ def test_hops_never_lead_to_a_worse_fit() -> None:
     problem = problem_of(rattle(), BALL_SCREW)
     start = problem.space.placed({**RATTLING, "gap": 1.2e-4, "cs": 7000.0})
     before = float(np.sum(problem.residual(start) ** 2))
-    assert float(np.sum(problem.residual(wander(problem, start, seed=0)) ** 2)) < before
+    assert float(np.sum(problem.residual(basin_hopping(problem, start, seed=0)) ** 2)) < before
 
 
-def test_redrawn_records_agree_with_curvature_where_nothing_strikes() -> None:
+def test_a_bootstrap_agrees_with_curvature_where_nothing_strikes() -> None:
     """Without friction and backlash, and an encoder without errors, a bootstrap tells what the curvature tells."""
     model = it.Spring(it.free(1e4, 1e7, name="k")) | it.Damper(it.free(10, 1e5, name="c"))
     truth = it.Spring(2e5) | it.Damper(900.0)
     rig = it.VirtualRig(truth, seed=0, encoder_noise=0.0, encoder_resolution=0.0, force_resolution=0.0, force_range=1e4)
     problem = problem_of(rig.run(it.multisine(it.Road(1e-9, 10.0), seed=1, highest=20.0), duration=4.0), model)
     optimum = optimum_of(problem, problem.space.placed({"k": 2e5, "c": 900.0}))
-    anew = redrawn(problem, optimum, seed=0, draws=40)
+    drawn = bootstrap(problem, optimum, seed=0, draws=40)
     plain_errors = np.sqrt(np.diag(optimum.covariance))
-    assert np.all(anew.optimum.errors < 2.0 * plain_errors)
-    assert np.all(np.abs(anew.lean) < plain_errors)
+    assert np.all(drawn.optimum.errors < 2.0 * plain_errors)
+    assert np.all(np.abs(drawn.bias) < plain_errors)
 
 
 def test_what_an_encoder_leaves_grows_with_the_stiffness() -> None:
@@ -107,7 +107,7 @@ def test_what_an_encoder_leaves_grows_with_the_stiffness() -> None:
 
 
 def test_a_motion_repeats_only_without_tones_between_its_harmonics() -> None:
-    """Or what is drawn anew would lack them."""
+    """Or what a bootstrap draws would lack them."""
     periodic = experiment_of(fit_test(seed=4))
     moved = repeated(periodic)
     later = moved[1000:4000]

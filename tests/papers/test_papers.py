@@ -82,7 +82,7 @@ def recompute(folder: Path, *, finish: Callable[..., object], **given: Any) -> F
     return found
 
 
-def write(found: Found, folder: Path, crew: None) -> None:
+def write(found: Found, folder: Path, pool: None) -> None:
     (folder / "table.csv").write_text("7\n")
 
 

@@ -38,3 +38,8 @@ def test_without_units_no_channel_is_proposed(tmp_path: Path) -> None:
     path = write_csv(tmp_path / "a.csv", [["Zeit", "Weg", "Kraft"]], [record.time, record.displacement, record.force])
     with pytest.raises(RecordError, match=r"there are Zeit .*Name it: displacement='name'\."):
         it.read_record(path)
+
+
+def test_an_argument_that_there_is_not_is_refused_with_the_one_that_is_near(tmp_path: Path) -> None:
+    with pytest.raises(RecordError, match=r"no argument 'forse'.* Did you mean 'force'"):
+        it.read_record(tmp_path / "bench.csv", forse="Load")  # type: ignore[call-arg]

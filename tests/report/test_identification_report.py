@@ -24,6 +24,7 @@ from inerter.identification.kinds import FitFinding
 from inerter.identification.laws import laws
 from inerter.networks.elements.roles import Linear
 from inerter.networks.parser import written
+from inerter.records.choosing import ROLES
 from inerter.records.finding import Finding
 from inerter.records.kinds import RecordFinding
 from inerter.records.remedy import Action, Remedy, in_python
@@ -248,7 +249,7 @@ def test_no_remedy_reaches_a_terminal_with_the_words_of_python(action: Action) -
 
 def test_the_library_knows_steps_on_records_as_data_alone() -> None:
     """No text of the package for records writes a call or an argument out: that is done in one place."""
-    words = rf"\b({'|'.join(inspect.signature(it.read_record).parameters)})=\S"
+    words = rf"\b({'|'.join((*ROLES, *inspect.signature(it.read_record).parameters))})=\S"
     folder = Path(inspect.getfile(it.Record)).parent
     trees = [ast.parse(path.read_text(encoding="utf-8")) for path in folder.glob("*.py") if path.stem != "remedy"]
     docs = {id(n.value) for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Expr)}

@@ -1,4 +1,4 @@
-"""Another way to run pieces of work comes in where the crew is, and gives the same."""
+"""Another way to run pieces of work comes in where the process pool is, and gives the same."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from study_text import study_text
 
 import inerter as it
-from inerter.work.pool import crewed
+from inerter.work.pool import pooled
 
 STUDY = study_text(
     'indices = ["J1", "J3"]\noptimise = "norm"\nbudgets = ["b"]',
@@ -66,14 +66,14 @@ def test_a_folder_of_others_is_refused(tmp_path: Path) -> None:
 
 def test_an_executor_that_is_given_does_all_and_goes_on() -> None:
     executor = Elsewhere()
-    with crewed(executor) as crew:
-        crew.begin(int)
-        assert sorted(crew.spread(abs, range(-5, 0))) == [1, 2, 3, 4, 5]
-        with crewed(crew) as same:
-            assert same is crew
+    with pooled(executor) as pool:
+        pool.begin(int)
+        assert sorted(pool.spread(abs, range(-5, 0))) == [1, 2, 3, 4, 5]
+        with pooled(pool) as same:
+            assert same is pool
     assert executor.run == 6
     with ThreadPoolExecutor(1) as threads:
         for _ in range(2):
-            with crewed(threads) as crew:
-                assert list(crew.spread(abs, [-1])) == [1]
+            with pooled(threads) as pool:
+                assert list(pool.spread(abs, [-1])) == [1]
         assert threads.submit(abs, -2).result() == 2

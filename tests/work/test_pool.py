@@ -1,4 +1,4 @@
-"""A crew: processes that work through one list after another."""
+"""A process pool: processes that work through one list after another."""
 
 from __future__ import annotations
 
@@ -9,50 +9,50 @@ from multiprocessing import active_children
 import pytest
 
 from inerter.errors import WorkError
-from inerter.work.pool import Crew, crewed
+from inerter.work.pool import Pool, pooled
 
 PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
 KILL = "__import__('os').kill(__import__('os').getpid(), 9)"
 
 
 def evaluated(items: list[str]) -> list[object]:
-    with Crew(2) as crew:
-        crew.begin(os.getpid)
-        return list(crew.spread(eval, items))
+    with Pool(2) as pool:
+        pool.begin(os.getpid)
+        return list(pool.spread(eval, items))
 
 
 def test_one_process_is_this_one() -> None:
-    with Crew(1) as crew:
-        crew.begin(os.getpid)
-        assert set(crew.spread(eval, [PROCESS] * 3)) == {os.getpid()}
+    with Pool(1) as pool:
+        pool.begin(os.getpid)
+        assert set(pool.spread(eval, [PROCESS] * 3)) == {os.getpid()}
         assert not active_children()
 
 
 def test_short_work_is_not_worth_a_process() -> None:
-    with Crew(2) as crew:
-        assert list(crew.spread(abs, range(-3, 0))) == [3, 2, 1]
+    with Pool(2) as pool:
+        assert list(pool.spread(abs, range(-3, 0))) == [3, 2, 1]
         assert not active_children()
 
 
 def test_processes_stay_for_the_next_list_and_end_with_the_crew() -> None:
-    with Crew(2) as crew:
-        crew.begin(os.getpid)
+    with Pool(2) as pool:
+        pool.begin(os.getpid)
         assert len(active_children()) == 1  # as many as there is work for
-        assert sorted(crew.spread(abs, range(-50, 0))) == list(range(1, 51))
+        assert sorted(pool.spread(abs, range(-50, 0))) == list(range(1, 51))
         there = {child.pid for child in active_children()}
         assert len(there) == 2
         for _ in range(2):
-            assert set(crew.spread(eval, [PROCESS] * 20)) <= there
-        with crewed(crew) as same:
-            assert same is crew
+            assert set(pool.spread(eval, [PROCESS] * 20)) <= there
+        with pooled(pool) as same:
+            assert same is pool
         assert active_children()
     assert not active_children()
 
 
 def test_the_first_of_each_kind_is_worked_on_here() -> None:
-    with Crew(2) as crew:
-        crew.begin(os.getpid)
-        found = list(crew.spread(eval, [PROCESS, f" {PROCESS}", PROCESS, PROCESS], kind=len, here=lambda item: item))
+    with Pool(2) as pool:
+        pool.begin(os.getpid)
+        found = list(pool.spread(eval, [PROCESS, f" {PROCESS}", PROCESS, PROCESS], kind=len, here=lambda item: item))
     assert found[:2] == [PROCESS, f" {PROCESS}"]
     assert os.getpid() not in found[2:]
     assert len(found) == 4
@@ -82,9 +82,9 @@ def test_a_process_that_does_not_heed_its_end_is_not_waited_for() -> None:
 
 
 def test_what_is_not_asked_for_any_more_is_not_begun() -> None:
-    with Crew(2) as crew:
-        crew.begin(os.getpid)
-        results = crew.spread(eval, ["1", *["__import__('time').sleep(0.5)"] * 200])
+    with Pool(2) as pool:
+        pool.begin(os.getpid)
+        results = pool.spread(eval, ["1", *["__import__('time').sleep(0.5)"] * 200])
         assert next(results) == 1
         results.close()  # type: ignore[attr-defined]
         start = time.monotonic()

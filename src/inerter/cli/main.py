@@ -155,7 +155,7 @@ def identify(
     trim: Annotated[str | None, Parameter(help="Seconds to use, FROM:TO.")] = None,
     resample: Annotated[str | None, Parameter(help='New interval between samples: "1 ms".')] = None,
     period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None,
-    force_range: Annotated[str | None, Parameter(help='What the load cell can tell: "981 N".')] = None,
+    force_range: Annotated[str | None, Parameter(help='What the load cell can read: "981 N".')] = None,
     force_bandwidth: Annotated[str | None, Parameter(help='Of the load cell and its amplifier: "300 Hz".')] = None,
     force_noise: Annotated[
         str | None, Parameter(help='Of the load cell, r.m.s.: "0.5 N"; else from the quietest half-octave.')
@@ -172,7 +172,7 @@ def identify(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Identify the parameters of a device from measured records, and say what the records cannot tell.
+    """Identify the parameters of a device from measured records, and say what is not identifiable.
 
     The folder, by default RECORD-results, then holds report.html, fit.json,
     residuals.csv and figures.

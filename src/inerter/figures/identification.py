@@ -54,7 +54,7 @@ class ProfileCurve:
     rises: Matrix  # 0 at the best fit, 1 at the ends of the interval
     interval: tuple[float, float]
     unit: str  # empty for a ratio
-    remark: str = ""  # such as that it cannot be told
+    remark: str = ""  # such as that it is not identifiable
 
 
 def draw(figure: Figure, folder: Path, name: str, *, print_too: bool = True) -> list[Path]:
@@ -118,7 +118,7 @@ def draw_phase(ax: Axes, response: Response, style: dict[str, Any]) -> Axes:
 
 
 def draw_coherence(ax: Axes, response: Response, style: dict[str, Any]) -> Axes:
-    """The coherence, where there is scatter to tell it."""
+    """The coherence, where there is scatter to know it by."""
     if np.any(np.isfinite(response.averages)):
         marks = _marks(response, style)
         ax.plot(*_with_gaps(response, response.coherence), **marks)

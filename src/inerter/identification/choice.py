@@ -31,8 +31,8 @@ Matrix = NDArray[np.float64]
 LEAST, MOST = 0.02, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
 _ROBUST = 3.0  # whitened residuals beyond this count less than their square
 _BLOCKS = 20
-_RANGE = 4.0  # about known values, in which a fit is tried anew
-_ANEW = " anew"
+_RANGE = 4.0  # about known values, in which a fit is tried again
+_AGAIN = " again"  # no name of a candidate
 _PAIRS = (("ideal", "friction"), ("elastic", "elastic-friction"), ("backlash", "ball-screw"))
 
 
@@ -99,9 +99,9 @@ def choose(
     Raises `IdentificationError` if no candidate can be fitted or nothing is kept for the check; a candidate that
     fails among others is in `findings`.
     """
+    asked = options.changed(**changes)
     given = _named(models)
     records = checked_records(records)
-    asked = options.changed(**changes)
     if not asked.check > 0.0:
         raise IdentificationError(f"Candidates are compared on the part kept for the check, got {asked.check!r}.")
     solutions: dict[str, Solution] = {}
@@ -120,15 +120,15 @@ def choose(
                 failed.append(Finding(FitFinding.FAILED, "warning", name, {"error": error.args}))
 
     def again(candidates: Mapping[str, Network]) -> None:
-        """Candidates that a relative shows to be far from their best fit are fitted anew near that relative's."""
+        """Candidates that a relative shows to be far from their best fit are fitted again near that relative's."""
         ranked = compare(fits)
         for name, relative in _stuck(ranked, fits):
             with suppress(InerterError):
                 near = solution_of(records, _near(candidates[name], fits[relative]), asked, None)
-                anew = fit_of(near, explain=False)
-                losses = {c.name: c.loss for c in compare({relative: fits[relative], name: fits[name], _ANEW: anew})}
-                if losses[_ANEW] < losses[name]:
-                    solutions[name], fits[name] = near, anew
+                other = fit_of(near, explain=False)
+                losses = {c.name: c.loss for c in compare({relative: fits[relative], name: fits[name], _AGAIN: other})}
+                if losses[_AGAIN] < losses[name]:
+                    solutions[name], fits[name] = near, other
 
     fit_all(given)
     if not fits:

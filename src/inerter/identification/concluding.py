@@ -28,7 +28,7 @@ from inerter.records.finding import Finding
 
 Matrix = NDArray[np.float64]
 ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
-_SATURATED = 0.2  # of the samples, from which on a record tells little
+_SATURATED = 0.2  # of the samples, from which on a record says little
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
 _FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
 _NOTICED = 0.05  # of the friction: an offset that may be one of the friction

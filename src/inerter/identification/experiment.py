@@ -22,7 +22,7 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
-MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and tell nothing new
+MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and find nothing new
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the time in which the device answers; parts of an interval, as a power of 2
 _MAD = 1.4826  # standard deviations in a median absolute deviation
 _AT_REST = 0.02  # of the largest velocity
@@ -53,7 +53,7 @@ class Experiment:
     kept: NDArray[np.bool_]
     table: InputTable  # of the motion
     noise: float  # [N] r.m.s. of the noise of the force
-    told: Matrix  # (samples,) how much of the squared force of all samples kept lies up to each
+    information: Matrix  # (samples,) how much of the squared force of all samples kept lies up to each
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
     tally: Tally = field(default_factory=Tally)
 
@@ -120,9 +120,11 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
             f"{record.source!r} has {record.time.size} samples; a fit takes up to {MOST_SAMPLES}. Trim or resample it."
         )
     if np.ptp(record.displacement) == 0.0:
-        raise IdentificationError(f"The displacement of {record.source!r} is constant: nothing can be told from it.")
+        raise IdentificationError(
+            f"The displacement of {record.source!r} is constant: nothing is identifiable from it."
+        )
     if np.ptp(record.force) == 0.0:
-        raise IdentificationError(f"The force of {record.source!r} is constant: nothing can be told from it.")
+        raise IdentificationError(f"The force of {record.source!r} is constant: nothing is identifiable from it.")
     motion = smooth_displacement(record, bandwidth)
     interval, count = record.interval, record.time.size
     try:
@@ -145,11 +147,11 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         raise IdentificationError(
             f"Of {record.source!r} only {kept.sum()} samples can be used; a fit needs 50 or more."
         )
-    return Experiment(record, motion, kept, table, _noise(record), _told(record.force, kept))
+    return Experiment(record, motion, kept, table, _noise(record), _information(record.force, kept))
 
 
 def _noise(record: Record) -> float:
-    """R.m.s. of the noise of the force [N]: as it is known, or as the quietest half-octave of its spectrum tells.
+    """R.m.s. of the noise of the force [N]: as it is known, or as the quietest half-octave of its spectrum says.
 
     Less where impacts now and then are all of that: sixth differences leave little of any force, and their median
     little of what is not there most of the time.
@@ -161,7 +163,7 @@ def _noise(record: Record) -> float:
     return max(min(quietest(record.force, record.interval), intermittent), 1e-9)
 
 
-def _told(force: Matrix, kept: NDArray[np.bool_]) -> Matrix:
+def _information(force: Matrix, kept: NDArray[np.bool_]) -> Matrix:
     square = np.where(kept, (force - np.median(force[kept])) ** 2, 0.0)
     total = np.cumsum(square)
     return np.asarray(total / total[-1])

@@ -1,6 +1,6 @@
 """What may be wrong with a model or the sensors where a fit leaves more than sound sensors would.
 
-Each hypothesis is fitted anew from the best fit, device and all, to the part that was fitted, and judged by how much of
+Each hypothesis is fitted from the best fit on, device and all, to the part that was fitted, and judged by how much of
 what was left on the check part it explains.
 """
 
@@ -95,7 +95,7 @@ def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge
     assumed = (*problem.assumed, hypothesis)
     rig = problem.rig if hypothesis.device is None else Rig(hypothesis.device)
     space = space_of(rig, assumed)
-    anew = replace(problem, rig=rig, space=space, assumed=assumed, whitenings=by.fitted, horizon=1.0, systems={})
+    other = replace(problem, rig=rig, space=space, assumed=assumed, whitenings=by.fitted, horizon=1.0, systems={})
     known = problem.space.named(optimum.point)
     widths = dict(zip(problem.space.names, steps_of(optimum), strict=True))
     sizes = {u.name: u.size for u in hypothesis.unknowns}
@@ -105,7 +105,7 @@ def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge
         point = space.placed({**known, **zero, **start})
         seen = {**sizes, **start}
         steps = np.array([widths.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)])
-        trials.append(Trial(hypothesis, anew, optimum_of(anew, point, steps, _EVALUATIONS, _ACCURACY)))
+        trials.append(Trial(hypothesis, other, optimum_of(other, point, steps, _EVALUATIONS, _ACCURACY)))
     return min(trials, key=lambda t: t.optimum.cost)
 
 

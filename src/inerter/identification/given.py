@@ -13,7 +13,7 @@ from inerter.identification.models import MODELS
 from inerter.networks.elements import Network
 from inerter.records.record import Record
 
-_FEWEST = 4  # samples of two records at the same times that can tell that they are the same
+_FEWEST = 4  # samples of two records at the same times that show that they are the same
 _SAME = 1e-9  # of the largest value: differences that other units and formats leave of one and the same sample
 
 

@@ -29,7 +29,7 @@ Matrix = NDArray[np.float64]
 _ROUNDS = 4
 _TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 31)])  # [s] of c/k
 _FORCE_BAND = 200.0  # [Hz] in which contact is looked for
-_SLIGHT = 0.3  # share of the power in the apparent one, with less of which its sign tells nothing
+_SLIGHT = 0.3  # share of the power in the apparent one, with less of which its sign says nothing
 _WELL, _POORLY = 0.04, 0.6  # relative half-widths of the ranges to look in
 
 

@@ -60,7 +60,7 @@ class Hypothesis:
     device: Network | None = None
     moved: Callable[[Experiment, Values], Experiment] = _as_it_was
     read: Callable[[Matrix, Experiment, Values], Matrix] = _as_read  # of the first samples
-    details: Callable[[Values], Details] = _none  # the numbers that are told of it
+    details: Callable[[Values], Details] = _none  # the numbers of its sentence
     slow: int | None = None  # degree over time of what it leaves open in each part of a record
     starts: tuple[Values, ...] = ({},)  # where to begin, unless it is at the sizes, or at zero if it may be negative
 

@@ -75,7 +75,7 @@ class Judge:
         return _SOUND + _CHANCE * float(np.std(sizes, ddof=1) / np.mean(sizes))
 
     def pattern(self, number: int, residual: Matrix) -> float:
-        """The p-value of residuals of one record that hang together in time no more than those of sound sensors do."""
+        """The p-value of residuals of one record no more autocorrelated than those of sound sensors are."""
         w = self.fitted[number]
         usual = float(np.mean([portmanteau(_compared(w, draw)) for draw in self.draws[number]]))
         return float(chi2.sf(portmanteau(_compared(w, _centred(residual, w))) * _LAGS / max(usual, _LAGS), _LAGS))

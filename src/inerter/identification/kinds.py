@@ -1,4 +1,4 @@
-"""What can be found in an identification, and how it is said: doubts, notes, the next experiment, the choice."""
+"""What can be found in an identification, and how it is said: doubts, notes, the next experiment, a choice, stages."""
 
 from __future__ import annotations
 
@@ -32,6 +32,13 @@ class FitFinding(StrEnum):
     FEWEST_UNKNOWNS = "fewest-unknowns"
     NOT_REACHED = "not-reached"
     FAILED = "failed"
+    # the staged protocol
+    FRICTION_LEVEL = "friction-level"
+    FRICTION_LAW = "friction-law"
+    OTHER_FRICTION = "other-friction"
+    GIVEN_INERTANCE = "given-inertance"
+    SATURATED_CHECK = "saturated-check"
+    RESPONSE = "response"
 
     def text(self, finding: Finding) -> Text:
         """The parts of the sentence of such a finding."""
@@ -78,8 +85,8 @@ def _offset(f: Finding) -> Text:
 
 def _moving_mass(f: Finding) -> Text:
     return (
-        f"{f.about}: holds what moves with the table between load cell and device, which the records do not tell from "
-        f"an inertance; weigh it, and give it, ",
+        f"{f.about}: holds what moves with the table between load cell and device, which the records do not separate "
+        f"from an inertance; weigh it, and give it, ",
         *(Remedy(Action.FIXTURE_MASS), "."),
     )
 
@@ -152,6 +159,36 @@ def _failed(f: Finding) -> Text:
     return (f"{f.about}: cannot be fitted. ", *f.numbers["error"])
 
 
+def _level(f: Finding) -> Text:
+    level, low, high = (format_quantity(f.numbers[name], "N") for name in ("level", "lower", "upper"))
+    return (f"Friction {level} ({low} to {high}) from the test without flywheel.",)
+
+
+def _other_friction(f: Finding) -> Text:
+    return (
+        f"The faster test asks for another friction than the slow one: at the end of its interval, "
+        f"{format_quantity(f.numbers['best'], 'N')}. The friction may depend on speed or on the load of the flywheel.",
+    )
+
+
+def _given_inertance(f: Finding) -> Text:
+    return (f"The inertance was given: {format_quantity(f.numbers['inertance'], 'kg')}.",)
+
+
+def _saturated_check(f: Finding) -> Text:
+    return (
+        f"The load cell was saturated in {100.0 * f.numbers['share']:.2g} % of the check, which no model's response "
+        f"has in it: move less.",
+    )
+
+
+def _response(f: Finding) -> Text:
+    differ, octaves = f.numbers["differ"], f.numbers["octaves"]
+    if octaves and not differ:
+        return (f"The check agrees in all of {octaves} octaves.",)
+    return (f"The check differs in {differ} of {octaves} octaves.",)
+
+
 _TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
     FitFinding.UNPREDICTABLE: _unpredictable,
     FitFinding.SUSPECTED: _suspected,
@@ -168,4 +205,10 @@ _TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
     FitFinding.FEWEST_UNKNOWNS: _fewest,
     FitFinding.NOT_REACHED: _not_reached,
     FitFinding.FAILED: _failed,
+    FitFinding.FRICTION_LEVEL: _level,
+    FitFinding.FRICTION_LAW: lambda f: (f.numbers["law"].sentence,),
+    FitFinding.OTHER_FRICTION: _other_friction,
+    FitFinding.GIVEN_INERTANCE: _given_inertance,
+    FitFinding.SATURATED_CHECK: _saturated_check,
+    FitFinding.RESPONSE: _response,
 }

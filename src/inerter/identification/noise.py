@@ -1,4 +1,4 @@
-"""What is known of the errors of a record: how they grow where the force jumps, and how they hang together in time."""
+"""What is known of the errors of a record: how they grow where the force jumps, and how they are autocorrelated."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OPTIMISM = (1.0 + 1.0 / _LINES) ** 2  # by which weights from the residuals them
 
 @dataclass(frozen=True, eq=False)
 class Whitening:
-    """Makes residuals of a record independent and of size one, as far as the record tells.
+    """Makes residuals of a record independent and of size one, as far as is known.
 
     An instant at which the force jumps is known only as well as the displacement: samples there count less. What is
     left has a spectrum of its own, because the smoothed noise of the encoder passes through the device; it is divided
@@ -75,7 +75,7 @@ def yardstick(draws: Matrix, noise: float, compared: NDArray[np.bool_]) -> White
 
 
 def _spectrum(values: Matrix, share: float) -> tuple[Matrix, Matrix]:
-    """Frequencies and densities of bands, each with enough lines to be told; `share` of the values are not zero.
+    """Frequencies and densities of bands, each with enough lines to be estimated; `share` of the values are not zero.
 
     Of several rows, the mean.
     """

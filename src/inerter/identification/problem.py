@@ -79,10 +79,10 @@ class Problem:
         return force, run
 
     def samples(self, experiment: Experiment) -> int:
-        """How many samples of a record hold this part of all that its force tells."""
+        """How many samples of a record hold this part of all the information in its force."""
         if self.horizon == 1.0:
             return experiment.size
-        return min(max(_FEWEST, int(np.searchsorted(experiment.told, self.horizon))), experiment.size)
+        return min(max(_FEWEST, int(np.searchsorted(experiment.information, self.horizon))), experiment.size)
 
     def residual(self, coordinates: Matrix) -> Matrix:
         """Whitened residuals of all records, one after the other."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.errors import RecordError, Status
+from inerter.errors import LinearSystemError, RecordError, Status
 from inerter.networks.elements import Network
 from inerter.networks.transform import linearise
 from inerter.records.periods import common_periods, whole_periods
@@ -25,7 +25,7 @@ from inerter.vehicle.rig import Rig
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 _STEP = 2e-4  # [s] longest of the simulation
-_ABOVE = 1.25  # times the highest frequency told: where the displacement is cut off
+_ABOVE = 1.25  # times the highest frequency of the response: where the displacement is cut off
 _HIGHEST = 0.8  # of half the rate: a cut-off above that is none
 _ORDER = 4  # of the Butterworth filter, which goes forward and backward
 
@@ -44,8 +44,8 @@ def model_response(
     The displacement is smoothed before the device feels it, for the steps of an encoder are no motion of the table:
     where it repeats, to the harmonics of its mean period that stand out of the scatter, and the device is in its
     steady state; where it does not, by a Butterworth filter, forward and backward, a quarter above the highest
-    frequency that the records tell, and the device starts from rest. The frequencies are those that
-    `frequency_response(records)` tells. `step` [s] is the longest of the simulation.
+    frequency of their response, and the device starts from rest. The frequencies are those that
+    `frequency_response(records)` finds. `step` [s] is the longest of the simulation.
 
     Raises `RecordError` as `frequency_response` does, and where a simulation has to stop; `DesignError`,
     `MechanismError` and `SimulationError` as `simulate` does. What a simulation says of its accuracy is the `status`.
@@ -96,7 +96,7 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
 
     As read by a load cell of `cell_bandwidth` [Hz], if that is given.
 
-    Raises `DesignError` if a value is free, `RecordError` unless omega holds positive frequencies [rad/s].
+    Raises `DesignError` if a value is free, `LinearSystemError` unless omega holds positive frequencies [rad/s].
     """
     device = model.device if isinstance(model, Rig) else model
     try:
@@ -104,7 +104,7 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
     except (TypeError, ValueError):
         frequencies = np.full(1, np.nan)
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies) & (frequencies > 0.0)):
-        raise RecordError("A linear response needs a list of positive frequencies [rad/s].")
+        raise LinearSystemError("A linear response needs a list of positive frequencies [rad/s].")
     value = np.asarray(1j * frequencies * device.admittance(1j * frequencies))
     left_out = linearise(device)
     notes = [f"Friction left out: {', '.join(left_out.frictions)}."] if left_out.frictions else []
@@ -138,8 +138,8 @@ def _mean_period(record: Record, period: float) -> Harmonics:
     """The mean period of a displacement, of the harmonics that stand out of its scatter."""
     part = whole_periods(record, period)
     lines = lines_of([part])
-    told = lines.chosen() | lines.told()
-    amplitudes = np.where(told, lines.displacement[0].mean(axis=0), 0.0)
+    significant = lines.chosen() | lines.significant()
+    amplitudes = np.where(significant, lines.displacement[0].mean(axis=0), 0.0)
     last = 1 + int(np.max(np.flatnonzero(amplitudes), initial=0))
     return Harmonics(
         label=f"mean period of {record.source}",
@@ -158,8 +158,8 @@ def _in_steady_state(rig: Rig, motion: Harmonics, record: Record, step: float) -
         raise RecordError(f"The model cannot follow {record.source!r}: {run.status.message}.")
     time = np.asarray(np.arange(2 * count) * (motion.period / count))
     x, force = (np.tile(run[name][:count], 2) for name in ("displacement", "device_force"))
-    count_told = np.count_nonzero(motion.coefficient)
-    notes = (f"The model's steady state on the mean period of the displacement, of {count_told} harmonics.",)
+    count_significant = np.count_nonzero(motion.coefficient)
+    notes = (f"The model's steady state on the mean period of the displacement, of {count_significant} harmonics.",)
     return Record(time, x, force, source=record.source, notes=notes, period=motion.period), run.status
 
 

@@ -91,7 +91,7 @@ def starts(problem: Problem, guess: Mapping[str, tuple[float, float]], seed: int
     return result
 
 
-def wander(problem: Problem, start: Matrix, seed: int) -> Matrix:
+def basin_hopping(problem: Problem, start: Matrix, seed: int) -> Matrix:
     """The best fit that can be reached from `start` by hops to nearby points, each improved.
 
     Hops go as far as the linearised cost would rise by about itself: far along valleys, and far from bad fits.

@@ -96,7 +96,7 @@ def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: n
     """How far off each sample [m] the table may truly have been when it was read.
 
     Where it starts, a smoothed motion is what was read: it lies on a step of the encoder, and would be read once more
-    without an error. Later it goes through many steps, and the filter has told where between them it is.
+    without an error. Later it goes through many steps, and the filter has found where between them it is.
     """
     gone = np.abs(moved - moved[0]) > step
     left = int(np.argmax(gone)) if gone.any() else moved.size

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError
+from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import Experiment, experiment_of, forgotten
 from inerter.identification.fit import Misfit
 from inerter.identification.guess import chain_of, guess_of, sign_of
@@ -19,8 +20,7 @@ from inerter.identification.judging import Judge, check_parts, judge_of
 from inerter.identification.noise import plain, whitening_of, yardstick
 from inerter.identification.options import FitOptions
 from inerter.identification.problem import Problem
-from inerter.identification.redrawing import redrawn
-from inerter.identification.search import QUICK, THOROUGH, search, soft, wander
+from inerter.identification.search import QUICK, THOROUGH, basin_hopping, search, soft
 from inerter.identification.sensors import sound, unavoidable
 from inerter.identification.space import space_of
 from inerter.records.finding import Finding
@@ -73,11 +73,11 @@ def solve(
     guess = {} if chain is None else guess_of(chain, list(problem.experiments))
     point, costs = _searched(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
     problem.experiments, leads = _leads(problem, point, asked.lead)
-    anew = redrawn(problem, _refined(problem, point, asked.seed), asked.seed)
+    drawn = bootstrap(problem, _refined(problem, point, asked.seed), asked.seed)
     if progress is not None:
         progress(0.7)
-    optimum, found = _profiled(problem, anew.optimum)
-    optimum, found = _straightened(problem, optimum, found, anew.lean)
+    optimum, found = _profiled(problem, drawn.optimum)
+    optimum, found = _unbiased(problem, optimum, found, drawn.bias)
     checked = tuple(check_parts(problem.experiments, whole, leads))
     judge = judge_of(problem, optimum.point, checked, asked.seed)
     if judge is None:
@@ -86,7 +86,7 @@ def solve(
         progress(1.0)
     return Solution(
         problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(findings),
-        anew.predicted, judge, judge.misfit(problem, optimum.point), asked.seed,
+        drawn.predicted, judge, judge.misfit(problem, optimum.point), asked.seed,
     )  # fmt: skip
 
 
@@ -122,7 +122,7 @@ def _searched(
         begun, ended = attempt / 3.0, (attempt + 1) / 3.0
         point, costs = search(problem, guess, seed + attempt, points, stages, part(progress, begun, ended))
         if stages is THOROUGH:
-            point = wander(problem, point, seed)
+            point = basin_hopping(problem, point, seed)
         residual = problem.residual(point)
         cost, left = soft(residual), float(np.quantile(np.abs(residual[kept]), 0.9))
         again = any(math.isclose(cost, earlier, rel_tol=_SAME) for earlier, _, _ in found)
@@ -168,7 +168,7 @@ def _refined(problem: Problem, start: Matrix, seed: int) -> Optimum:
 
 
 def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile]]:
-    """Profiles of all parameters; a better fit met on the way becomes the optimum, and all are walked anew."""
+    """Profiles of all parameters; a better fit met on the way becomes the optimum, and all are walked once more."""
     found = profiles(problem, optimum)
     for _ in range(2):
         better = min((p.better for p in found if p.better is not None), key=lambda b: b[0], default=None)
@@ -180,8 +180,8 @@ def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile
     return optimum, found
 
 
-def _straightened(
-    problem: Problem, optimum: Optimum, found: Sequence[Profile], lean: Matrix
+def _unbiased(
+    problem: Problem, optimum: Optimum, found: Sequence[Profile], bias: Matrix
 ) -> tuple[Optimum, list[Profile]]:
     """The best fit and its profiles without what the sensors' errors did to them.
 
@@ -189,7 +189,7 @@ def _straightened(
     """
     lower, upper = problem.space.bounds
     on_both_sides = np.array([p.lower.known and p.upper.known for p in found])
-    point = np.clip(optimum.point - np.where(on_both_sides, lean, 0.0), lower, upper)
+    point = np.clip(optimum.point - np.where(on_both_sides, bias, 0.0), lower, upper)
     if robust_cost(problem.residual(point)) > optimum.cost + 2.0 * float(np.max(optimum.threshold)):
         return optimum, list(found)
     by = point - optimum.point

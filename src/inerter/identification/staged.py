@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,19 +16,20 @@ from inerter.identification.fit import Fit, Parameter
 from inerter.identification.friction_law import FrictionLaw, friction_law
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.identify import identify
+from inerter.identification.kinds import FitFinding
 from inerter.identification.models import MODELS
 from inerter.identification.options import POINTS
 from inerter.identification.response import linear_response, model_response
 from inerter.networks.elements import Element, Free, Network, free
 from inerter.networks.elements.roles import Linear
 from inerter.networks.transform import map_elements, with_values
+from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
 from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
-from inerter.units import format_quantity
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
@@ -91,7 +92,12 @@ class Staged:
     fit: Fit  # of the second stage, in which the friction could move within its interval
     response: ResponseCheck | None
     status: Status
-    notes: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The findings in sentences."""
+        return tuple(finding.sentence for finding in self.findings)
 
 
 def staged(
@@ -120,15 +126,15 @@ def staged(
     `model` is by default the ball screw of Wang and Su (2008), Figure 6b; any other needs a friction named f, and an
     inerter named b.
 
-    Raises `IdentificationError` where the friction cannot be told or the model does not fit; `RecordError` and
+    Raises `IdentificationError` where the friction is not identifiable or the model does not fit; `RecordError` and
     `IdentificationError` as `identify` does. Source: Wang and Su (2008), section 4.
     """
     device = _checked(MODELS["ball-screw"] if model is None else model, inertance, shaft_inertance)
     law = friction_law(friction, shaft_inertance or 0.0)
     if not law.level > 0.0 or not math.isfinite(law.interval[1]):
         raise IdentificationError(
-            f"The friction cannot be told from {friction.source!r}. {law.sentence} Move slowly, such as a cosine of "
-            f"0.1 Hz and 1 mm, without the flywheel."
+            f"The friction is not identifiable from {friction.source!r}. {law.sentence} Move slowly, such as a cosine "
+            f"of 0.1 Hz and 1 mm, without the flywheel."
         )
     half = max(law.level - law.interval[0], _NARROWEST * law.level)
     within = free(max(law.level - half, 0.0), law.level + half, _FRICTION)
@@ -147,7 +153,7 @@ def staged(
         fit=found,
         response=response,
         status=found.status,
-        notes=tuple(_notes(law, within, found, inertance, check, response)),
+        findings=tuple(_findings(law, within, found, inertance, check, response)),
     )
 
 
@@ -206,7 +212,7 @@ def _response(device: Network, record: Record) -> ResponseCheck:
 
 
 def _bands(measured: Response, model: Response) -> list[Band]:
-    """Octaves from the lowest frequency that both tell."""
+    """Octaves from the lowest frequency that both have."""
     both = np.abs(model.omega[:, None] / measured.omega - 1.0) < 1e-6
     mine, its = np.nonzero(both)
     if not mine.size:
@@ -226,38 +232,29 @@ def _bands(measured: Response, model: Response) -> list[Band]:
     return result
 
 
-def _notes(
+def _findings(
     law: FrictionLaw,
     within: Free,
     found: Fit,
     inertance: float | None,
     check: Record | None,
     response: ResponseCheck | None,
-) -> list[str]:
-    low, high = (format_quantity(v, "N") for v in law.interval)
-    notes = [
-        f"Friction {format_quantity(law.level, 'N')} ({low} to {high}) from the test without flywheel.",
-        law.sentence,
-    ]
-    profile = found.parameters[_FRICTION]
-    inner = profile.interval
+) -> Iterator[Finding]:
+    low, high = law.interval
+    level = {"level": law.level, "lower": low, "upper": high}
+    yield Finding(FitFinding.FRICTION_LEVEL, "info", _FRICTION, level)
+    yield Finding(FitFinding.FRICTION_LAW, "info", _FRICTION, {"law": law})
+    friction = found.parameters[_FRICTION]
+    inner = friction.interval
     if inner[1] < within.lower * 1.0001 or inner[0] > within.upper * 0.9999:
-        notes.append(
-            "The faster test asks for another friction than the slow one: at the end of its interval, "
-            f"{format_quantity(profile.best, 'N')}. The friction may depend on speed or on the load of the flywheel."
-        )
-    notes += [] if inertance is None else [f"The inertance was given: {format_quantity(inertance, 'kg')}."]
-    notes += list(found.notes)
+        yield Finding(FitFinding.OTHER_FRICTION, "warning", _FRICTION, {"best": friction.best})
+    if inertance is not None:
+        yield Finding(FitFinding.GIVEN_INERTANCE, "info", _INERTANCE, {"inertance": inertance})
+    yield from found.findings
     if check is not None and saturated(check).any():
-        notes.append(
-            f"The load cell was saturated in {100.0 * float(saturated(check).mean()):.2g} % of the check, which no "
-            f"model's response has in it: move less."
-        )
+        share = float(saturated(check).mean())
+        yield Finding(FitFinding.SATURATED_CHECK, "warning", check.source, {"share": share})
     if response is not None:
-        differ = [b for b in response.bands if not b.agrees]
-        notes.append(
-            f"The check agrees in all of {len(response.bands)} octaves."
-            if response.bands and not differ
-            else f"The check differs in {len(differ)} of {len(response.bands)} octaves."
-        )
-    return notes
+        differ = sum(not band.agrees for band in response.bands)
+        numbers = {"differ": differ, "octaves": len(response.bands)}
+        yield Finding(FitFinding.RESPONSE, "warning" if differ else "info", numbers=numbers)

@@ -56,8 +56,8 @@ def descend(objective: Differentiable, start: Array, lower: Array, upper: Array)
     return LocalOptimum(np.clip(np.exp(result.x), lower, upper), value, int(result.nfev))
 
 
-def creep(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
-    """The local optimum of a costly index near `start`, by quadratic models of a few values, without derivatives."""
+def trust_region(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
+    """The local optimum of a costly index near `start`, by a trust-region search without derivatives."""
     best = [LocalOptimum(start, np.inf, 0)]
 
     def logarithm(x: Array) -> float:

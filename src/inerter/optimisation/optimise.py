@@ -16,14 +16,14 @@ from inerter.methods.method import Differentiable, Estimate, Method, Objective, 
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
-from inerter.optimisation.local import LocalOptimum, approach, creep, descend, polish
+from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.threads import one_blas_thread
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
 COSTLY_AGREEMENT = 1e-4  # the same for values that are simulated
-_MOST_TRIED, _MOST_CREEPS = 6, 2  # starts that are valued, and searches from the best of them, of a costly index
+_MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are valued, and searches from the best of them, of a costly index
 _APART = 0.05  # logarithmic distance from which on two starts of such searches are two
 _PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is carried to the end
 _SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
@@ -168,8 +168,8 @@ def _costly_searches(
 ) -> tuple[list[LocalOptimum], int]:
     """A search from each of the best two starts, and how many starts were valued to tell which they are."""
     values = objective.values(np.array(tried)) if tried else np.zeros(0)
-    best_first = np.argsort(values, kind="stable")[:_MOST_CREEPS]
-    return [creep(objective, tried[i], lower, upper) for i in best_first], len(tried)
+    best_first = np.argsort(values, kind="stable")[:_MOST_SEARCHES]
+    return [trust_region(objective, tried[i], lower, upper) for i in best_first], len(tried)
 
 
 def _searches(objective: Differentiable, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:

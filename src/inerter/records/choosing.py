@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict
 
 from inerter.errors import RecordError
 from inerter.records.channels import Channel, Contents
 from inerter.records.remedy import Action, Remedy
 from inerter.records.scales import fits
 
-ROLES = ("time", "displacement", "force", "velocity", "acceleration")
+
+class Roles(TypedDict, total=False):
+    """Which channel is which, by name or number from 0."""
+
+    time: str | int | None
+    displacement: str | int | None
+    force: str | int | None
+    velocity: str | int | None
+    acceleration: str | int | None
+
+
+ROLES = tuple(Roles.__annotations__)
 # Names that tell the channel by themselves, whatever their case; the last two are taken only if their unit fits.
 OBVIOUS = {
     "time": ("time", "t"),
@@ -20,6 +32,19 @@ OBVIOUS = {
     "acceleration": ("acceleration", "accel", "acc"),
 }
 _LISTED = 12
+
+
+def checked_roles(given: Mapping[str, Any]) -> dict[str, str | int | None]:
+    """The channel of each role; None where it is to be found by its name.
+
+    Raises `RecordError` for what is no role.
+    """
+    for name in given:
+        if name not in ROLES:
+            close = difflib.get_close_matches(name, ROLES, n=1)
+            hint = f" Did you mean {close[0]!r}?" if close else ""
+            raise RecordError(f"read_record(...) has no argument {name!r}; channels are {', '.join(ROLES)}.{hint}")
+    return {role: given.get(role) for role in ROLES}
 
 
 def choose(source: str, contents: Contents, asked: dict[str, str | int | None], timed: bool) -> dict[str, Channel]:

@@ -177,7 +177,7 @@ def _drift(record: Record) -> list[Finding]:
         values = getattr(record, role)
         turns = int(np.count_nonzero(np.diff(np.sign(values - np.mean(values)))))
         if quarter < 4 or turns < 8:
-            continue  # too few periods to tell drift from motion
+            continue  # too few periods to separate drift from motion
         first, last = values[:quarter], values[-quarter:]
         changes = float(np.median(last) - np.median(first)), float(_middle(last) - _middle(first))
         change, size = min(changes, key=abs), float(np.ptp(values))

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records import matlab, mdf, tables, tdms
 from inerter.records.channels import Channel, Contents, Progress, Samples
-from inerter.records.choosing import choose, example
+from inerter.records.choosing import Roles, checked_roles, choose, example
 from inerter.records.gaps import alike, mend, onto_force
 from inerter.records.lost import mended
 from inerter.records.record import Record
@@ -49,23 +49,20 @@ _MAGIC = (
 def read_record(
     path: str | os.PathLike[str],
     *,
-    displacement: str | int | None = None,
-    force: str | int | None = None,
-    time: str | int | None = None,
-    velocity: str | int | None = None,
-    acceleration: str | int | None = None,
     units: dict[str, str] | None = None,
     interval: float | None = None,
     gaps: str | float = "refuse",
     force_range: float | None = None,
     period: float | None = None,
     progress: Progress | None = None,
+    **named: Unpack[Roles],
 ) -> Record:
     """The record in a file of measurements: .csv, .tsv, .txt, .tdms, .mf4, .mdf or .mat.
 
-    A channel is named as in the file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name
-    (time, displacement, position, x, force, load, ...). Units come from the file; `units`, such as
-    {"force": "kgf"}, adds or overrules them, and may say what one volt is worth, {"force": "250 N"}.
+    The channels are the keywords `displacement`, `force`, `time`, `velocity` and `acceleration`. One is named as in the
+    file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name (time, displacement, position,
+    x, force, load, ...). Units come from the file; `units`, such as {"force": "kgf"}, adds or overrules them, and may
+    say what one volt is worth, {"force": "250 N"}.
     `interval` [s] gives the sampling where the file has no times, or overrules them.
 
     Samples that are missing or no finite numbers are refused; `gaps="fill"` interpolates up to 10 in a row, a number
@@ -75,13 +72,11 @@ def read_record(
 
     Raises `RecordError` for a file, channel or unit that cannot be used, in one sentence that says what to try.
     """
-    units = check_units(units)
+    asked, units = checked_roles(named), check_units(units)
     name = _checked_path(path)
     source = Path(name).name
     opener = _opener(name, source)
-    asked: dict[str, str | int | None] = {"time": time, "displacement": displacement, "force": force}
-    asked |= {"velocity": velocity, "acceleration": acceleration}
-    _check_interval(interval, time)
+    _check_interval(interval, asked["time"])
     with opener(name, source) as contents:
         chosen = choose(source, contents, asked, timed=interval is not None)
         scales, notes = _scales(source, chosen, units, asked)

@@ -36,7 +36,7 @@ class Record:
     acceleration: Matrix | None = None  # (n,) [m/s^2], where it was measured
     source: str = "record"
     notes: tuple[str, ...] = ()
-    force_range: float | None = None  # [N] the largest force that the load cell can tell, where it is known
+    force_range: float | None = None  # [N] the largest force that the load cell can read, where it is known
     force_bandwidth: float | None = None  # [Hz] of the load cell (second order, Butterworth), where it is known
     force_noise: float | None = None  # [N] r.m.s. of one sample, with what its steps add, where it is known
     displacement_noise: float | None = None  # [m] the same of the displacement

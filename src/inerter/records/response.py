@@ -51,7 +51,7 @@ def frequency_response(
     averaged over whole periods before they are divided, which leaves no bias of noise in either channel; the scatter
     between periods gives the band (Pintelon and Schoukens, System Identification, 2nd ed. 2012, ch. 2). Of several
     records of one period, the scatter between records does, which has in it what friction and backlash make of
-    different phases. Records of different periods, such as sines, tell one response together.
+    different phases. Records of different periods, such as sines, give one response together.
     Where it does not repeat, spectra are averaged over Hann-windowed segments of `segment` seconds, by default a
     sixteenth of all the time (Welch 1967), and the band follows from the coherence and the number of averages (Bendat
     and Piersol, Random Data, 4th ed. 2010, sec. 9.2).
@@ -103,8 +103,8 @@ def averaged(records: Sequence[Record], spectra: Spectra, estimator: str) -> Res
     """The response from averaged spectra."""
     if not spectra.omega.size:
         raise RecordError(
-            f"Force and displacement of {named(records)} have no more in common than noise would: nothing can be "
-            f"told. Excite more strongly, or record longer."
+            f"Force and displacement of {named(records)} have no more in common than noise would: there is no "
+            f"response. Excite more strongly, or record longer."
         )
     coherence = spectra.coherence
     size = np.maximum(np.abs(spectra.fx), 1e-300)
@@ -131,7 +131,7 @@ def _periodic(records: Sequence[Record], group: Sequence[float], estimator: Esti
     if counts == [1]:
         raise RecordError(
             f"Too short: {named(records)} has one whole period of {period:.6g} s. Record two or more, for their "
-            f"scatter tells how sure the response is."
+            f"scatter says how sure the response is."
         )
     many = f"{counts[0]} periods" if len(counts) == 1 else f"{len(counts)} records of {min(counts)} or more periods"
     notes = [f"Periodic: {many} of {period:.6g} s, {chosen.sum()} of {chosen.size} harmonics excited."]
@@ -258,9 +258,9 @@ def _check(records: Sequence[Record]) -> None:
                 f"The samples of {record.source!r} are not evenly spaced, which spectra need: resample the record."
             )
         if _is_constant(record.displacement):
-            raise RecordError(f"The displacement of {record.source!r} is constant: there is no response to tell.")
+            raise RecordError(f"The displacement of {record.source!r} is constant: there is no response.")
     if all(_is_constant(record.force) for record in records):
-        raise RecordError(f"The force of {named(records)} is constant: there is no response to tell.")
+        raise RecordError(f"The force of {named(records)} is constant: there is no response.")
 
 
 def _is_constant(values: Matrix) -> bool:

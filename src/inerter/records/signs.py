@@ -15,7 +15,7 @@ from inerter.records.smoothing import Motion, smooth_displacement
 
 Vector = NDArray[np.float64]
 STIFF = 0.3  # of the mass: more than that is elasticity near its resonance
-WIDE = 3.0  # highest over lowest frequency of an excitation that can tell a delay from a damper
+WIDE = 3.0  # highest over lowest frequency of an excitation that separates a delay from a damper
 
 
 def sign(record: Record, motion: Motion) -> list[Finding]:
@@ -54,7 +54,7 @@ def delay(record: Record, motion: Motion) -> list[Finding]:
 
 
 def estimate_delay(record: Record) -> tuple[float, float]:
-    """How much later the force was recorded than the motion, and the standard error [s]; nan where none can be told."""
+    """How much later the force was recorded than the motion, and its standard error [s]; nan if not identifiable."""
     found = delay(record, smooth_displacement(record))[0].numbers
     return found.get("delay", np.nan), found.get("standard_error", np.nan)
 

@@ -1,7 +1,7 @@
 """Velocity and acceleration from a measured displacement: filtered to a stated bandwidth, then a spline.
 
 Two differences of an encoder's samples multiply its steps by 1/interval^2: 1 um at 1 kHz becomes 1 m/s^2. So the
-displacement is filtered first, as little as its own spectrum allows, and what that costs is told.
+displacement is filtered first, as little as its own spectrum allows, and what that costs is known.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ MARGIN = 4.0  # the bandwidth over the highest frequency in the displacement
 ABOVE = 5.0  # times the noise floor, that a band has to hold to count as motion
 _BLOCK = 1 << 18  # samples of one spline
 _BANDS = 6  # an octave
-_FEWEST = 64  # samples that a spectrum needs to tell noise from motion
-_WIDE = 256  # lines of a spectrum that tell a density to 6 %
+_FEWEST = 64  # samples that a spectrum needs to separate noise from motion
+_WIDE = 256  # lines of a spectrum that give a density to 6 %
 _LEVELS = 1 << 17  # values in which a step is looked for
 _LONGEST = 1 << 20  # samples of one spectrum
 
@@ -103,7 +103,7 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
 
 @dataclass(frozen=True)
 class Noise:
-    """What the spectrum of a channel tells of its noise, and of the motion above it."""
+    """What the spectrum of a channel says of its noise, and of the motion above it."""
 
     density: float  # [unit^2/Hz], one-sided
     rms: float  # [unit]
@@ -115,7 +115,7 @@ def noise_of(values: Vector, interval: float) -> Noise:
 
     The spectrum is averaged over sixths of an octave; its lowest wide band is the floor, unless the steps of the
     values, spread over the rate at which they are taken, ask for more. A record too short for a spectrum has no noise
-    that could be told, and its highest frequency is that which leaves the filter of `smooth_displacement` at its limit.
+    to be found, and its highest frequency is that which leaves the filter of `smooth_displacement` at its limit.
     """
     limit = HIGHEST / (MARGIN * interval)
     if values.size < _FEWEST or np.ptp(values) == 0.0:
@@ -151,7 +151,7 @@ def quietest(values: Vector, interval: float) -> float:
 def resolution(values: Vector) -> float:
     """The step in which the values are read: all differences between distinct values are multiples of it.
 
-    0 where there is none that could be told: fewer than 3 steps, or steps as small as rounding. It is looked for in
+    0 where none can be found: fewer than 3 steps, or steps as small as rounding. It is looked for in
     the first 131072 values.
 
     >>> round(resolution(np.round(np.sin(np.arange(100.0)), 2)), 6)

@@ -22,7 +22,7 @@ _BESIDE = 0.05  # the same for the amplitudes within a decade, for lines: what i
 _LEVEL = 1e-3  # probability that nothing but noise counts as something
 _NEIGHBOURS = 21  # harmonics whose scatter is looked at together
 _ABOVE_STEPS = 20.0  # times what the steps of the encoder leave, for the power of a random displacement
-_CHANCE = 0.05  # probability that a frequency with nothing in common is told
+_CHANCE = 0.05  # probability that a frequency with nothing in common counts
 _DECAYED = 3.0  # a period has settled if its force strays from the last ones at most so many times as they do
 _STEADY = 5e-3  # of the size of the force: strays that never count as a transient
 _SEGMENTS = 16.0  # shares of the time of all records in a segment, unless it is given
@@ -74,7 +74,7 @@ class Lines:
         if velocity[strongest] >= 0.95 * velocity.sum():
             return np.asarray(np.arange(power.size) == strongest)
         strong = np.maximum(_FAINT**2 * velocity.max(), _BESIDE**2 * _largest(velocity))
-        return np.asarray(self.told() & (velocity >= strong))
+        return np.asarray(self.significant() & (velocity >= strong))
 
     def at(self, chosen: Chosen) -> Lines:
         """Some of the harmonics."""
@@ -96,7 +96,7 @@ class Lines:
         )
         return Lines(self.omega, x, force, self.least), first
 
-    def told(self) -> Chosen:
+    def significant(self) -> Chosen:
         """The harmonics that stand out of the scatter of the displacement and of the steps of its encoder.
 
         Their power exceeds their own scatter (an F test), and that of their neighbours by so much that none of all
@@ -179,8 +179,8 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
     floor = max(resolution(record.displacement) for record in records) ** 2 / 12.0 * 2.0 * interval
     velocity = frequency**2 * xx
     inside = slice(_LEAST_BIN, (length - 1) // 2 + 1)
-    velocity, told = velocity[inside], (xx > _ABOVE_STEPS * floor)[inside]
-    chosen = told & (velocity >= _FAINT**2 * velocity.max())
+    velocity, significant = velocity[inside], (xx > _ABOVE_STEPS * floor)[inside]
+    chosen = significant & (velocity >= _FAINT**2 * velocity.max())
     averages = Spectra(np.asarray(2.0 * np.pi * frequency[inside]), xx[inside], ff[inside], sums[2][inside], count)
     related = _related(averages.coherence, chosen, count)
     notes = [
@@ -188,10 +188,10 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
         f"as good as {count:.1f} independent ones."
     ]
     if np.any(~chosen):
-        notes.append(f"Nothing is told at {np.sum(~chosen)} frequencies, where the displacement has no content.")
+        notes.append(f"No response at {np.sum(~chosen)} frequencies, where the displacement has no content.")
     if np.any(chosen & ~related):
         notes.append(
-            f"Nothing is told at {np.sum(chosen & ~related)} frequencies, where force and displacement have nothing "
+            f"No response at {np.sum(chosen & ~related)} frequencies, where force and displacement have nothing "
             f"in common that noise could not have by chance (5 %)."
         )
     found = averages.at(chosen & related)
@@ -222,7 +222,7 @@ def _largest(power: Matrix) -> Matrix:
 
 
 def _unsettled(x: Complex, force: Complex) -> int:
-    """How many periods at the start stray more than the later half; of fewer than four, none can be told."""
+    """How many periods at the start stray more than the later half; of fewer than four, none is found."""
     count = x.shape[0]
     half = count // 2
     strays = force - force[half:].mean(axis=0) / x[half:].mean(axis=0) * x

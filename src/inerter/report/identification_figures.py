@@ -146,6 +146,6 @@ def _response_caption(answered: Responses) -> str:
 
 _PROFILES = (
     "Profile likelihoods: how much worse the best fit gets when one parameter is held at a value and all others follow,"
-    " over what an interval of 95 % allows. Dots were computed. A curve that stays below the line on one side tells no "
+    " over what an interval of 95 % allows. Dots were computed. A curve that stays below the line on one side has no "
     "end there."
 )

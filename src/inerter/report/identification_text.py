@@ -13,8 +13,8 @@ from inerter.report.identified_values import elements_block, single, value_and_i
 from inerter.report.options import as_options
 from inerter.report.text import WIDTH
 
-INDEPENDENT = 1e-3  # a p-value above tells residuals without pattern
-LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not told, nor are more
+INDEPENDENT = 1e-3  # a p-value above is that of residuals without pattern
+LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
 
 
 def identification_text(found: Identified) -> str:

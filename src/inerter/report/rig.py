@@ -26,5 +26,5 @@ def _lines(request: RigRequest, record: Record) -> Iterator[str]:
     yield f"{record.time.size} samples over {record.duration:.6g} s, at {1.0 / record.interval:.6g} Hz"
     yield f"displacement up to {quantity(float(np.abs(record.displacement).max()), 'm')}"
     full = float(np.mean(np.abs(record.force) >= 0.999 * limit))
-    told = f"saturated in {100.0 * full:.2g} % of the samples" if full else "not saturated"
-    yield f"force up to {quantity(peak, 'N')} of the {quantity(limit, 'N')} that the load cell can tell: {told}"
+    state = f"saturated in {100.0 * full:.2g} % of the samples" if full else "not saturated"
+    yield f"force up to {quantity(peak, 'N')} of the {quantity(limit, 'N')} that the load cell can read: {state}"

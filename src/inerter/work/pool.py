@@ -28,7 +28,7 @@ _SHORT = 3.0  # seconds: to start processes takes about as long
 _ASKED, _KILLED = 0.4, 10.0  # seconds that a process has to end, and to be gone where it must
 
 
-class Crew:
+class Pool:
     """Up to `jobs` processes that work through one list after another, from when they are needed until the end.
 
     They are spawned afresh (a fork of a threaded process may hang) and end when this one is gone, however it went. An
@@ -38,16 +38,16 @@ class Crew:
     def __init__(self, jobs: int, executor: Executor | None = None) -> None:
         self.jobs = jobs
         self._own = executor is None
-        self._pool = executor
+        self._executor = executor
         self._processes: set[BaseProcess] = set()
 
-    def __enter__(self) -> Crew:
+    def __enter__(self) -> Pool:
         return self
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
-        if self._pool is None or not self._own:
+        if self._executor is None or not self._own:
             return
-        self._pool.shutdown(wait=kind is None, cancel_futures=kind is not None)
+        self._executor.shutdown(wait=kind is None, cancel_futures=kind is not None)
         if kind is not None:  # Ctrl-C: what is under way is not waited for
             _end(self._processes)
 
@@ -81,7 +81,7 @@ class Crew:
             yield at_home(pending[i])
         rest = [item for i, item in enumerate(pending) if i not in firsts]
         start = time.monotonic()
-        while rest and (self._alone or (self._pool is None and time.monotonic() - start < _SHORT)):
+        while rest and (self._alone or (self._executor is None and time.monotonic() - start < _SHORT)):
             yield at_home(rest.pop(0))
         if not rest:
             return
@@ -102,12 +102,12 @@ class Crew:
 
     def _submit(self, calls: Iterable[Callable[[], Result]]) -> set[Future[Result]]:
         """Have the calls made; one that finds no process idle starts another, up to as many as there may be."""
-        if self._pool is None:
+        if self._executor is None:
             context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(self.jobs, context, initializer=_begin_worker)
+            self._executor = ProcessPoolExecutor(self.jobs, context, initializer=_begin_worker)
         others = set(multiprocessing.active_children()) - self._processes
         with _deaf_to_interrupts():
-            submitted = {self._pool.submit(call) for call in calls}
+            submitted = {self._executor.submit(call) for call in calls}
         self._processes |= set(multiprocessing.active_children()) - others
         return submitted
 
@@ -123,13 +123,13 @@ def _end(processes: Iterable[BaseProcess]) -> None:
 
 
 @contextmanager
-def crewed(jobs: int | Executor | Crew) -> Iterator[Crew]:
-    """The crew that is given, or one of so many processes, or with that executor, that ends with this."""
-    if isinstance(jobs, Crew):
+def pooled(jobs: int | Executor | Pool) -> Iterator[Pool]:
+    """The process pool that is given, or one of so many processes, or with that executor, that ends with this."""
+    if isinstance(jobs, Pool):
         yield jobs
     else:
-        with Crew(os.cpu_count() or 1, jobs) if isinstance(jobs, Executor) else Crew(jobs) as crew:
-            yield crew
+        with Pool(os.cpu_count() or 1, jobs) if isinstance(jobs, Executor) else Pool(jobs) as pool:
+            yield pool
 
 
 @contextmanager

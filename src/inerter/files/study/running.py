@@ -22,7 +22,7 @@ from inerter.files.study.results import dataset, summary_csv
 from inerter.files.study.study import Study, write_resolved
 from inerter.kernels.prepare import Told, prepare
 from inerter.work.origin import versions
-from inerter.work.pool import Crew, crewed
+from inerter.work.pool import Pool, pooled
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
@@ -63,7 +63,7 @@ def run_study(
     study: Study,
     folder: str | Path | Results,
     *,
-    jobs: int | Executor | Crew = 1,
+    jobs: int | Executor | Pool = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, outcome: None,
@@ -73,7 +73,7 @@ def run_study(
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
 
     `folder` may be a part of results that are being written. `jobs` is a number of processes, or an executor (of
-    `concurrent.futures`) or a crew, which goes on afterwards. With more than one process, a script that calls this
+    `concurrent.futures`) or a pool, which goes on afterwards. With more than one process, a script that calls this
     needs the line `if __name__ == "__main__":`, because processes are started afresh and import it. `progress` is told
     how many designs and budgets are done, how many there are, and the last one. `finish` may add files to the results,
     in the folder that it is given. What the work needs of compiled code is compiled first, if it is not yet;
@@ -88,8 +88,8 @@ def run_study(
     killed or the disk is full.
     """
     check_study(study)
-    with _into(study, folder, resume, force) as results, crewed(jobs) as crew:
-        done, budgets, computed = _computed(study, results, crew, progress, compiling)
+    with _into(study, folder, resume, force) as results, pooled(jobs) as pool:
+        done, budgets, computed = _computed(study, results, pool, progress, compiling)
         found = tuple(budgets[case] for case in budget_cases(study))
         data = dataset(study, done)
         write_text(results.draft / RESOLVED, write_resolved(study))
@@ -115,7 +115,7 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
 
 
 def _computed(
-    study: Study, results: Results, crew: Crew, progress: Progress, compiling: Told | None
+    study: Study, results: Results, pool: Pool, progress: Progress, compiling: Told | None
 ) -> tuple[journals.Done, journals.Budgets, int]:
     """All cases and budgets, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
@@ -129,18 +129,18 @@ def _computed(
     progress(len(done) + len(budgets), total, None)
     results.list_journal(journals.NAME)
     with journal.appending(before) as append:
-        for outcome in _outcomes(study, pending, crew):
+        for outcome in _outcomes(study, pending, pool):
             append(outcome.to_json())
             done[outcome.case] = outcome
             progress(len(done) + len(budgets), total, outcome)
         for case in further:
             if case not in budgets:
-                budgets[case] = run_budget(study, case, done, crew.jobs)
+                budgets[case] = run_budget(study, case, done, pool.jobs)
                 append(budgets[case].to_json())
                 progress(len(done) + len(budgets), total, budgets[case])
     return done, budgets, computed
 
 
-def _outcomes(study: Study, pending: Sequence[Case], crew: Crew) -> Iterator[Outcome]:
-    here = partial(run_case, study, threads=crew.jobs)
-    return crew.spread(partial(run_case, study), pending, lambda case: case.index, here)
+def _outcomes(study: Study, pending: Sequence[Case], pool: Pool) -> Iterator[Outcome]:
+    here = partial(run_case, study, threads=pool.jobs)
+    return pool.spread(partial(run_case, study), pending, lambda case: case.index, here)

@@ -93,7 +93,7 @@ class Curves:
     def certainly_better(self, one: str, other: str, index: str, at: Flags) -> bool:
         """Whether `one` is lower than `other` in the mean where `at` holds, by more than two standard errors.
 
-        Errors at different stiffnesses come from the same random inputs and may hang together.
+        Errors at different stiffnesses come from the same random inputs and may be correlated.
         """
         gap, error = self.excess(other, one, index)[at], self.excess_error(other, one, index)[at]
         return bool(np.mean(gap) > WORSE + 2.0 * np.mean(error))

@@ -26,7 +26,7 @@ from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
 from inerter.simulation.event_driven import KERNELS
 from inerter.work.journal import Journal
-from inerter.work.pool import Crew, crewed
+from inerter.work.pool import Pool, pooled
 
 JOURNAL = "tasks.jsonl"
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
@@ -119,11 +119,11 @@ def reproduce(
     folder: Path,
     *,
     only: Sequence[str] = (),
-    jobs: int | Executor | Crew = 1,
+    jobs: int | Executor | Pool = 1,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda what, done, total: None,
-    finish: Callable[[Reproduction, Path, Crew], object] = lambda found, folder, crew: None,
+    finish: Callable[[Reproduction, Path, Pool], object] = lambda found, folder, pool: None,
 ) -> Reproduction:
     """Recompute the paper, or some of its `PARTS`, into `folder`; what was finished before is kept with `resume`.
 
@@ -139,11 +139,11 @@ def reproduce(
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
     intent = Intent(folder, "reproduce", _OWN, resume=resume, force=force)
-    with claimed(intent) as results, crewed(jobs) as crew:
+    with claimed(intent) as results, pooled(jobs) as pool:
         if needed and wanted > {"linear"} and not resume:
-            crew.begin(_warm_up)
+            pool.begin(_warm_up)
         studies = {
-            name: run_study(study(name), results.within(name), jobs=crew, progress=_named(progress, name))
+            name: run_study(study(name), results.within(name), jobs=pool, progress=_named(progress, name))
             for name in needed
         }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
@@ -155,9 +155,9 @@ def reproduce(
             tasks += [Task("between", name) for name in between.names(figure11)]
         tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
         found = _put_together(
-            tuple(part for part in PARTS if part in wanted), studies, _run(tasks, results, crew, progress)
+            tuple(part for part in PARTS if part in wanted), studies, _run(tasks, results, pool, progress)
         )
-        finish(found, results.draft, crew)
+        finish(found, results.draft, pool)
     return found
 
 
@@ -223,7 +223,7 @@ def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
     return Task("curves", name, tuple((p, value) for p, value in values if value == value))
 
 
-def _run(tasks: list[Task], results: Results, crew: Crew, progress: Progress) -> dict[tuple[str, str], Numbers]:
+def _run(tasks: list[Task], results: Results, pool: Pool, progress: Progress) -> dict[tuple[str, str], Numbers]:
     """The numbers of all tasks; each is in the journal as soon as it is there."""
     journal = Journal(results.place / JOURNAL, {"paper": PAPER.name})
     before = journal.read() if results.resume else []
@@ -234,7 +234,7 @@ def _run(tasks: list[Task], results: Results, crew: Crew, progress: Progress) ->
         progress("simulations", len(tasks) - len(pending), len(tasks))
     results.list_journal(JOURNAL)
     with journal.appending(before) as append:
-        for i, ((part, name), numbers) in enumerate(crew.spread(work, pending), 1):
+        for i, ((part, name), numbers) in enumerate(pool.spread(work, pending), 1):
             found[part, name] = numbers
             append({"part": part, "name": name, "numbers": numbers})
             progress("simulations", len(tasks) - len(pending) + i, len(tasks))

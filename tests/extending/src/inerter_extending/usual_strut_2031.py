@@ -40,17 +40,17 @@ def recompute(
     progress: Callable[[str, int, int], None] = lambda what, done, total: None,
 ) -> Found:
     intent = it.Intent(folder, "reproduce", ("table.csv", "report.html"), resume=resume, force=force)
-    with it.claimed(intent) as results, it.crewed(jobs) as crew:
+    with it.claimed(intent) as results, it.pooled(jobs) as pool:
         table: dict[float, float] = {}
-        for damping, value in crew.spread(work, list(PRINTED)):
+        for damping, value in pool.spread(work, list(PRINTED)):
             table[damping] = value
             progress("rows", len(table), len(PRINTED))
         found = Found({damping: table[damping] for damping in PRINTED})
-        finish(found, results.draft, crew)
+        finish(found, results.draft, pool)
     return found
 
 
-def write(found: Found, folder: Path, crew: object) -> None:
+def write(found: Found, folder: Path, pool: object) -> None:
     with (folder / "table.csv").open("w", encoding="utf-8", newline="") as stream:
         writer = csv.DictWriter(stream, ["damping", "value", "printed"])
         writer.writeheader()

@@ -30,7 +30,7 @@ from inerter.papers.wang_su_2008.rig import SIMULATED
 from inerter.papers.wang_su_2008.rows import VERDICTS
 from inerter.papers.wang_su_2008.source import study
 from inerter.report.page import PageFigure, environment, inline
-from inerter.work.pool import Crew, crewed
+from inerter.work.pool import Pool, pooled
 from inerter.writing import write_text
 
 Drawing = Callable[[], list[Path]]
@@ -57,13 +57,13 @@ _METHOD_TITLES = {
 }
 
 
-def write_reproduction(found: Reproduction, folder: Path, jobs: int | Executor | Crew = 1) -> None:
+def write_reproduction(found: Reproduction, folder: Path, jobs: int | Executor | Pool = 1) -> None:
     """Write the tables as CSV, the figures, and a page that shows all of it, into `folder`."""
     for name, rows in tables(found).items():
         if rows:
             write_text(folder / f"{name}.csv", csv_text(rows))
-    with crewed(jobs) as crew:
-        list(crew.spread(call, _figures(found, folder / FIGURES)))
+    with pooled(jobs) as pool:
+        list(pool.spread(call, _figures(found, folder / FIGURES)))
     write_text(folder / REPORT, _page(found, folder))
 
 

@@ -1,8 +1,8 @@
 """What the errors of the sensors do to the estimates, by a parametric bootstrap (Efron and Tibshirani 1993).
 
-Records are drawn anew from the best fit: the device as it was found is moved as the motion was measured, and the
-errors of the encoder and of the load cell are added. Each of them is fitted anew. How far these fits scatter, and how
-far they lie from the device that made them, is what intervals have to know beyond residuals:
+Records are drawn from the best fit: the device as it was found is moved as the motion was measured, and the errors of
+the encoder and of the load cell are added. Each of them is fitted too. How far these fits scatter, and their bias
+against the device that made them, is what intervals have to know beyond residuals:
 
 - An encoder reads in steps. Near the turning points of a motion that repeats, its rounding is the same each time and
   does not average out.
@@ -33,42 +33,42 @@ _EVALUATIONS = 5
 
 
 @dataclass(frozen=True, eq=False)
-class Redrawn:
-    """What fits to records drawn anew tell of a fit."""
+class Bootstrap:
+    """What a parametric bootstrap makes of a fit."""
 
     optimum: Optimum  # the same, with intervals at least as wide as they scatter
-    lean: Matrix  # how far they lie from the device that made them, in coordinates; at most two standard errors
+    bias: Matrix  # how far they lie from the device that made them, in coordinates; at most two standard errors
     predicted: float  # part of the variance of the force that the errors of the encoder leave as it is
 
 
-def redrawn(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS) -> Redrawn:
-    """Draw records anew from the best fit, and fit them.
+def bootstrap(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS) -> Bootstrap:
+    """Draw records from the best fit, and fit them.
 
-    Their scatter comes in place of what the curvature tells of independent errors; what residuals hang together counts
-    on top. Where residuals are larger than the sensors explain, the scatter is taken to be larger by as much.
+    Their scatter comes in place of what the curvature says of independent errors; how far residuals are autocorrelated
+    counts on top. Where residuals are larger than the sensors explain, the scatter is taken to be larger by as much.
     """
     random = np.random.default_rng([seed, 2])
     lower, upper = problem.space.bounds
     steps = steps_of(optimum)
     source = source_of(problem, optimum.point)
     if source is None:
-        return Redrawn(optimum, np.zeros(optimum.point.size), 0.0)
+        return Bootstrap(optimum, np.zeros(optimum.point.size), 0.0)
     points, costs, shares = [], [], []
     for _ in range(draws):
-        anew = replace(problem, experiments=source.drawn(random))
+        drawn = replace(problem, experiments=source.drawn(random))
         start = optimum.point + optimum.errors * random.standard_normal(optimum.point.size)
-        point, cost, _, _ = improve(anew, np.clip(start, lower, upper), _EVALUATIONS, steps, ROBUST)
+        point, cost, _, _ = improve(drawn, np.clip(start, lower, upper), _EVALUATIONS, steps, ROBUST)
         points.append(point)
         costs.append(cost)
-        shares.append(_shared(source.forces, anew.forces(optimum.point), problem.experiments))
+        shares.append(_shared(source.forces, drawn.forces(optimum.point), problem.experiments))
     moved = np.array(points) - optimum.point
     unexplained = max(optimum.cost / max(float(np.median(costs)), 1e-300), 1.0)
     few = student.ppf(0.975, draws - 1) / norm.ppf(0.975)
     square = np.var(moved, axis=0, ddof=1) * (1.0 + 1.0 / draws) * unexplained * few**2
     ratio = np.clip(square / np.maximum(np.diag(optimum.covariance), 1e-300), 1.0, 1e4)
     wider = replace(optimum, widening=optimum.widening + ratio - 1.0)
-    lean = np.clip(np.mean(moved, axis=0), -2.0 * wider.errors, 2.0 * wider.errors)
-    return Redrawn(wider, np.asarray(lean), float(np.median(shares)))
+    bias = np.clip(np.mean(moved, axis=0), -2.0 * wider.errors, 2.0 * wider.errors)
+    return Bootstrap(wider, np.asarray(bias), float(np.median(shares)))
 
 
 def _shared(forces: Sequence[Matrix], others: Sequence[Matrix | None], experiments: Sequence[Experiment]) -> float:

@@ -1,8 +1,17 @@
-"""Settings of the property tests: the same examples in every run, and no time limit of their own."""
+"""Settings of the property tests: the same examples in every run, and no time limit of their own. Compiling, once."""
 
 from __future__ import annotations
 
+from importlib import import_module
+from pkgutil import iter_modules
+from types import ModuleType
+
+import pytest
 from hypothesis import HealthCheck, settings
+
+from inerter import kernels
+from inerter.kernels.declare import Kernel
+from inerter.kernels.prepare import prepare
 
 settings.register_profile(
     "reproducible",
@@ -13,3 +22,16 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("reproducible")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Of a whole run in several processes, compile once what each of them would compile for itself."""
+    config = session.config
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly
+    if whole and config.getoption("numprocesses", None) and not hasattr(config, "workerinput"):
+        found = [value for module in iter_modules(kernels.__path__) for value in vars(_imported(module.name)).values()]
+        prepare(kernel for kernel in found if isinstance(kernel, Kernel) and kernel.signature is not None)
+
+
+def _imported(name: str) -> ModuleType:
+    return import_module(f"{kernels.__name__}.{name}")

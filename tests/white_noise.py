@@ -88,13 +88,13 @@ def mean_squares(sprung, unsprung, tyre, k, c, b, f, kind, series, intensity, st
     return acceleration / (steps - settling), load / (steps - settling)
 
 
-def stepped(car: Car) -> tuple[np.ndarray, np.ndarray]:
-    """J1 and J3 with their standard errors, over roads of white velocity."""
+def stepped(car: Car, roads: int = ROADS) -> tuple[np.ndarray, np.ndarray]:
+    """J1 and J3 with their standard errors, over so many roads of white velocity."""
     intensity = 2.0 * math.pi * math.sqrt(ROAD.speed * ROAD.roughness)
     values = (car.sprung, car.unsprung, car.tyre, car.k, car.c, car.b, car.f, car.kind, car.series)
     steps, settling = round((SETTLING + LENGTH) / STEP), round(SETTLING / STEP)
-    power = np.array([mean_squares(*values, intensity, steps, settling, STEP, seed) for seed in range(ROADS)])
-    mean, error = power.mean(axis=0), power.std(axis=0, ddof=1) / math.sqrt(ROADS)
+    power = np.array([mean_squares(*values, intensity, steps, settling, STEP, seed) for seed in range(roads)])
+    mean, error = power.mean(axis=0), power.std(axis=0, ddof=1) / math.sqrt(roads)
     return np.sqrt(mean), 0.5 * error / np.sqrt(mean)
 
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from campaigns import sampled
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
@@ -60,7 +61,7 @@ def test_help_loads_no_library_of_numbers(arguments: tuple[str, ...]) -> None:
     assert not loaded_by(*arguments) & LIBRARIES
 
 
-@pytest.mark.parametrize("study", STUDIES)
+@pytest.mark.parametrize("study", sampled(STUDIES, ["ball_screw.toml"]))
 def test_check_loads_nothing_that_only_the_work_needs(study: str) -> None:
     assert len(STUDIES) >= 4
     assert not loaded_by("check", str(EXAMPLES / study)) & HEAVY

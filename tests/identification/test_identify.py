@@ -56,6 +56,7 @@ def test_what_a_fit_says_of_itself(paper):
         assert max(rise for _, rise in parameter.profile) > 0.7
 
 
+@pytest.mark.campaign
 def test_backlash_is_found_where_it_rattles():
     fit = it.identify([fit_test(seed=2, gap=1e-4)], BALL_SCREW, seed=0)
     assert fit.parameters["gap"].value == pytest.approx(1e-4, rel=0.02)

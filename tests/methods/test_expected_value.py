@@ -215,6 +215,10 @@ def test_what_cannot_be_simulated_says_so():
     free = paper_quarter_car(k | Damper(it.free(1.0, 2e5, "c")) | Damper(1e5) - (Inerter(1e-4) | Friction(10.0)))
     assert np.isnan(it.evaluate_many(free, J1, {"c": [4e3]}, TWO)).all()
     assert TWO.objective(free, J1).values(np.array([[4e3]])) == math.inf
+
+
+@pytest.mark.campaign
+def test_a_gap_that_springs_alone_close_is_marginal_or_rattles():
     gap = paper_quarter_car(k | shaft - Gap(1e-3) - Spring(1e4))
     assert it.evaluate(paper_quarter_car(k | Gap(1e-3) - Spring(1e4)), J1, TWO).status.kind == "marginal"
     assert it.evaluate(gap, J1, TWO).status.kind in ("ok", "inaccurate")
@@ -222,7 +226,7 @@ def test_what_cannot_be_simulated_says_so():
 
 @pytest.mark.parametrize("index", sampled([J1, J3], [J1]), ids=["J1", "J3"])
 def test_a_resonance_between_the_lines_of_the_road_asks_for_a_longer_one(index):
-    """And where the longest does not resolve it either, there is no value; play that rattles on has one of its own."""
+    """And where the longest does not resolve it either, there is no value."""
     soft = paper_quarter_car(k | Damper(300.0) | Friction(20.0))
     found = it.evaluate(soft, index, ExpectedValue(realisations=8))
     assert found.status.ok
@@ -236,6 +240,11 @@ def test_a_resonance_between_the_lines_of_the_road_asks_for_a_longer_one(index):
         assert math.isnan(ringing.value)
         assert ringing.status.kind == "marginal"
         assert f"roads of up to {period or 640} s" in ringing.status.message
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("index", [J1, J3], ids=["J1", "J3"])
+def test_play_that_rattles_on_has_a_value_of_its_own(index):
     wide = Spring(3e4) | Damper(500.0) | shaft - (Inerter(330.0) | Friction(50.0)) - (Spring(2e3) | Gap(0.01))
     rattling = it.evaluate(paper_quarter_car(wide), index, TWO)
     assert rattling.status.kind == "inaccurate"

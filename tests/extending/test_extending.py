@@ -325,3 +325,48 @@ def test_the_element_of_the_page_is_one(place: Path, tmp_path: Path) -> None:
     lines.insert(lines.index("[layouts]"), entry.strip())
     (tmp_path / "page.toml").write_text("\n".join(lines), encoding="utf-8")
     assert "ok." in inerter(place, "check", "page.toml", cwd=tmp_path).stdout
+
+
+SCRIPT = """
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+import os
+import inerter as it
+
+@it.INDICES.add
+@dataclass(frozen=True)
+class WheelTravel:
+    road: it.Road
+    symbol, title, unit, response = "D1", "tyre deflection", "m", "deflection per road velocity"
+
+    def question(self, mechanism):
+        outputs = tuple(it.Weighted(f"{tyre.name}_deflection") for tyre in mechanism.tyres)
+        return it.on_road(self, mechanism, outputs, "tyres")
+
+if __name__ == "__main__":
+    study = it.load_study("seated.toml")
+    with ProcessPoolExecutor(2, get_context("spawn")) as executor:
+        away = it.run_study(study, "away", jobs=executor)
+        print(len(executor._processes))
+    here = it.run_study(study, "here")
+    print(away.data.equals(here.data), sorted(study.indices), away.failures)
+    deflection, load = (away.data.value.sel({"index": name}, drop=True) for name in ("D1", "J3"))
+    print(float(abs(deflection * 120e3 / load - 1).max()) < 1e-9)
+"""
+
+
+def test_processes_that_are_spawned_know_the_rows_of_distributions_and_scripts(place: Path, tmp_path: Path) -> None:
+    text = BASE.replace('["J1", "T1", "W1"]', '["J3", "T1", "W1", "D1"]').replace('optimise = "norm"\n', "")
+    text = text.replace('{ from = "500 N s/m", to = "20 kN s/m" }', '"3 kN s/m"')
+    text = text.replace('{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }', '"1e-3 kg m^2"')
+    text = text.replace('"quadrature", "statistical-linearisation"', '"quadrature"')
+    (tmp_path / "seated.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
+    command = [sys.executable, "script.py"]
+    environment = {**os.environ, "PYTHONPATH": str(place)}
+    done = subprocess.run(
+        command, capture_output=True, text=True, cwd=tmp_path, env=environment, timeout=280, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "2\nTrue ['D1', 'J3', 'T1', 'W1'] []\nTrue\n"

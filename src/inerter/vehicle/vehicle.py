@@ -47,7 +47,7 @@ class VehicleModel:
     """
 
     key: ClassVar[str]
-    moved: ClassVar[str] = "road"  # what a signal moves if nothing else is said
+    moved: ClassVar[str] = "road"  # what a signal moves if nothing else is said: this, or a "displacement" of a rig
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
 
     def __post_init__(self) -> None:

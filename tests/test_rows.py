@@ -1,0 +1,206 @@
+"""Tables of rows, and what is true of every row in them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, make_dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from study_text import study_text
+
+import inerter as it
+from inerter.errors import MechanismError, RowError
+from inerter.fields import fields_of, mounts_of
+from inerter.files.study.loading import load_study
+from inerter.files.study.study import write_resolved
+from inerter.indices.registry import amplitude_of, index_settings
+from inerter.methods.registry import averages
+from inerter.rows import Rows, made_of_rows
+from inerter.units import parse_quantity
+
+STRUT = it.Spring(20e3) | it.Damper(1e3)
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+TABLES = {"vehicle": it.VEHICLES, "index": it.INDICES, "method": it.METHODS, "element": it.ELEMENTS}
+
+
+def row(title: str, /, **attributes: Any) -> type:
+    return make_dataclass(title, [], namespace=attributes, frozen=True)
+
+
+# --- tables ---
+
+
+def test_a_table_keeps_the_order_in_which_rows_came() -> None:
+    table: Rows[type] = Rows("thing", "key", ("size",), (row("B", key="b", size=1), row("A", key="a", size=2)))
+    third = row("Third", key="0", size=3)
+    assert table.add(third) is third
+    assert list(table) == ["b", "a", "0"]
+    assert [each.size for each in table.values()] == [1, 2, 3]
+    assert repr(table) == "<thing: b, a, 0>"
+    assert table.add(third) is third
+    table.remove(third)
+    assert (list(table), "0" in table, len(table)) == (["b", "a"], False, 2)
+
+
+def test_what_is_made_of_rows_is_made_anew_when_they_change() -> None:
+    table: Rows[type] = Rows("thing", "key")
+    made = []
+
+    @made_of_rows
+    def listed() -> tuple[str, ...]:
+        made.append(1)
+        return tuple(table)
+
+    assert (listed(), listed(), len(made)) == ((), (), 1)
+    one = table.add(row("One", key="one"))
+    assert (listed(), listed(), len(made)) == (("one",), ("one",), 2)
+    table.remove(one)
+    assert (listed(), len(made)) == ((), 3)
+
+
+def test_a_row_that_cannot_stand_in_its_table_is_told_what_it_lacks() -> None:
+    table: Rows[type] = Rows("thing", "key", ("size", "words"), (row("A", key="a", size=2, words="w"),))
+    bad = {
+        r"B is no thing: it does not say words": row("B", key="b", size=1),
+        r"B is no thing: it does not say key, size, words": row("B"),
+        r"its key is 3, and must be text": row("B", key=3, size=1, words=""),
+        r"another thing with the key 'a'": row("B", key="a", size=1, words=""),
+        r"no dataclass": type("B", (), {"key": "b", "size": 1, "words": ""}),
+    }
+    for words, each in bad.items():
+        with pytest.raises(RowError, match=words):
+            table.add(each)
+    assert list(table) == ["a"]
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_our_own_rows_cannot_be_replaced(name: str) -> None:
+    for known in list(TABLES[name].values()):
+        copy = row("Copy", **{word: getattr(known, word) for word in dir(known) if not word.startswith("_")})
+        with pytest.raises(RowError, match=rf"another {'kind of element' if name == 'element' else name} with the"):
+            TABLES[name].add(copy)
+        assert TABLES[name].add(known) is known
+
+
+# --- vehicles ---
+
+
+def made(model: str, **changed: float) -> it.VehicleModel:
+    """The vehicle of its own examples."""
+    kind = it.VEHICLES[model]
+    values = {f.name: parse_quantity(f.example, f.unit) for f in fields_of(kind)}
+    return kind(**{**values, **dict.fromkeys(mounts_of(kind), STRUT), **changed})
+
+
+@pytest.mark.parametrize("model", it.VEHICLES)
+def test_the_examples_of_a_vehicle_make_one(model: str) -> None:
+    vehicle = made(model)
+    mounted = [strut for strut in vehicle.mechanism().struts if strut.name in mounts_of(type(vehicle))]
+    assert [strut.name for strut in mounted] == list(mounts_of(type(vehicle)))
+    assert set(vehicle.forces) == {force.name for force in vehicle.mechanism().forces}
+    if vehicle.moved == "road":
+        assert it.evaluate(vehicle, it.RideComfort(ROAD), it.Norm()).value > 0.0
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, "1 kg", True, None])
+@pytest.mark.parametrize("model", it.VEHICLES)
+def test_every_quantity_of_a_vehicle_is_checked(model: str, bad: Any) -> None:
+    for f in fields_of(it.VEHICLES[model]):
+        told = f"The {f.name.replace('_', ' ')} of the {model.replace('-', ' ')} must be a positive number of {f.unit}"
+        with pytest.raises(MechanismError) as caught:
+            made(model, **{f.name: bad})
+        assert str(caught.value).startswith(told)
+
+
+@pytest.mark.parametrize("model", it.VEHICLES)
+def test_free_values_of_all_mounts_are_fixed_together(model: str) -> None:
+    free = it.Spring(20e3) | it.Damper(it.free(1.0, 1e4, "c"))
+    vehicle = made(model, **dict.fromkeys(mounts_of(it.VEHICLES[model]), free))
+    assert list(vehicle.free_values()) == ["c"]
+    assert vehicle.with_values({"c": 1e3}).free_values() == {}
+
+
+# --- indices ---
+
+
+def test_every_setting_of_an_index_is_a_key_of_study_files(tmp_path: Path) -> None:
+    assert set(index_settings()) >= {"high_pass", "force"}
+    symbols = ", ".join(f'"{symbol}"' for symbol in it.INDICES)
+    lines = "\n".join(f'{key} = "{f.example}"' for key, f in index_settings().items())
+    path = tmp_path / "study.toml"
+    path.write_text(study_text(f'indices = [{symbols}]\n{lines}\nevaluate = ["expected-value"]'), encoding="utf-8")
+    study = load_study(path)
+    assert study.settings == {key: parse_quantity(f.example, f.unit) for key, f in index_settings().items()}
+    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
+    assert load_study(tmp_path / "again.toml") == study
+    for symbol, kind in it.INDICES.items():
+        index = study.index(symbol)
+        assert type(index) is kind
+        assert [getattr(index, f.name) for f in fields_of(kind)] == [study.settings[f.key] for f in fields_of(kind)]
+
+
+@pytest.mark.parametrize("symbol", it.INDICES)
+def test_a_setting_without_its_index_is_told(symbol: str, tmp_path: Path) -> None:
+    other = next(known for known in it.INDICES if known != symbol)
+    for f in fields_of(it.INDICES[symbol]):
+        path = tmp_path / "study.toml"
+        path.write_text(study_text(f'indices = ["{other}"]\n{f.key} = "{f.example}"'), encoding="utf-8")
+        with pytest.raises(it.InerterError, match=rf"study\.{f.key}: the {f.told} of {symbol}.*or no {f.key}\."):
+            load_study(path)
+
+
+@pytest.fixture
+def clashing() -> Iterator[type]:
+    @dataclass(frozen=True)
+    class Clashing:
+        high_pass: float = field(default=1.0, metadata=it.quantity("m", "A length.", "1 m"))
+        symbol = "X1"
+        title = unit = response = "x"
+
+        def question(self, mechanism: it.Mechanism) -> it.Question:
+            raise NotImplementedError
+
+    yield it.INDICES.add(Clashing)
+    it.INDICES.remove(Clashing)
+
+
+@pytest.mark.usefixtures("clashing")
+def test_one_key_has_one_unit(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
+    with pytest.raises(RowError, match=r"X1 has a setting 'high_pass' in m, and another index has it in rad/s"):
+        load_study(path)
+
+
+# --- methods ---
+
+
+@pytest.mark.parametrize("name", it.METHODS)
+def test_a_study_gives_a_method_what_it_takes(name: str, tmp_path: Path) -> None:
+    roads = "realisations = 3\n" if averages(name) else ""
+    path = tmp_path / "study.toml"
+    settings = f'indices = ["J1"]\nevaluate = ["{name}"]\nseed = 7\nconventions = "paper2008"\n{roads}'
+    path.write_text(study_text(settings), encoding="utf-8")
+    method: Any = load_study(path).method(name, threads=2)
+    given = {"conventions": "paper2008", "seed": 7, "realisations": 3, "jobs": 2}
+    taken = {key: value for key, value in given.items() if hasattr(method, key)}
+    assert {key: getattr(method, key) for key in taken} == taken
+    assert averages(name) == ("realisations" in taken)
+    assert isinstance(method.sees, it.Sees)
+    assert method.words[0].islower()
+    assert not method.words.endswith(".")
+
+
+def test_methods_that_see_friction_need_to_know_how_large_a_force_is() -> None:
+    """Where a row says so, a peak gain without an amplitude is refused; where not, there is a value."""
+    car = it.QuarterCar(250.0, 35.0, 150e3, STRUT | it.Friction(20.0))
+    assert [symbol for symbol in it.INDICES if amplitude_of(symbol)] == ["J5"]
+    for kind in it.METHODS.values():
+        if kind.needs_amplitude:
+            with pytest.raises(it.InerterError, match="amplitude"):
+                it.evaluate(car, it.LoadCarrying(), kind())
+        else:
+            assert it.evaluate(car, it.LoadCarrying(), kind()).value > 0.0

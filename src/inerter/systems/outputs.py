@@ -1,25 +1,27 @@
 """The outputs of a mechanism by name, as rows over the motions of its nodes, the forces of its branches and its inputs.
 
 Linear analysis and both integrators know nodes, branches and inputs only; this is the one place that knows what people
-ask for.
+ask for, and how what they may ask for is called.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError
 from inerter.systems.graph import Graph
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
 _LISTED = 24  # names in a message
-_MOTIONS = ("displacement", "velocity", "acceleration")
+_MOTIONS = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # of a coordinate, and behind its unit
+_MOUNTED = {Strut: ("force", "travel"), Tyre: ("load", "deflection")}  # what a mount carries, and how far it moves
 
 
 def _none() -> Matrix:
@@ -48,45 +50,12 @@ def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
     Inputs; motions of coordinates; force, travel or load and deflection of mounts; velocity and force of elements. If
     only one strut is there, `force` and `travel` are its own.
     """
-    found: list[Output] = []
-    roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
-    found += [Output(r.name, "m", f"{_said(r.name)}", road=row) for r, row in zip(mechanism.roads, roads, strict=True)]
-    angles = {c.name for c in mechanism.coordinates if c.angle}
-    for given, row in zip(mechanism.forces, forces, strict=True):
-        unit = "N m" if set(given.port) <= angles else "N"
-        found.append(Output(given.name, unit, _said(given.name), external=row))
-    for coordinate, row in zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False):
-        unit, said = "rad" if coordinate.angle else "m", _said(coordinate.name)
-        found += [
-            Output(f"{coordinate.name}_displacement", unit, f"{said} displacement", displacement=row),
-            Output(f"{coordinate.name}_velocity", f"{unit}/s", f"{said} velocity", velocity=row),
-            Output(f"{coordinate.name}_acceleration", f"{unit}/s^2", f"{said} acceleration", acceleration=row),
-        ]
-    struts = {strut.name for strut in mechanism.struts}
-    for name, mount in graph.mounts.items():
-        total = np.zeros(len(graph.branches))
-        total[list(mount.carriers)] = 1.0
-        force, travel = ("force", "travel") if name in struts else ("load", "deflection")
-        found += [
-            Output(f"{name}_{force}", "N", f"{_said(name)} {force}", forces=total),
-            Output(f"{name}_{travel}", "m", f"{_said(name)} {travel}", displacement=mount.nodes, road=mount.roads),
-        ]
-    if len(struts) == 1:
-        (only,) = struts
-        found += [_renamed(o, o.name.removeprefix(f"{only}_")) for o in found if o.name.startswith(f"{only}_")]
-    for i, branch in enumerate(graph.branches):
-        row = np.zeros(len(graph.branches))
-        row[i] = 1.0
-        found += [
-            Output(
-                f"{branch.label}_velocity",
-                "m/s",
-                f"velocity across {branch.label}",
-                velocity=branch.nodes,
-                road_velocity=branch.roads,
-            ),
-            Output(f"{branch.label}_force", "N", f"force of {branch.label}", forces=row),
-        ]
+    mounts = _of_mounts(mechanism, graph)
+    found = [*_of_inputs(mechanism), *_of_coordinates(mechanism, graph), *mounts]
+    if len(mechanism.struts) == 1:
+        own = f"{mechanism.struts[0].name}_"
+        found += [replace(o, name=o.name.removeprefix(own)) for o in found if o.name.startswith(own)]
+    found += _of_elements(graph)
     known = {output.name: output for output in reversed(found)}  # a mount's own name goes before an element's
     return {output.name: known[output.name] for output in found}
 
@@ -94,8 +63,76 @@ def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
 def main_outputs(mechanism: Mechanism) -> list[str]:
     """Names of the outputs that every analysis has: motions of coordinates, what mounts carry and how far they move."""
     coordinates = [f"{c.name}_{what}" for c in mechanism.coordinates for what in _MOTIONS]
-    struts = [f"{strut.name}_{what}" for strut in mechanism.struts for what in ("force", "travel")]
-    return coordinates + struts + [f"{t.name}_{what}" for t in mechanism.tyres for what in ("load", "deflection")]
+    return coordinates + [f"{mount.name}_{what}" for mount in mechanism.mounts() for what in _MOUNTED[type(mount)]]
+
+
+def input_names(mechanism: Mechanism) -> list[str]:
+    """Names of the inputs: roads, then external forces."""
+    return [*(road.name for road in mechanism.roads), *(force.name for force in mechanism.forces)]
+
+
+def force_of(label: str) -> str:
+    """The name of an element's force, and of a force beside it."""
+    return f"{label}_force"
+
+
+def velocity_of(label: str) -> str:
+    """The name of the velocity across an element."""
+    return f"{label}_velocity"
+
+
+def _of_inputs(mechanism: Mechanism) -> list[Output]:
+    roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
+    found = [Output(r.name, "m", _said(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)]
+    angles = {c.name for c in mechanism.coordinates if c.angle}
+    for given, row in zip(mechanism.forces, forces, strict=True):
+        unit = "N m" if set(given.port) <= angles else "N"
+        found.append(Output(given.name, unit, _said(given.name), external=row))
+    return found
+
+
+def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
+    found = []
+    for coordinate, row in zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False):
+        unit, said = "rad" if coordinate.angle else "m", _said(coordinate.name)
+        for what, per in _MOTIONS.items():
+            moved: dict[str, Any] = {what: row}
+            found.append(Output(f"{coordinate.name}_{what}", f"{unit}{per}", f"{said} {what}", **moved))
+    return found
+
+
+def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
+    found = []
+    for part in mechanism.mounts():
+        mount, (force, travel), said = graph.mounts[part.name], _MOUNTED[type(part)], _said(part.name)
+        total = np.zeros(len(graph.branches))
+        total[list(mount.carriers)] = 1.0
+        found += [
+            Output(f"{part.name}_{force}", "N", f"{said} {force}", forces=total),
+            Output(f"{part.name}_{travel}", "m", f"{said} {travel}", displacement=mount.nodes, road=mount.roads),
+        ]
+    return found
+
+
+def _of_elements(graph: Graph) -> list[Output]:
+    found = []
+    for branch, row in zip(graph.branches, np.eye(len(graph.branches)), strict=True):
+        moved = {"velocity": branch.nodes, "road_velocity": branch.roads}
+        found += [
+            Output(velocity_of(branch.label), "m/s", f"velocity across {branch.label}", **moved),
+            Output(force_of(branch.label), "N", f"force of {branch.label}", forces=row),
+        ]
+    return found
+
+
+def check_inputs(
+    mechanism: Mechanism, names: Sequence[str], error: type[InerterError], also: Sequence[str] = ()
+) -> None:
+    """Raises `error` for a name that is no input of the mechanism, nor one of those that are allowed here `also`."""
+    known = input_names(mechanism)
+    for name in names:
+        if name not in known and name not in also:
+            raise error(f"There is no input named {name!r} (there are: {', '.join(known) or 'none'}).")
 
 
 def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -> Output:
@@ -110,8 +147,3 @@ def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -
 
 def _said(name: str) -> str:
     return name.replace("_", " ")
-
-
-def _renamed(output: Output, name: str) -> Output:
-    rows = {k: v for k, v in vars(output).items() if k != "name"}
-    return Output(name=name, **rows)

@@ -1,0 +1,65 @@
+"""The balance of forces of a frame, and the size of its terms, as stacks over the design variables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inerter.errors import LinearSystemError
+from inerter.networks.elements import Element, Inerter
+from inerter.networks.elements.roles import Linear
+from inerter.systems.frame import Frame, Long, Matrix, Rows
+from inerter.systems.graph import Branch
+
+
+def balance(frame: Frame) -> tuple[Long, Long]:
+    """S, -R and -F of `systems.descriptor` beside each other (1 + variables, eta, eta + x + u), and the same in sizes.
+
+    Rows are the balances of forces on R, U, Y and Z, of momentum on U, and of how fast forces change on Z.
+
+    Raises `LinearSystemError` for a force where only springs settle, if an output asks how fast.
+    """
+    k, e = 1 + len(frame.variables), frame.unknowns
+    terms = np.zeros((k, e, e + frame.states + len(frame.inputs)), np.longdouble)
+    sizes = np.zeros_like(terms)
+    for element, on, to in _parts(frame):
+        place, factor = frame.slice_of(element)
+        term = np.multiply.outer(factor * on.astype(np.longdouble), np.concatenate(to))
+        terms[place] += term
+        sizes[place] += np.abs(term)
+    for j, row in enumerate(frame.force_rows):
+        column = e + frame.states + frame.roads + j
+        force = _on_forces(frame, row)
+        terms[0, :, column], sizes[0, :, column] = -force, np.abs(force)
+    return terms, sizes
+
+
+def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, Rows]]:
+    """Each mass and element: how it acts on the rows of the balance, and what its value multiplies."""
+    at = frame.slots
+    masses = [
+        Branch(Inerter(coordinate.inertia), coordinate.name, row, np.zeros(0))
+        for coordinate, row in zip(frame.mechanism.coordinates, np.eye(len(frame.graph.nodes)), strict=False)
+    ]
+    for branch in (*masses, *frame.graph.branches):
+        on = np.zeros(frame.unknowns)
+        on[at.a1], on[at.u1], on[at.y], on[at.z] = frame.split.rate(branch.nodes)
+        yield branch.element, on, frame.across(branch)
+        if branch.element.linear is Linear.MASS:
+            momentum = np.zeros(frame.unknowns)
+            momentum[at.u0] = on[at.u1]
+            yield branch.element, momentum, frame.velocity(branch.nodes)
+        if branch.element.linear is Linear.STIFFNESS and at.settles:
+            change = np.zeros(frame.unknowns)
+            change[at.z1] = on[at.z]
+            yield branch.element, change, frame.velocity(branch.nodes, branch.roads)
+
+
+def _on_forces(frame: Frame, row: Matrix) -> Matrix:
+    """How an external force acts on the rows of the balance."""
+    at, force = frame.slots, np.zeros(frame.unknowns)
+    force[at.a1], _, force[at.y], force[at.z] = frame.split.rate(row)
+    if at.settles and np.any(force[at.z]):
+        raise LinearSystemError("How fast springs settle between each other under a force that jumps is not known.")
+    return force

@@ -1,0 +1,199 @@
+"""The split of a graph's motions into unknowns, states and inputs, in which linear analysis writes its equations.
+
+Unknowns are eta = (accelerations of R and U, velocities of Y, elongations zeta, velocities of U), and the velocities of
+Z where an output asks for them; states x = (velocities a, elongations g); inputs u = (road velocities, forces). See
+`systems.coordinates`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import MechanismError
+from inerter.networks.elements import Element, Free
+from inerter.networks.elements.roles import Linear
+from inerter.systems.coordinates import Coordinates, combination, find_coordinates
+from inerter.systems.graph import Branch, Graph
+from inerter.systems.incidence import inertias, of_law, ports, stacked
+from inerter.systems.outputs import Output, force_of, outputs
+from inerter.vehicle.mechanism import Mechanism
+
+Matrix = NDArray[np.float64]
+Long = NDArray[np.longdouble]
+Rows = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
+
+
+@dataclass(frozen=True)
+class Slots:
+    """Where things stand among the unknowns eta and the states x."""
+
+    a1: slice
+    u1: slice
+    y: slice
+    z: slice
+    u0: slice
+    z1: slice  # empty unless an output asks for velocities of Z
+    a: slice
+    g: slice
+
+    @staticmethod
+    def of(split: Coordinates, settling: bool) -> Slots:
+        a, u, y, z = (columns.shape[1] for columns in (split.R, split.U, split.Y, split.Z))
+        edges = np.cumsum([0, a, u, y, z, u, z * settling])
+        a1, u1, y1, z0, u0, z1 = (slice(int(i), int(j)) for i, j in pairwise(edges))
+        return Slots(a1, u1, y1, z0, u0, z1, slice(0, a), slice(a, a + split.G.shape[1]))
+
+    @property
+    def settles(self) -> bool:
+        """Whether velocities of Z are unknowns."""
+        return bool(self.z1.stop > self.z1.start)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A graph with its motions split, for chosen inputs (roads first)."""
+
+    mechanism: Mechanism
+    graph: Graph
+    inputs: tuple[str, ...]
+    split: Coordinates
+    slots: Slots
+    known: dict[str, Output]
+    springs: tuple[Branch, ...]
+    spring_rows: Matrix  # over nodes, and ...
+    spring_roads: Matrix  # ... over the roads that are inputs
+    road_columns: tuple[int, ...]  # of the roads that are inputs, among all
+    force_rows: Matrix  # of the other inputs over nodes
+
+    @property
+    def roads(self) -> int:
+        """Inputs that are roads."""
+        return len(self.road_columns)
+
+    @property
+    def unknowns(self) -> int:
+        """Length of eta."""
+        return int(self.slots.z1.stop)
+
+    @property
+    def states(self) -> int:
+        """Length of x."""
+        return int(self.slots.g.stop)
+
+    @cached_property
+    def variables(self) -> dict[str, Free]:
+        """The design variables by name."""
+        elements = (branch.element for branch in self.graph.branches)
+        return {str(e.value.name): e.value for e in elements if isinstance(e.value, Free)}
+
+    @cached_property
+    def spring_number(self) -> dict[int, int]:
+        """Which of the springs a branch is, by its identity."""
+        return {id(branch): i for i, branch in enumerate(self.springs)}
+
+    def slice_of(self, element: Element) -> tuple[int, float]:
+        """The slice of a stack over the design variables in which an element's value stands, and its factor there."""
+        if isinstance(element.value, Free):
+            return 1 + list(self.variables).index(str(element.value.name)), element.gain
+        return 0, element.coefficient
+
+    def blank(self) -> Rows:
+        """Rows of zeros."""
+        return np.zeros(self.unknowns), np.zeros(self.states), np.zeros(len(self.inputs))
+
+    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
+        """The velocity of a combination of nodes and roads."""
+        (eta, x, u), at = self.blank(), self.slots
+        x[at.a], eta[at.u0], eta[at.y], settling = self.split.rate(nodes)
+        if at.settles:
+            eta[at.z1] = settling
+        if roads is not None and roads.size:
+            u[: self.roads] = roads[list(self.road_columns)]
+        return eta, x, u
+
+    def acceleration(self, nodes: Matrix) -> Rows:
+        """The acceleration of a combination of nodes that inertia carries."""
+        eta, x, u = self.blank()
+        eta[self.slots.a1], eta[self.slots.u1] = self.split.rate(nodes)[:2]
+        return eta, x, u
+
+    def elongation(self, springs: Matrix) -> Rows:
+        """A combination of spring elongations."""
+        eta, x, u = self.blank()
+        x[self.slots.g], eta[self.slots.z] = springs @ self.split.G, springs @ self.split.Z_e
+        return eta, x, u
+
+    def external(self, weights: Matrix) -> Rows:
+        """A combination of the external forces; those that are no inputs are zero."""
+        eta, x, u = self.blank()
+        for force, weight in zip(self.mechanism.forces, weights, strict=False):
+            if force.name in self.inputs:
+                u[self.inputs.index(force.name)] += weight
+        return eta, x, u
+
+    def across(self, branch: Branch) -> Rows:
+        """What the value of an element multiplies: its acceleration, velocity or elongation."""
+        match branch.element.linear:
+            case Linear.MASS:
+                return self.acceleration(branch.nodes)
+            case Linear.DAMPING:
+                return self.velocity(branch.nodes, branch.roads)
+            case Linear.STIFFNESS:
+                return self.elongation(np.eye(len(self.springs))[self.spring_number[id(branch)]])
+        return self.blank()
+
+    def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
+        """The combination of spring elongations that is this displacement whatever moves, if there is one."""
+        springs = np.hstack([self.spring_rows, self.spring_roads])
+        return combination(springs, np.hstack([nodes, roads[list(self.road_columns)]]))
+
+
+def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Sequence[str] = ()) -> Frame:
+    """The frame for these inputs, and for outputs that may ask how fast springs settle.
+
+    Raises `MechanismError` for an inerter on the road itself, and for a node that is held by nothing.
+    """
+    for branch in of_law(graph, Linear.MASS):
+        if np.any(branch.roads):
+            raise MechanismError(
+                f"{branch.element.key.capitalize()} {branch.label!r} is mounted on the road itself: its force "
+                f"follows the road's acceleration, which does not exist for a white road velocity. Mount it "
+                f"between moving parts."
+            )
+    columns = tuple(i for i, road in enumerate(mechanism.roads) if road.name in inputs)
+    forces = _forces(mechanism, graph, [name for name in inputs if name not in {r.name for r in mechanism.roads}])
+    springs = of_law(graph, Linear.STIFFNESS)
+    spring_rows, spring_roads = stacked(springs, graph)
+    spring_roads = np.array([b.roads[list(columns)] for b in springs]).reshape(len(springs), len(columns))
+    found = find_coordinates(
+        graph.nodes,
+        inertia=inertias(mechanism, graph)[0],
+        damping=stacked(of_law(graph, Linear.DAMPING), graph)[0],
+        springs=spring_rows,
+        spring_roads=spring_roads,
+        forces=forces,
+    )
+    known = outputs(mechanism, graph)
+    slots = Slots.of(found, _settling(found, [known[name].velocity for name in wanted if name in known]))
+    return Frame(
+        mechanism, graph, tuple(inputs), found, slots, known, tuple(springs), spring_rows, spring_roads, columns, forces
+    )
+
+
+def _forces(mechanism: Mechanism, graph: Graph, names: Sequence[str]) -> Matrix:
+    """Rows of external forces, and of forces beside elements, over nodes."""
+    beside = {force_of(branch.label): -branch.nodes for branch in graph.branches}
+    given = {force.name: row for force, row in zip(mechanism.forces, ports(mechanism, graph), strict=True)}
+    rows = beside | given
+    return np.array([rows[name] for name in names]).reshape(len(names), len(graph.nodes))
+
+
+def _settling(found: Coordinates, asked: Sequence[Matrix]) -> bool:
+    """Whether one of these velocities is of something that only springs hold."""
+    return any(np.any(found.rate(row)[3]) for row in asked if row.size)

@@ -1,0 +1,134 @@
+"""What an output is made of, in the coordinates of a system: rows over its unknowns, states and inputs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from inerter.errors import LinearSystemError
+from inerter.networks.elements import Element
+from inerter.systems.frame import Frame, Long, Matrix, Rows
+from inerter.systems.graph import full_graph
+from inerter.systems.outputs import Output, find, main_outputs, outputs
+
+Stacks = tuple[Any, Any, Any]  # on eta, x and u
+
+
+class Moving(Protocol):
+    """Coordinates in which motions of nodes and roads, and external forces, are rows."""
+
+    def blank(self) -> Rows:
+        """Rows of zeros."""
+        ...
+
+    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
+        """The velocity of a combination of nodes and roads; no nodes are none that move."""
+        ...
+
+    def acceleration(self, nodes: Matrix) -> Rows:
+        """The acceleration of a combination of nodes that inertia carries."""
+        ...
+
+    def external(self, weights: Matrix) -> Rows:
+        """A combination of the external forces."""
+        ...
+
+
+def motion(moving: Moving, output: Output, nodes: int) -> Rows:
+    """An output's velocities, accelerations and external forces."""
+    rows = moving.blank()
+    if output.velocity.size or output.road_velocity.size:
+        _add(rows, moving.velocity(_or(output.velocity, nodes), output.road_velocity))
+    if output.acceleration.size:
+        _add(rows, moving.acceleration(output.acceleration))
+    if output.external.size:
+        _add(rows, moving.external(output.external))
+    return rows
+
+
+def _add(rows: Rows, more: Rows) -> None:
+    for row, other in zip(rows, more, strict=True):
+        row += other
+
+
+@dataclass(frozen=True, eq=False)
+class Observed:
+    """An output as stacks over the design variables, and their sizes; with a state of its own if it is that."""
+
+    name: str
+    rows: Stacks
+    sizes: Stacks
+    state: Rows | None  # its rate
+
+
+def observe(frame: Frame, name: str) -> Observed:
+    """An output by name. Raises `LinearSystemError` for one that linear analysis does not have."""
+    output = _found(frame, name)
+    if output.displacement.size or output.road.size:
+        return _displacement(frame, name, output)
+    fixed = motion(frame, output, len(frame.graph.nodes))
+    rows = _stacked(frame, *(row.astype(np.longdouble) for row in fixed))
+    sizes = _absolute(rows)
+    for i in np.flatnonzero(output.forces):
+        branch = frame.graph.branches[i]
+        for stack, size, row in zip(rows, sizes, frame.across(branch), strict=True):
+            term = _times_value(frame, branch.element, row)
+            stack += term
+            size += np.abs(term)
+    return Observed(name, rows, sizes, None)
+
+
+def observed_by_default(frame: Frame) -> list[str]:
+    """Names of what is asked for by default: motions and mounts, as far as they need no state of their own."""
+    return [name for name in main_outputs(frame.mechanism) if not _drifts(frame, frame.known[name])]
+
+
+def _drifts(frame: Frame, output: Output) -> bool:
+    roads = _or(output.road, len(frame.mechanism.roads))
+    return bool(output.displacement.size) and frame.displacement(output.displacement, roads) is None
+
+
+def _found(frame: Frame, name: str) -> Output:
+    if name in frame.known:
+        return frame.known[name]
+    find(outputs(frame.mechanism, full_graph(frame.mechanism)), name, LinearSystemError)
+    raise LinearSystemError(
+        f"There is no output named {name!r} in linear analysis, which leaves friction out and closes gaps. "
+        f"Simulate the design: simulate(...), ExpectedValue() or ApproximateLinear()."
+    )
+
+
+def _displacement(frame: Frame, name: str, output: Output) -> Observed:
+    """A displacement: a combination of spring elongations, or a state that follows its velocity."""
+    nodes = _or(output.displacement, len(frame.graph.nodes))
+    roads = _or(output.road, len(frame.mechanism.roads))
+    weights = frame.displacement(nodes, roads)
+    rows = _stacked(frame, *(frame.blank() if weights is None else frame.elongation(weights)))
+    return Observed(name, rows, _absolute(rows), frame.velocity(nodes, roads) if weights is None else None)
+
+
+def _stacked(frame: Frame, *rows: Any) -> Stacks:
+    """Rows that no value changes."""
+    k = len(frame.variables)
+    eta, x, u = (np.concatenate([row[None], np.zeros((k, row.size), row.dtype)]) for row in rows)
+    return eta, x, u
+
+
+def _times_value(frame: Frame, element: Element, row: Matrix) -> Long:
+    """A row times an element's value."""
+    stack = np.zeros((1 + len(frame.variables), row.size), np.longdouble)
+    place, factor = frame.slice_of(element)
+    stack[place] = factor * row.astype(np.longdouble)
+    return stack
+
+
+def _absolute(rows: Stacks) -> Stacks:
+    eta, x, u = map(np.abs, rows)
+    return eta, x, u
+
+
+def _or(row: Matrix, count: int) -> Matrix:
+    """A row of an output, where an empty one is of zeros."""
+    return row if row.size else np.zeros(count)

@@ -9,7 +9,7 @@ from rigs import BALL_SCREW, device, fit_test
 import inerter as it
 from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import experiment_of
-from inerter.identification.intervals import optimum_of
+from inerter.identification.intervals import best_fit_of
 from inerter.identification.noise import plain
 from inerter.identification.problem import Problem
 from inerter.identification.search import basin_hopping, starts
@@ -92,7 +92,7 @@ def test_a_bootstrap_agrees_with_curvature_where_nothing_strikes() -> None:
     truth = it.Spring(2e5) | it.Damper(900.0)
     rig = it.VirtualRig(truth, seed=0, encoder_noise=0.0, encoder_resolution=0.0, force_resolution=0.0, force_range=1e4)
     problem = problem_of(rig.run(it.multisine(it.Road(1e-9, 10.0), seed=1, highest=20.0), duration=4.0), model)
-    optimum = optimum_of(problem, problem.space.placed({"k": 2e5, "c": 900.0}))
+    optimum = best_fit_of(problem, problem.space.placed({"k": 2e5, "c": 900.0}))
     drawn = bootstrap(problem, optimum, seed=0, draws=40)
     plain_errors = np.sqrt(np.diag(optimum.covariance))
     assert np.all(drawn.optimum.errors < 2.0 * plain_errors)

@@ -15,7 +15,8 @@ import pytest
 
 import inerter as it
 from inerter.errors import OK, Status, StatusKind
-from inerter.files.identification.running import Candidate, Identified, Reading, responses
+from inerter.files.identification.running import Identified, Reading, responses
+from inerter.identification.choice import Candidate
 from inerter.identification.fit import Explanation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis

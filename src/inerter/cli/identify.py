@@ -22,6 +22,7 @@ from inerter.report.identification_text import identification_text
 from inerter.report.options import as_options
 from inerter.units import parse_quantity
 
+_CHANNELS = {"displacement": "displacement", "force_channel": "force", "time": "time"}  # by the option
 _QUANTITIES = {
     "interval": "s",
     "resample": "s",
@@ -111,8 +112,8 @@ def _record(asked: RecordRequest, options: Mapping[str, Any]) -> RecordRequest:
     changes: dict[str, Any] = {}
     channels = {
         role: int(name) if name.isdigit() else name
-        for role in ("displacement", "force", "time")
-        if (name := given.get(role)) is not None
+        for option, role in _CHANNELS.items()
+        if (name := given.get(option)) is not None
     }
     changes["channels"] = {**asked.channels, **channels}
     changes["units"] = {**asked.units, **_units(given.get("unit", ()))}

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from dataclasses import asdict
 from inspect import signature
 from pathlib import Path
 from typing import Annotated
@@ -17,6 +18,7 @@ from cyclopts import App, CycloptsError, Parameter
 from inerter import __version__
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
 from inerter.cli.options import Force, Jobs, Json, Output, Resume
+from inerter.cli.reading import AS_THEY_ARE, ReadingOptions
 from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
 from inerter.writing import sweep
@@ -40,6 +42,8 @@ app = App(
     help_format="plaintext",
     suppress_keyboard_interrupt=False,
 )
+
+Reading = Annotated[ReadingOptions, Parameter(name="*")]
 
 
 @app.command(
@@ -135,37 +139,7 @@ def identify(
     config: Annotated[
         Path | None, Parameter(help="A file (TOML) with [record], [model], [elements] and [fit]; options overrule it.")
     ] = None,
-    displacement: Annotated[
-        str | None, Parameter(help="The channel of the displacement: name, or number from 0.")
-    ] = None,
-    force_channel: Annotated[str | None, Parameter(help="The channel of the force: name, or number from 0.")] = None,
-    time: Annotated[str | None, Parameter(help="The channel of the times: name, or number from 0.")] = None,
-    unit: Annotated[
-        tuple[str, ...],
-        Parameter(
-            negative="",
-            show_default=False,
-            help="A unit where the file has none or a wrong one: force=kgf. Several times.",
-        ),
-    ] = (),
-    interval: Annotated[str | None, Parameter(help='Between samples, where the file has no times: "1 ms".')] = None,
-    gaps: Annotated[
-        str | None, Parameter(help='What missing samples are: refuse, fill, longest, or filled up to "50 ms".')
-    ] = None,
-    trim: Annotated[str | None, Parameter(help="Seconds to use, FROM:TO.")] = None,
-    resample: Annotated[str | None, Parameter(help='New interval between samples: "1 ms".')] = None,
-    period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None,
-    force_range: Annotated[str | None, Parameter(help='What the load cell can read: "981 N".')] = None,
-    force_bandwidth: Annotated[str | None, Parameter(help='Of the load cell and its amplifier: "300 Hz".')] = None,
-    force_noise: Annotated[
-        str | None, Parameter(help='Of the load cell, r.m.s.: "0.5 N"; else from the quietest half-octave.')
-    ] = None,
-    displacement_noise: Annotated[
-        str | None, Parameter(help='Of the displacement, r.m.s.: "1 um"; else as it stands out of its motion.')
-    ] = None,
-    fixture_mass: Annotated[
-        str | None, Parameter(help='What moves with the table between load cell and device: "2 kg".')
-    ] = None,
+    reading: Reading = AS_THEY_ARE,
     seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None,
     starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None,
     output: Output = None,
@@ -184,14 +158,8 @@ def identify(
     """
     from inerter.cli.identify import identify as command
 
-    options = {
-        "displacement": displacement, "force": force_channel, "time": time, "unit": unit, "interval": interval,
-        "gaps": gaps, "trim": trim, "resample": resample, "period": period, "force_range": force_range,
-        "force_bandwidth": force_bandwidth, "force_noise": force_noise, "displacement_noise": displacement_noise,
-        "fixture_mass": fixture_mass,
-    }  # fmt: skip
     settings = {"seed": seed, "starts": starts}
-    return command(records, model, config, output, options, settings, force=force, as_json=json)
+    return command(records, model, config, output, asdict(reading), settings, force=force, as_json=json)
 
 
 @app.command(

@@ -22,7 +22,7 @@ from scipy.stats import norm
 from scipy.stats import t as student
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.intervals import ROBUST, Optimum, steps_of
+from inerter.identification.intervals import ROBUST, BestFit, steps_of
 from inerter.identification.problem import Problem
 from inerter.identification.search import improve
 from inerter.identification.sensors import source_of
@@ -36,12 +36,12 @@ _EVALUATIONS = 5
 class Bootstrap:
     """What a parametric bootstrap makes of a fit."""
 
-    optimum: Optimum  # the same, with intervals at least as wide as they scatter
+    optimum: BestFit  # the same, with intervals at least as wide as they scatter
     bias: Matrix  # how far they lie from the device that made them, in coordinates; at most two standard errors
     predicted: float  # part of the variance of the force that the errors of the encoder leave as it is
 
 
-def bootstrap(problem: Problem, optimum: Optimum, seed: int, draws: int = DRAWS) -> Bootstrap:
+def bootstrap(problem: Problem, optimum: BestFit, seed: int, draws: int = DRAWS) -> Bootstrap:
     """Draw records from the best fit, and fit them.
 
     Their scatter comes in place of what the curvature says of independent errors; how far residuals are autocorrelated

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Unpack
 
 import numpy as np
@@ -20,7 +20,7 @@ from inerter.identification.kinds import FitFinding
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
-from inerter.identification.solving import Solution
+from inerter.identification.solving import Solution, part
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.finding import Finding
@@ -49,6 +49,7 @@ class Candidate:
     behind: float  # the best one's loss less than this one's
     error: float  # standard error of that difference
     as_good: bool  # as the best one, by the rule of `choose`
+    status: Status  # of its fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +85,7 @@ def choose(
     """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
 
     `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
-    chosen one with a damper, with and without friction. Options and keywords are
-    those of `identify`.
+    chosen one with a damper, with and without friction. Options and keywords are those of `identify`.
 
     **The criterion.** Each candidate is fitted with the weights that its own residuals ask for, so its likelihood
     compares with no other's. Here all are judged by one yardstick: the last part `check` of each record, which none
@@ -104,62 +104,79 @@ def choose(
     records = checked_records(records)
     if not asked.check > 0.0:
         raise IdentificationError(f"Candidates are compared on the part kept for the check, got {asked.check!r}.")
-    solutions: dict[str, Solution] = {}
-    fits: dict[str, Fit] = {}
-    failed: list[Finding] = []
-    expected = len(given) + (2 if models is None else 0)
-
-    def fit_all(candidates: Mapping[str, Network]) -> None:
-        for name, model in candidates.items():
-            done = len(fits) + len(failed)
-            part = None if progress is None else _part(progress, done / expected, (done + 1) / expected)
-            try:
-                solutions[name] = solution_of(records, model, asked, part)
-                fits[name] = fit_of(solutions[name], explain=False)
-            except InerterError as error:
-                failed.append(Finding(FitFinding.FAILED, "warning", name, {"error": error.args}))
-
-    def again(candidates: Mapping[str, Network]) -> None:
-        """Candidates that a relative shows to be far from their best fit are fitted again near that relative's."""
-        ranked = compare(fits)
-        for name, relative in _stuck(ranked, fits):
-            with suppress(InerterError):
-                near = solution_of(records, _near(candidates[name], fits[relative]), asked, None)
-                other = fit_of(near, explain=False)
-                losses = {c.name: c.loss for c in compare({relative: fits[relative], name: fits[name], _AGAIN: other})}
-                if losses[_AGAIN] < losses[name]:
-                    solutions[name], fits[name] = near, other
-
-    fit_all(given)
-    if not fits:
-        raise IdentificationError(f"No candidate can be fitted. {' '.join(finding.sentence for finding in failed)}")
-    again(given)
+    selection = _Selection(records, asked, len(given) + (2 if models is None else 0), progress)
+    selection.enter(given)
     if models is None:
-        first = _chosen(compare(fits))
+        first = _chosen(ranking(selection.fits))
         pair = next(pair for pair in _PAIRS if first in pair)
-        more = {name + VISCOUS: MODELS[name + VISCOUS] for name in pair}
-        given = {**given, **more}
-        fit_all(more)
-        again(given)
-    ranked = compare(fits)
-    name = _chosen(ranked)
-    fit = fits[name] = fit_of(solutions[name])
-    values = {n: p.best for n, p in fit.parameters.items()}
-    return Choice(
-        name=name,
-        fits=fits,
-        candidates=ranked,
-        device=with_values(Rig(given[name]).device, values),
-        status=_status(fit),
-        findings=(
-            _reason(ranked, name),
-            *(Finding(FitFinding.NOT_REACHED, "warning", c, {"other": o}) for c, o in _stuck(ranked, fits)),
-            *failed,
-        ),
-    )
+        selection.enter({name + VISCOUS: MODELS[name + VISCOUS] for name in pair})
+    return selection.decided()
 
 
-def compare(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
+@dataclass(eq=False)
+class _Selection:
+    """Candidates that are fitted to the same records, and how far each has come."""
+
+    records: Sequence[Record]
+    asked: FitOptions
+    expected: int  # candidates
+    progress: Callable[[float], None] | None
+    models: dict[str, Network] = field(default_factory=dict)
+    solutions: dict[str, Solution] = field(default_factory=dict)
+    fits: dict[str, Fit] = field(default_factory=dict)
+    failed: list[Finding] = field(default_factory=list)
+
+    def enter(self, candidates: Mapping[str, Network]) -> None:
+        """Fit some more; raises `IdentificationError` if there is none that can be fitted."""
+        self.models |= candidates
+        for name, model in candidates.items():
+            done = len(self.fits) + len(self.failed)
+            try:
+                self._solved(name, solution_of(self.records, model, self.asked, self._part(done)))
+            except InerterError as error:
+                self.failed.append(Finding(FitFinding.FAILED, "warning", name, {"error": error.args}))
+        if not self.fits:
+            why = " ".join(finding.sentence for finding in self.failed)
+            raise IdentificationError(f"No candidate can be fitted. {why}")
+        self._retry()
+
+    def decided(self) -> Choice:
+        """The choice between all that entered."""
+        ranked = ranking(self.fits)
+        name = _chosen(ranked)
+        fit = self.fits[name] = fit_of(self.solutions[name])
+        values = {n: p.best for n, p in fit.parameters.items()}
+        stuck = (Finding(FitFinding.NOT_REACHED, "warning", c, {"other": o}) for c, o in _stuck(ranked, self.fits))
+        return Choice(
+            name=name,
+            fits=self.fits,
+            candidates=tuple(replace(c, status=self.fits[c.name].status) for c in ranked),
+            device=with_values(Rig(self.models[name]).device, values),
+            status=_status(fit),
+            findings=(_reason(ranked, name), *stuck, *self.failed),
+        )
+
+    def _solved(self, name: str, solution: Solution) -> None:
+        fit = fit_of(solution, explain=False)
+        self.solutions[name], self.fits[name] = solution, fit
+
+    def _retry(self) -> None:
+        """Candidates that a relative shows to be far from their best fit are fitted again near that relative's."""
+        for name, relative in _stuck(ranking(self.fits), self.fits):
+            with suppress(InerterError):
+                near = solution_of(self.records, _near(self.models[name], self.fits[relative]), self.asked, None)
+                other = fit_of(near, explain=False)
+                fits = {relative: self.fits[relative], name: self.fits[name], _AGAIN: other}
+                losses = {c.name: c.loss for c in ranking(fits)}
+                if losses[_AGAIN] < losses[name]:
+                    self.solutions[name], self.fits[name] = near, other
+
+    def _part(self, done: int) -> Callable[[float], None] | None:
+        """What tells the progress of the next candidate."""
+        return part(self.progress, done / self.expected, (done + 1) / self.expected)
+
+
+def ranking(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
     """The candidates, the best first, by the criterion of `choose`.
 
     Raises `IdentificationError` if they have no samples of a check part in common.
@@ -181,7 +198,8 @@ def compare(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
         error = float(blocks.std(ddof=1)) / math.sqrt(_BLOCKS)
         behind = mean[name] - mean[best]
         allowed = float(np.clip(error, LEAST * mean[best], MOST * mean[best]))
-        result.append(Candidate(name, len(fits[name].parameters), mean[name], behind, error, behind <= allowed))
+        fit, as_good = fits[name], behind <= allowed
+        result.append(Candidate(name, len(fit.parameters), mean[name], behind, error, as_good, fit.status))
     return tuple(sorted(result, key=lambda c: c.loss))
 
 
@@ -284,7 +302,3 @@ def _near(model: Network, fit: Fit) -> Network:
         return element.with_value(replace(value, lower=low, upper=high)) if low < high else element
 
     return map_elements(Rig(model).device, bound)
-
-
-def _part(progress: Callable[[float], None], first: float, last: float) -> Callable[[float], None]:
-    return lambda done: progress(first + (last - first) * done)

@@ -14,7 +14,7 @@ from inerter.identification.experiment import saturated
 from inerter.identification.explaining import explanations
 from inerter.identification.fit import Comparison, Explanation, Fit, Parameter
 from inerter.identification.identifiability import Identifiability, Verdict
-from inerter.identification.intervals import Optimum, Profile
+from inerter.identification.intervals import BestFit, Profile
 from inerter.identification.kinds import FitFinding
 from inerter.identification.models import unmounted
 from inerter.identification.problem import Problem
@@ -136,7 +136,7 @@ def _ends(value: float, error: float) -> tuple[float, float]:
     return value - _ERRORS * error, value + _ERRORS * error
 
 
-def _parameter(space: Space, i: int, optimum: Optimum, profile: Profile, best: float) -> Parameter:
+def _parameter(space: Space, i: int, optimum: BestFit, profile: Profile, best: float) -> Parameter:
     def value(coordinate: float) -> float:
         point = optimum.point.copy()
         point[i] = coordinate
@@ -187,7 +187,7 @@ def _name_of(element: Element) -> str:
     return str(element.value.name) if isinstance(element.value, Free) else element.label
 
 
-def _criterion(problem: Problem, optimum: Optimum) -> float:
+def _criterion(problem: Problem, optimum: BestFit) -> float:
     """Schwarz's criterion: -2 log likelihood of the whitened residuals, plus log(samples) for each unknown."""
     n = optimum.samples
     logs = sum(float(np.sum(np.log(w.weight[w.weight > 0.0]))) for w in problem.whitenings)

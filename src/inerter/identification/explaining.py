@@ -16,7 +16,7 @@ from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
-from inerter.identification.intervals import Optimum, optimum_of, steps_of
+from inerter.identification.intervals import BestFit, best_fit_of, steps_of
 from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
 from inerter.identification.problem import Problem
@@ -38,10 +38,10 @@ class Trial:
 
     hypothesis: Hypothesis
     problem: Problem
-    optimum: Optimum
+    optimum: BestFit
 
 
-def explanations(problem: Problem, optimum: Optimum, by: Judge, before: Misfit) -> list[Explanation]:
+def explanations(problem: Problem, optimum: BestFit, by: Judge, before: Misfit) -> list[Explanation]:
     """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway."""
     found: dict[Suspect, Explanation] = {}
     lost = lost_samples(problem.experiments)
@@ -90,7 +90,7 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
     return Hypothesis(Suspect.LOST_SAMPLES, moved=moved, read=read, details=lambda values: {"places": tuple(places)})
 
 
-def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge) -> Trial:
+def _tried(problem: Problem, optimum: BestFit, hypothesis: Hypothesis, by: Judge) -> Trial:
     """A hypothesis after some steps from the best fit."""
     assumed = (*problem.assumed, hypothesis)
     rig = problem.rig if hypothesis.device is None else Rig(hypothesis.device)
@@ -105,7 +105,7 @@ def _tried(problem: Problem, optimum: Optimum, hypothesis: Hypothesis, by: Judge
         point = space.placed({**known, **zero, **start})
         seen = {**sizes, **start}
         steps = np.array([widths.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)])
-        trials.append(Trial(hypothesis, other, optimum_of(other, point, steps, _EVALUATIONS, _ACCURACY)))
+        trials.append(Trial(hypothesis, other, best_fit_of(other, point, steps, _EVALUATIONS, _ACCURACY)))
     return min(trials, key=lambda t: t.optimum.cost)
 
 

@@ -21,7 +21,7 @@ LEVEL = 0.95
 
 
 @dataclass(frozen=True, eq=False)
-class Optimum:
+class BestFit:
     """The best fit and its neighbourhood, in coordinates."""
 
     point: Matrix
@@ -45,25 +45,25 @@ class Optimum:
         return 0.5 * quantile**2 * self.variance * self.widening
 
 
-def optimum_of(
+def best_fit_of(
     problem: Problem,
     start: Matrix,
     steps: Matrix | None = None,
     evaluations: int = 20,
     accuracy: float = 1e-9,
-) -> Optimum:
+) -> BestFit:
     """The best fit near `start`, with differences as wide as the coordinates are uncertain."""
     point, cost, residual, jacobian = improve(problem, start, evaluations, steps, ROBUST, accuracy)
     samples = sum(int((w.weight > 0.0).sum()) for w in problem.whitenings)
     variance = OPTIMISM * 2.0 * cost / max(samples - point.size, 1)
     information = jacobian.T @ jacobian
     covariance = np.asarray(np.linalg.pinv(information, rcond=1e-14, hermitian=True) * variance)
-    return Optimum(
+    return BestFit(
         point, cost, residual, jacobian, variance, covariance, _widening(jacobian, residual, variance), samples
     )
 
 
-def steps_of(optimum: Optimum) -> Matrix:
+def steps_of(optimum: BestFit) -> Matrix:
     """Half a standard error, within reason."""
     return np.clip(0.5 * np.nan_to_num(optimum.errors, nan=_STEPS[1]), *_STEPS)
 
@@ -104,7 +104,7 @@ class Profile:
         return Profile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
 
-def profiles(problem: Problem, optimum: Optimum) -> list[Profile]:
+def profiles(problem: Problem, optimum: BestFit) -> list[Profile]:
     """The profile of every coordinate."""
     tasks = [(i, sign) for i in range(optimum.point.size) for sign in (-1, 1)]
     found = list(problem.pool.map(lambda task: _walk(problem, optimum, *task), tasks))
@@ -117,7 +117,7 @@ def profiles(problem: Problem, optimum: Optimum) -> list[Profile]:
 
 
 def _walk(
-    problem: Problem, optimum: Optimum, i: int, sign: int
+    problem: Problem, optimum: BestFit, i: int, sign: int
 ) -> tuple[Side, list[tuple[float, float]], tuple[float, Matrix] | None]:
     """Walk away from the optimum until the rise of the cost meets its threshold."""
     bound = float(problem.space.bounds[1 if sign > 0 else 0][i])
@@ -153,12 +153,12 @@ def _walk(
     return Side(start + sign * min(outside[0], room), np.isfinite(outside[0])), points, better
 
 
-def _stiffness(optimum: Optimum, i: int) -> float:
+def _stiffness(optimum: BestFit, i: int) -> float:
     """Second derivative of the profile at the optimum."""
     return float(optimum.variance / max(optimum.covariance[i, i], 1e-300))
 
 
-def _follow(problem: Problem, optimum: Optimum, i: int, value: float) -> tuple[float, Matrix]:
+def _follow(problem: Problem, optimum: BestFit, i: int, value: float) -> tuple[float, Matrix]:
     """The least cost with coordinate i at `value`, by Gauss-Newton steps with the derivatives of the optimum."""
     lower, upper = problem.space.bounds
     others = np.array([j for j in range(optimum.point.size) if j != i], dtype=int)

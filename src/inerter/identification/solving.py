@@ -15,7 +15,7 @@ from inerter.identification.experiment import Experiment, experiment_of, forgott
 from inerter.identification.fit import Misfit
 from inerter.identification.guess import chain_of, guess_of, sign_of
 from inerter.identification.hypotheses import Hypothesis
-from inerter.identification.intervals import Optimum, Profile, optimum_of, profiles, robust_cost, steps_of
+from inerter.identification.intervals import BestFit, Profile, best_fit_of, profiles, robust_cost, steps_of
 from inerter.identification.judging import Judge, check_parts, judge_of
 from inerter.identification.noise import plain, whitening_of, yardstick
 from inerter.identification.options import FitOptions
@@ -41,7 +41,7 @@ class Solution:
     """The best fit of a model, what is known about it, and the judge of what it leaves."""
 
     problem: Problem
-    optimum: Optimum
+    optimum: BestFit
     profiles: tuple[Profile, ...]
     checked: tuple[NDArray[np.bool_], ...]  # samples of each record that were kept for the check
     leads: tuple[float, ...]
@@ -149,7 +149,7 @@ def _leads(problem: Problem, point: Matrix, lead: float | None) -> tuple[list[Ex
     return result, leads
 
 
-def _refined(problem: Problem, start: Matrix, seed: int) -> Optimum:
+def _refined(problem: Problem, start: Matrix, seed: int) -> BestFit:
     """The best fit with the weights that the errors of the sensors ask for, and the steps that it asks for itself."""
     point, steps, optimum = start, None, None
     for _ in range(_ROUNDS):
@@ -161,28 +161,28 @@ def _refined(problem: Problem, start: Matrix, seed: int) -> Optimum:
             for e, force, draws in zip(problem.experiments, forces, left, strict=True)
             if force is not None
         ]
-        optimum = optimum_of(problem, point, steps)
+        optimum = best_fit_of(problem, point, steps)
         point, steps = optimum.point, steps_of(optimum)
     assert optimum is not None
     return optimum
 
 
-def _profiled(problem: Problem, optimum: Optimum) -> tuple[Optimum, list[Profile]]:
+def _profiled(problem: Problem, optimum: BestFit) -> tuple[BestFit, list[Profile]]:
     """Profiles of all parameters; a better fit met on the way becomes the optimum, and all are walked once more."""
     found = profiles(problem, optimum)
     for _ in range(2):
         better = min((p.better for p in found if p.better is not None), key=lambda b: b[0], default=None)
         if better is None:
             break
-        nearer = optimum_of(problem, better[1], steps_of(optimum))
+        nearer = best_fit_of(problem, better[1], steps_of(optimum))
         optimum = replace(nearer, widening=np.maximum(nearer.widening, optimum.widening))
         found = profiles(problem, optimum)
     return optimum, found
 
 
 def _unbiased(
-    problem: Problem, optimum: Optimum, found: Sequence[Profile], bias: Matrix
-) -> tuple[Optimum, list[Profile]]:
+    problem: Problem, optimum: BestFit, found: Sequence[Profile], bias: Matrix
+) -> tuple[BestFit, list[Profile]]:
     """The best fit and its profiles without what the sensors' errors did to them.
 
     Where a record bounds a value on one side only, or not at all, the curvature says nothing of how far that is.

@@ -7,7 +7,8 @@ from math import floor, log10
 from textwrap import wrap
 
 from inerter.figures.labels import measured
-from inerter.files.identification.running import Candidate, Identified, Reading, model_title
+from inerter.files.identification.running import Identified, Reading, model_title
+from inerter.identification.choice import Candidate
 from inerter.identification.fit import Comparison
 from inerter.report.identified_values import elements_block, single, value_and_interval
 from inerter.report.options import as_options

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError, RecordError, Status
+from inerter.errors import InerterError, RecordError
 from inerter.files.identification.loading import CUSTOM, IdentificationRequest, RecordRequest
-from inerter.identification.choice import choose
+from inerter.identification.choice import Candidate, choose
 from inerter.identification.fit import Comparison, Fit
 from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
@@ -42,19 +42,6 @@ class Reading:
     received: Record
     used: Record
     findings: tuple[Finding, ...]
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """One model of several, and how well it predicts the part of the records that it was not fitted to."""
-
-    name: str
-    unknowns: int
-    loss: float  # mean square of whitened residuals there, about 1 at best
-    behind: float  # the loss over the least
-    error: float  # standard error of that difference
-    as_good: bool  # as the best
-    status: Status
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,13 +137,11 @@ def _chosen(
     models = request.models()
     given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
     choice = choose([r.used for r in readings], given, FitOptions(**settings), progress=progress)
-    candidates = tuple(
-        Candidate(c.name, c.unknowns, c.loss, c.behind, c.error, c.as_good, choice.fits[c.name].status)
-        for c in choice.candidates
-    )
     named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
     return Identified(
-        title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings, candidates, choice.findings
+        *(title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings),
+        candidates=choice.candidates,
+        choice=choice.findings,
     )
 
 

@@ -1,0 +1,48 @@
+"""How files of measurements are read, as options of the command line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from cyclopts import Parameter
+
+
+@dataclass(frozen=True)
+class ReadingOptions:
+    """What is said of the channels, the samples and the sensors; None where nothing is."""
+
+    displacement: Annotated[str | None, Parameter(help="The channel of the displacement: name, or number from 0.")] = (
+        None
+    )
+    force_channel: Annotated[str | None, Parameter(help="The channel of the force: name, or number from 0.")] = None
+    time: Annotated[str | None, Parameter(help="The channel of the times: name, or number from 0.")] = None
+    unit: Annotated[
+        tuple[str, ...],
+        Parameter(
+            negative="",
+            show_default=False,
+            help="A unit where the file has none or a wrong one: force=kgf. Several times.",
+        ),
+    ] = ()
+    interval: Annotated[str | None, Parameter(help='Between samples, where the file has no times: "1 ms".')] = None
+    gaps: Annotated[
+        str | None, Parameter(help='What missing samples are: refuse, fill, longest, or filled up to "50 ms".')
+    ] = None
+    trim: Annotated[str | None, Parameter(help="Seconds to use, FROM:TO.")] = None
+    resample: Annotated[str | None, Parameter(help='New interval between samples: "1 ms".')] = None
+    period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None
+    force_range: Annotated[str | None, Parameter(help='What the load cell can read: "981 N".')] = None
+    force_bandwidth: Annotated[str | None, Parameter(help='Of the load cell and its amplifier: "300 Hz".')] = None
+    force_noise: Annotated[
+        str | None, Parameter(help='Of the load cell, r.m.s.: "0.5 N"; else from the quietest half-octave.')
+    ] = None
+    displacement_noise: Annotated[
+        str | None, Parameter(help='Of the displacement, r.m.s.: "1 um"; else as it stands out of its motion.')
+    ] = None
+    fixture_mass: Annotated[
+        str | None, Parameter(help='What moves with the table between load cell and device: "2 kg".')
+    ] = None
+
+
+AS_THEY_ARE = ReadingOptions()

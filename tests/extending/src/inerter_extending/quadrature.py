@@ -42,8 +42,9 @@ class Quadrature:
         gains = system.C @ resolvent + system.D
         arrival = np.exp(-s[:, None] * np.array([delays[name] for name in question.inputs]))
         response = np.einsum("foi,fi->fo", gains, arrival)
-        if question.high_pass is not None:
-            response *= (s / (s + question.high_pass))[:, None]
+        for column, filter in enumerate(question.filters):
+            if filter is not None:
+                response[:, column] *= filter.response(omega)
         rms = question.road.velocity_intensity * np.sqrt(weights @ np.abs(response) ** 2 / pi)
         value = sum(abs(w.weight) * r for w, r in zip(question.outputs, rms.tolist(), strict=True))
         return it.Estimate(value, question.unit, notes=system.notes)

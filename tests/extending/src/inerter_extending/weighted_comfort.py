@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import sqrt
 
 import inerter as it
 
@@ -10,7 +11,7 @@ import inerter as it
 @it.INDICES.add
 @dataclass(frozen=True)
 class WeightedComfort:
-    """W1: r.m.s. body acceleration on a road [m/s^2] above a corner frequency, by a filter of first order."""
+    """W1: r.m.s. body acceleration on a road [m/s^2] above a corner frequency, by a filter of second order."""
 
     road: it.Road
     corner: float = field(
@@ -25,4 +26,5 @@ class WeightedComfort:
     response = "body acceleration per road velocity"
 
     def question(self, mechanism: it.Mechanism) -> it.Question:
-        return it.on_road(self, mechanism, mechanism.measures.comfort, "measures.comfort", high_pass=self.corner)
+        weighting = it.Filter((1.0, 0.0, 0.0), (1.0, sqrt(2.0) * self.corner, self.corner**2))  # Butterworth
+        return it.on_road(self, mechanism, mechanism.measures.comfort, "measures.comfort", weighting)

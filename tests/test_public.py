@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import inerter as it
+from inerter import errors
 from inerter.cli.main import app
 
 ROOT = Path(__file__).parents[1]
@@ -100,3 +101,11 @@ def test_half_car_of_the_first_release() -> None:
     )
     value = it.evaluate(half, it.RideComfort(road), it.Norm(conventions="paper2008")).value
     assert value == pytest.approx(6.1101, abs=1e-4)  # Wang and Su (2008), Table 2, J1 case 1
+
+
+def test_an_old_name_works_and_tells_the_new_one() -> None:
+    with pytest.warns(DeprecationWarning, match="`PerformanceIndexError`"):
+        old = errors.IndicatorError
+    assert old is errors.PerformanceIndexError
+    with pytest.raises(AttributeError, match="has no attribute 'NoError'"):
+        _ = errors.NoError

@@ -5,6 +5,7 @@ Bad input raises, where it enters. A numerical failure of one case among many is
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -25,7 +26,7 @@ class LinearSystemError(InerterError, ValueError):
     """Matrices that do not fit, or a norm asked of a system that does not have it."""
 
 
-class IndicatorError(InerterError, ValueError):
+class PerformanceIndexError(InerterError, ValueError):
     """An index that the vehicle cannot answer, or that is set up wrongly."""
 
 
@@ -100,3 +101,11 @@ class Status:
 
 
 OK = Status()
+
+
+def __getattr__(name: str) -> object:
+    if name != "IndicatorError":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    message = "`IndicatorError` is now `PerformanceIndexError`; the old name goes with the next version."
+    warnings.warn(message, DeprecationWarning, 2)
+    return PerformanceIndexError

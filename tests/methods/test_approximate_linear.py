@@ -29,7 +29,7 @@ from inerter import (
     free,
     simulate,
 )
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 from inerter.methods.method import Differentiable
 
 ROAD = Road(roughness=5e-7, speed=25.0)
@@ -232,5 +232,5 @@ def test_a_response_that_does_not_repeat_says_so():
     ],
 )
 def test_bad_settings_are_refused(build, words):
-    with pytest.raises(IndicatorError, match=words):
+    with pytest.raises(PerformanceIndexError, match=words):
         build()

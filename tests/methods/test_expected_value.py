@@ -29,7 +29,7 @@ from inerter import (
     Strut,
     TyreLoad,
 )
-from inerter.errors import DesignError, IndicatorError
+from inerter.errors import DesignError, PerformanceIndexError
 from inerter.methods.method import Differentiable
 from inerter.methods.realisations import realisation_seeds
 
@@ -338,7 +338,7 @@ WRONG = {
 @pytest.mark.parametrize("case", WRONG)
 def test_wrong_numbers_are_one_clear_error(case):
     request, words = WRONG[case]
-    with pytest.raises(IndicatorError) as refusal:
+    with pytest.raises(PerformanceIndexError) as refusal:
         request()
     assert words in str(refusal.value)
 

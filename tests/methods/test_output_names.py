@@ -12,7 +12,7 @@ from strategies import random_network, random_quarter_car
 
 import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, Spring, frequency_response
-from inerter.errors import IndicatorError, InerterError
+from inerter.errors import InerterError, PerformanceIndexError
 from inerter.systems.assemble import assemble
 from inerter.systems.graph import full_graph, linear_graph
 from inerter.systems.outputs import outputs
@@ -108,7 +108,7 @@ def test_a_name_that_is_not_there_gets_the_same_sentence_everywhere(seed):
             lambda m: it.compare(car, sound, index, m),
             lambda m: it.compare(sound, car, index, m),
         ):
-            with pytest.raises(IndicatorError) as error:
+            with pytest.raises(PerformanceIndexError) as error:
                 ask(method)
             told.add(str(error.value))
     assert len(told) == 1

@@ -8,7 +8,7 @@ from strategies import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, Spring
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
 J5 = LoadCarrying(1000.0)
@@ -95,6 +95,6 @@ def test_a_half_car_answers_in_bounce():
 
 @pytest.mark.parametrize("design", [series, backlash])
 def test_without_an_amplitude_there_is_no_answer(design):
-    with pytest.raises(IndicatorError, match="Give its amplitude"):
+    with pytest.raises(PerformanceIndexError, match="Give its amplitude"):
         it.evaluate(design(), LoadCarrying(), SIMULATED)
     assert it.evaluate(series(0.0), LoadCarrying(), SIMULATED).status.ok

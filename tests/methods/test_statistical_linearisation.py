@@ -14,7 +14,7 @@ from strategies import elements, logarithmic, networks, paper_half_car, paper_qu
 import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, TyreLoad
 from inerter import StatisticalLinearisation as Linearisation
-from inerter.errors import DesignError, IndicatorError
+from inerter.errors import DesignError, PerformanceIndexError
 from inerter.methods.equivalent import POORLY
 from inerter.networks.transform import map_elements
 from inerter.norms.h2 import h2
@@ -307,13 +307,13 @@ def test_friction_in_a_tyre_sees_white_noise_and_does_nothing():
 
 def test_what_is_refused():
     backlash = paper_quarter_car(k | c - Gap(1e-3, "play") - (b | Friction(10.0)))
-    with pytest.raises(IndicatorError, match="'play' in 'strut' is a gap with play"):
+    with pytest.raises(PerformanceIndexError, match="'play' in 'strut' is a gap with play"):
         it.evaluate(backlash, J1, METHOD)
     closed = paper_quarter_car(k | c - Gap(0.0) - (b | Friction(10.0)))
     assert value(closed, J1) == pytest.approx(value(paper_quarter_car(k | c - (b | Friction(10.0))), J1), rel=1e-12)
-    with pytest.raises(IndicatorError, match="amplitude"):
+    with pytest.raises(PerformanceIndexError, match="amplitude"):
         it.evaluate(paper_quarter_car(S3), LoadCarrying(), METHOD)
-    with pytest.raises(IndicatorError, match="conventions"):
+    with pytest.raises(PerformanceIndexError, match="conventions"):
         Linearisation("1999")
     idle = paper_quarter_car(k | c | (Gap(0.0) - Spring(1e5) | Friction(it.free(1.0, 5.0, "f"))) - Damper(1e3))
     assert METHOD.objective(idle, J1) is not None

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import inerter as it
-from inerter.errors import DesignError, IndicatorError, NetworkError, RowError, StudyError
+from inerter.errors import DesignError, NetworkError, PerformanceIndexError, RowError, StudyError
 from inerter.fields import Field
 from inerter.figures.networks import draw_networks, schematic
 from inerter.files.simulation.loading import load_simulation
@@ -384,5 +384,5 @@ def test_statistical_linearisation_refuses_what_says_so():
         key = "ratchet"
         statistical = Statistical.REFUSED
 
-    with pytest.raises(IndicatorError, match="'f' in 'strut' is a ratchet"):
+    with pytest.raises(PerformanceIndexError, match="'f' in 'strut' is a ratchet"):
         it.evaluate(car(k | c | Refused(5.0, "f")), COMFORT, it.StatisticalLinearisation())

@@ -14,7 +14,7 @@ from strategies import paper_half_car, paper_quarter_car
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad, budget
 from inerter import StatisticalLinearisation as Linearisation
-from inerter.errors import DesignError, IndicatorError, StatusKind
+from inerter.errors import DesignError, PerformanceIndexError, StatusKind
 from inerter.optimisation.budget import with_element
 
 ROAD = Road(roughness=5e-7, speed=25.0)
@@ -273,5 +273,5 @@ def test_wrong_requests_are_one_clear_error(case):
 
 
 def test_a_method_that_is_none():
-    with pytest.raises(IndicatorError, match="Expected a method"):
+    with pytest.raises(PerformanceIndexError, match="Expected a method"):
         budget(series(), conventional(), J3, parameter="k", method="norm")

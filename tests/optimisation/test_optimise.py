@@ -24,7 +24,7 @@ from inerter import (
     free,
     optimise,
 )
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying()
@@ -206,5 +206,5 @@ def test_more_freedom_is_never_worse():
 def test_a_question_the_car_cannot_answer_is_refused_before_any_search():
     mechanism = paper_quarter_car(STRUTS["S1"]).mechanism()
     bare = type(mechanism)(mechanism.coordinates, mechanism.struts, mechanism.tyres, mechanism.roads)
-    with pytest.raises(IndicatorError, match=r"measures\.comfort"):
+    with pytest.raises(PerformanceIndexError, match=r"measures\.comfort"):
         optimise(bare, J1, Norm())

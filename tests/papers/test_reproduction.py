@@ -22,7 +22,7 @@ from inerter.norms.hinf import Peak
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008 import between, beyond, curves, judging, rows
 from inerter.papers.wang_su_2008.claims import judge
-from inerter.papers.wang_su_2008.judging import Claim, Evidence, Part
+from inerter.papers.wang_su_2008.judging import Claim, Evidence, Statement
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.over_stiffness import Curves
 from inerter.papers.wang_su_2008.report.data import reason
@@ -246,13 +246,13 @@ def test_a_claim_is_judged_part_by_part() -> None:
     """An exception is an exception, however many points hold."""
 
     def of(*parts: tuple[bool, bool]) -> str:
-        return Claim(0, "", tuple(Part("", *part) for part in parts)).verdict
+        return Claim(0, "", tuple(Statement("", *part) for part in parts)).verdict
 
     assert of((True, True), (True, True)) == "holds"
     assert of((True, True), (True, False)) == "holds with another number"
     assert of((True, True), (False, True)) == "holds in part"
     assert of((False, True), (False, False)) == "does not hold"
-    mixed = Claim(0, "", (Part("this", True), Part("that", False)), "Nota bene.")
+    mixed = Claim(0, "", (Statement("this", True), Statement("that", False)), "Nota bene.")
     assert mixed.evidence == "this; that [does not hold]. Nota bene."
 
 

@@ -13,7 +13,7 @@ from inerter.files.study.checking import check_study
 from inerter.files.study.study import Study
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
-from inerter.papers.wang_su_2008.linear import compare
+from inerter.papers.wang_su_2008.linear import compared_row
 from inerter.papers.wang_su_2008.source import PrintedRow, linear_rows, study
 
 ROWS = linear_rows()
@@ -35,7 +35,7 @@ def test_all_linear_rows_are_there() -> None:
 @pytest.mark.parametrize("row", DESIGNS, ids=name)
 def test_linear_values_of_tables_1_and_2(row: PrintedRow) -> None:
     """Equal to the printed value within one unit of its last digit."""
-    assert abs(compare(row).paper2008 - float(row.printed)) <= row.last_digit
+    assert abs(compared_row(row).paper2008 - float(row.printed)) <= row.last_digit
 
 
 @pytest.mark.parametrize("row", [row for row in ROWS if row.table == 3], ids=name)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from inerter.errors import IndicatorError, StudyError
+from inerter.errors import PerformanceIndexError, StudyError
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv
 from inerter.files.study.cases import Case, Outcome, run_case
@@ -165,7 +165,7 @@ def test_a_search_by_simulation_says_what_it_gains_over_the_best_linear_design(s
 
 def test_a_method_that_fails_leaves_the_others(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
-        raise IndicatorError("not this one")
+        raise PerformanceIndexError("not this one")
 
     monkeypatch.setattr(StatisticalLinearisation, "estimate", refuse)
     outcome = run_case(study, Case("serial", "J1"))

@@ -10,7 +10,7 @@ from filtered import iso_2631_wk, random_filter
 
 import inerter as it
 from inerter import Filter, LinearSystem
-from inerter.errors import IndicatorError, LinearSystemError
+from inerter.errors import LinearSystemError, PerformanceIndexError
 from inerter.indices.question import Combination, Question
 from inerter.vehicle.mechanism import Weighted
 
@@ -114,9 +114,9 @@ def test_a_question_takes_a_filter_for_all_outputs_or_one_for_each():
     assert question(two, one).filters == (one, one)
     assert question(two, (None, one)).filters == (None, one)
     assert question(two, LinearSystem([[-3.0]], [[1.0]], [[1.0]], [[0.0]])).filters == (one, one)
-    with pytest.raises(IndicatorError, match="1 filters for 2 outputs"):
+    with pytest.raises(PerformanceIndexError, match="1 filters for 2 outputs"):
         question(two, (one,))
-    with pytest.raises(IndicatorError, match="each output once"):
+    with pytest.raises(PerformanceIndexError, match="each output once"):
         question((Weighted("a"), Weighted("a")), (one, None))
     with pytest.raises(LinearSystemError, match=r"Filter\(numerator, denominator\) or a LinearSystem"):
         question(two, "Wk")

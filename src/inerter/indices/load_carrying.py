@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from inerter.checks import check_positive
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
 from inerter.indices.question import Combination, Question
 from inerter.vehicle.mechanism import Mechanism, Weighted
@@ -18,7 +18,7 @@ class LoadCarrying:
     Half car: bounce force to bounce displacement. `amplitude` is that of a sinusoidal force [N]: what a design with
     friction or gaps does depends on it, what a linear one does not. Source: Wang and Su (2008), eq. (6).
 
-    Raises `IndicatorError` unless the amplitude is positive.
+    Raises `PerformanceIndexError` unless the amplitude is positive.
     """
 
     amplitude: float | None = field(
@@ -34,13 +34,13 @@ class LoadCarrying:
 
     def __post_init__(self) -> None:
         if self.amplitude is not None:
-            check_positive(IndicatorError, "The amplitude of the force on the body", self.amplitude, "N")
+            check_positive(PerformanceIndexError, "The amplitude of the force on the body", self.amplitude, "N")
 
     def question(self, mechanism: Mechanism) -> Question:
-        """Raises `IndicatorError` if the mechanism names no force and displacement for it."""
+        """Raises `PerformanceIndexError` if the mechanism names no force and displacement for it."""
         measures = mechanism.measures
         if measures.load_input is None or measures.load_output is None:
-            raise IndicatorError(
+            raise PerformanceIndexError(
                 "The mechanism does not say which force and displacement load carrying is about. "
                 "Set measures.load_input and measures.load_output."
             )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol, cast
 
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter, as_filter
 from inerter.systems.linear import LinearSystem
@@ -31,8 +31,8 @@ class Question:
 
     A filter is a `Filter` or a `LinearSystem` with one input and one output.
 
-    Raises `IndicatorError` if filters are not as many as outputs, or if an output is named twice; `LinearSystemError`
-    for what is no filter.
+    Raises `PerformanceIndexError` if filters are not as many as outputs, or if an output is named twice;
+    `LinearSystemError` for what is no filter.
     """
 
     inputs: tuple[str, ...]
@@ -46,13 +46,13 @@ class Question:
     def __post_init__(self) -> None:
         several = self.filter if isinstance(self.filter, tuple) else (self.filter,) * len(self.outputs)
         if len(several) != len(self.outputs):
-            raise IndicatorError(
+            raise PerformanceIndexError(
                 f"An index has one filter for all outputs, or one (or None) for each: got {len(several)} filters for "
                 f"{len(self.outputs)} outputs."
             )
         names = [weighted.output for weighted in self.outputs]
         if len(set(names)) < len(names):
-            raise IndicatorError(f"An index names each output once, got {', '.join(names)}.")
+            raise PerformanceIndexError(f"An index names each output once, got {', '.join(names)}.")
         object.__setattr__(self, "filter", tuple(map(as_filter, several)))
 
     @property
@@ -85,7 +85,7 @@ class Index(Protocol):
         ...
 
     def question(self, mechanism: Mechanism) -> Question:
-        """What it asks of `mechanism`; raises `IndicatorError` if the mechanism has no answer."""
+        """What it asks of `mechanism`; raises `PerformanceIndexError` if the mechanism has no answer."""
         ...
 
 
@@ -107,14 +107,16 @@ def on_road(
 ) -> Question:
     """The question of an index that is a sum of r.m.s. values on a road.
 
-    Raises `IndicatorError` if there is no road, or if `outputs`, which the mechanism gives at `where`, are none.
+    Raises `PerformanceIndexError` if there is no road, or if `outputs`, which the mechanism gives at `where`, are none.
     """
     if not isinstance(index.road, Road):
-        raise IndicatorError(f"{index.symbol} needs a Road(roughness=..., speed=...), got {index.road!r}.")
+        raise PerformanceIndexError(f"{index.symbol} needs a Road(roughness=..., speed=...), got {index.road!r}.")
     if not mechanism.roads:
-        raise IndicatorError(f"{index.symbol} is driven by a road, and this mechanism stands on none. Add a tyre.")
+        raise PerformanceIndexError(
+            f"{index.symbol} is driven by a road, and this mechanism stands on none. Add a tyre."
+        )
     if not outputs:
-        raise IndicatorError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
+        raise PerformanceIndexError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
     return Question(
         inputs=tuple(road.name for road in mechanism.roads),
         outputs=outputs,

@@ -24,5 +24,5 @@ class RideComfort:
     response = "body acceleration per road velocity"
 
     def question(self, mechanism: Mechanism) -> Question:
-        """Raises `IndicatorError` if the mechanism has no road or says nothing of comfort."""
+        """Raises `PerformanceIndexError` if the mechanism has no road or says nothing of comfort."""
         return on_road(self, mechanism, mechanism.measures.comfort, "measures.comfort")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from inerter.checks import check_positive
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
 from inerter.indices.question import Question, on_road
 from inerter.signals.road import Road
@@ -33,9 +33,9 @@ class TyreLoad:
 
     def __post_init__(self) -> None:
         if self.high_pass is not None:
-            check_positive(IndicatorError, "The high-pass corner of the tyre load", self.high_pass, "rad/s")
+            check_positive(PerformanceIndexError, "The high-pass corner of the tyre load", self.high_pass, "rad/s")
 
     def question(self, mechanism: Mechanism) -> Question:
-        """Raises `IndicatorError` if the mechanism has no road or names no tyre load."""
+        """Raises `PerformanceIndexError` if the mechanism has no road or names no tyre load."""
         passed = None if self.high_pass is None else high_pass(self.high_pass)
         return on_road(self, mechanism, mechanism.measures.tyre_load, "measures.tyre_load", passed)

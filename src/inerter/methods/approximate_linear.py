@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, IndicatorError, Status, StatusKind
+from inerter.errors import OK, PerformanceIndexError, Status, StatusKind
 from inerter.indices.question import Combination, Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
-from inerter.methods.excitation import Drive, Excitation, MultisineExcitation, NoiseExcitation
+from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Objective, Sees
@@ -69,7 +69,7 @@ class ApproximateLinear:
     where that of raw ratios has none. `relative_error` asks for realisations until the standard error is below that
     part of the value.
 
-    Raises `IndicatorError` for settings that cannot be.
+    Raises `PerformanceIndexError` for settings that cannot be.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(7544.2) - (it.Inerter(366.52) | it.Friction(10.0))
@@ -97,15 +97,15 @@ class ApproximateLinear:
         check_conventions(self.conventions)
         for what, given in (("road", self.road), ("force", self.force)):
             if given is not None and not isinstance(given, Excitation):
-                raise IndicatorError(
+                raise PerformanceIndexError(
                     f"The {what} is excited by MultisineExcitation(...) or NoiseExcitation(...), got {given!r}."
                 )
         _check_whole("The number of realisations", self.realisations, 2, _MOST)
         _check_whole("A seed", self.seed, 0, 2**63)
         if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
-            raise IndicatorError(f"A relative error lies between 0 and 1, got {self.relative_error!r}.")
+            raise PerformanceIndexError(f"A relative error lies between 0 and 1, got {self.relative_error!r}.")
         if not is_number(self.smoothing) or self.smoothing < 0.0:
-            raise IndicatorError(f"The reach of the smoothing is 0 Hz or more, got {self.smoothing!r}.")
+            raise PerformanceIndexError(f"The reach of the smoothing is 0 Hz or more, got {self.smoothing!r}.")
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
@@ -123,7 +123,7 @@ class ApproximateLinear:
             return [self._known(mechanism, question) for question in questions]
         linears = [self._counterpart(mechanism, question) for question in questions]
         drives = [self._drive(mechanism, question) for question in questions]
-        (system, frictions), runs = with_velocities(piecewise(vehicle)), dict[Drive, Runs]()
+        (system, frictions), runs = with_velocities(piecewise(vehicle)), dict[Excited, Runs]()
         for question, drive in zip(questions, drives, strict=True):
             names = runs[drive].outputs if drive in runs else ()
             names = tuple(dict.fromkeys((*names, *(output.output for output in question.outputs))))
@@ -165,7 +165,7 @@ class ApproximateLinear:
         norm = problem.estimate(close(problem.descriptor, {}))
         return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
 
-    def _drive(self, mechanism: Mechanism, question: Question) -> Drive:
+    def _drive(self, mechanism: Mechanism, question: Question) -> Excited:
         """Which inputs are moved, by what and how late."""
         named, late = arrivals(mechanism, question)
         delays = dict(zip(named, late.tolist(), strict=True))
@@ -174,7 +174,7 @@ class ApproximateLinear:
         excitation = (self.road if on_road else self.force) or default
         rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(mechanism, named[0]))
         inputs = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
-        return Drive(excitation, rms, tuple(delays.get(name) for name in inputs))
+        return Excited(excitation, rms, tuple(delays.get(name) for name in inputs))
 
     def _counterpart(self, mechanism: Mechanism, question: Question) -> Counterpart | None:
         """What the linear design that moves alike is made from; None where none may serve."""
@@ -226,7 +226,7 @@ class ApproximateLinear:
         return error <= asked * estimate.value
 
     def _combine(
-        self, question: Question, known: LinearModel | None, gains: Array, drive: Drive, unseen: float = 0.0
+        self, question: Question, known: LinearModel | None, gains: Array, drive: Excited, unseen: float = 0.0
     ) -> Estimate:
         """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`."""
         lines = None if known is None else known.squares(drive.omega)
@@ -296,4 +296,4 @@ def _inertia_felt(mechanism: Mechanism, name: str) -> float:
 
 def _check_whole(what: str, value: object, least: int, most: int) -> None:
     if not is_number(value) or value != int(value) or not least <= value <= most:
-        raise IndicatorError(f"{what} is a whole number from {least} to {most}, got {value!r}.")
+        raise PerformanceIndexError(f"{what} is a whole number from {least} to {most}, got {value!r}.")

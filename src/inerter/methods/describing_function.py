@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import OK, IndicatorError, Status, StatusKind
+from inerter.errors import OK, PerformanceIndexError, Status, StatusKind
 from inerter.indices.question import Question
 from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import POORLY, Equivalent, equivalent
@@ -153,11 +153,11 @@ class HarmonicBalance:
 def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalance:
     """The balance for a peak gain.
 
-    Raises `IndicatorError` if the question does not go from one force to one output or says no amplitude.
+    Raises `PerformanceIndexError` if the question does not go from one force to one output or says no amplitude.
     """
     check_peak_gain(question)
     if question.amplitude is None:
-        raise IndicatorError(
+        raise PerformanceIndexError(
             "A peak gain with friction depends on the amplitude of the force. Give it, as in "
             "LoadCarrying(amplitude=1000.0), in N."
         )

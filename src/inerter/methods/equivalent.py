@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, IndicatorError
+from inerter.errors import DesignError, PerformanceIndexError
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Value
 from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
@@ -75,11 +75,11 @@ class Equivalent:
 
 
 def check_gaps(mechanism: Mechanism) -> None:
-    """Raises `IndicatorError` for a gap with play."""
+    """Raises `PerformanceIndexError` for a gap with play."""
     for mount in switching(mechanism).mounts():
         for element in mount.network.elements():
             if element.statistical is Statistical.REFUSED and element.value != 0.0:
-                raise IndicatorError(
+                raise PerformanceIndexError(
                     f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is a "
                     f"{element.key} with play. Use ExpectedValue() or ApproximateLinear(), which simulate it, or give "
                     f"the gap a half-width of 0."
@@ -87,12 +87,12 @@ def check_gaps(mechanism: Mechanism) -> None:
 
 
 def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
-    """Raises `IndicatorError` for the velocity or force of a friction: a damper has its place."""
+    """Raises `PerformanceIndexError` for the velocity or force of a friction: a damper has its place."""
     branches = full_graph(mechanism).branches
     frictions = [branch.label for branch in branches if branch.element.statistical is Statistical.DAMPER]
     for name in names:
         if name.rpartition("_")[0] in frictions:
-            raise IndicatorError(
+            raise PerformanceIndexError(
                 f"Statistical linearisation does not tell {name!r}: it puts a damper in the place of the friction. "
                 f"Use ExpectedValue() or ApproximateLinear(), which simulate it."
             )

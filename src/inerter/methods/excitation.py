@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import check_positive
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 from inerter.signals.harmonics import flat_multisine
 from inerter.signals.records import held_noise
 from inerter.signals.signal import Signal
@@ -30,7 +30,7 @@ class MultisineExcitation:
     Every harmonic has the same size in every realisation, so that gains have no small divisors. It repeats after
     1 / `lowest` seconds. `rms` is in m for a road and in N for a force; None stands for that of Wang and Su (2008).
 
-    Raises `IndicatorError` unless all are positive and lowest < highest.
+    Raises `PerformanceIndexError` unless all are positive and lowest < highest.
     """
 
     rms: float | None = None
@@ -41,9 +41,9 @@ class MultisineExcitation:
     def __post_init__(self) -> None:
         _check_rms(self.rms)
         for which in ("lowest", "highest"):
-            check_positive(IndicatorError, f"The {which} frequency of an excitation", getattr(self, which), "Hz")
+            check_positive(PerformanceIndexError, f"The {which} frequency of an excitation", getattr(self, which), "Hz")
         if not 2.0 * self.lowest <= self.highest <= 1e6 * self.lowest:
-            raise IndicatorError(
+            raise PerformanceIndexError(
                 f"An excitation needs from 2 to 1e6 harmonics, got a band from {self.lowest:g} to {self.highest:g} Hz."
             )
 
@@ -74,7 +74,7 @@ class NoiseExcitation:
     Outputs are sampled at the same instants. `rms` is in m for a road and in N for a force; None stands for that of
     the paper, 3.162 mm for a road.
 
-    Raises `IndicatorError` unless all are positive and the period is a whole number, four or more, of intervals.
+    Raises `PerformanceIndexError` unless all are positive and the period is a whole number, four or more, of intervals.
     """
 
     rms: float | None = None
@@ -85,10 +85,10 @@ class NoiseExcitation:
     def __post_init__(self) -> None:
         _check_rms(self.rms)
         for which in ("interval", "period"):
-            check_positive(IndicatorError, f"The {which} of an excitation", getattr(self, which), "s")
+            check_positive(PerformanceIndexError, f"The {which} of an excitation", getattr(self, which), "s")
         count = self.period / self.interval
         if not 4.0 <= count <= 1e8 or abs(count - round(count)) > 1e-6:
-            raise IndicatorError(
+            raise PerformanceIndexError(
                 f"The period of an excitation is a whole number of intervals, from 4 to 1e8; got {self.period:g} s in "
                 f"intervals of {self.interval:g} s."
             )
@@ -112,7 +112,7 @@ Excitation = MultisineExcitation | NoiseExcitation
 
 
 @dataclass(frozen=True)
-class Drive:
+class Excited:
     """An excitation of some inputs of a mechanism, each with its delay."""
 
     excitation: Excitation
@@ -145,7 +145,7 @@ class Drive:
         return np.asarray(np.abs(spectrum[1 : self.excitation.harmonics + 1]) ** 2)
 
 
-def _laid_out(drive: Drive, seed: int) -> tuple[InputTable, Array]:
+def _laid_out(drive: Excited, seed: int) -> tuple[InputTable, Array]:
     signals, period = drive.signals(seed), drive.excitation.period
     delays = [delay or 0.0 for delay in drive.delays]
     interval = period / drive.excitation.samples
@@ -160,4 +160,6 @@ _kept = lru_cache(maxsize=32)(_laid_out)
 
 def _check_rms(rms: object) -> None:
     if rms is not None:
-        check_positive(IndicatorError, "The r.m.s. value of an excitation", rms, "m for a road, of N for a force")
+        check_positive(
+            PerformanceIndexError, "The r.m.s. value of an excitation", rms, "m for a road, of N for a force"
+        )

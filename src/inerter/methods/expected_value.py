@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import IndicatorError, InerterError, LinearSystemError, MechanismError, StatusKind
+from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind
 from inerter.indices.question import Combination, Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
@@ -58,8 +58,8 @@ class ExpectedValue:
 
     `jobs` threads share the work (all cores by default). Source: Wang and Su (2008), section 4.
 
-    Raises `IndicatorError` for numbers that cannot be; where it is used, for a peak gain with friction or gaps whose
-    index says no amplitude, and under "paper2008" `SimulationError` where a road that jumps moves a damper, an
+    Raises `PerformanceIndexError` for numbers that cannot be; where it is used, for a peak gain with friction or gaps
+    whose index says no amplitude, and under "paper2008" `SimulationError` where a road that jumps moves a damper, an
     inerter, friction or a gap directly.
 
     >>> import inerter as it
@@ -96,9 +96,11 @@ class ExpectedValue:
         if self.period is not None:
             _check_whole("The length of a road in seconds", self.period, 1)
         if self.realisations is not None and self.relative_error is not None:
-            raise IndicatorError("Give either realisations or a relative_error to reach, not both.")
+            raise PerformanceIndexError("Give either realisations or a relative_error to reach, not both.")
         if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
-            raise IndicatorError(f"The relative error to reach lies between 0 and 1, got {self.relative_error!r}.")
+            raise PerformanceIndexError(
+                f"The relative error to reach lies between 0 and 1, got {self.relative_error!r}."
+            )
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
@@ -182,7 +184,7 @@ class ExpectedValue:
         pool: ThreadPoolExecutor,
     ) -> Estimate:
         if question.amplitude is None:
-            raise IndicatorError(
+            raise PerformanceIndexError(
                 "What a design with friction or gaps carries depends on the size of the force. Give its amplitude, "
                 "such as LoadCarrying(amplitude=1000.0)."
             )
@@ -230,4 +232,4 @@ def _linear(vehicle: Vehicle, question: Question, conventions: Conventions) -> L
 
 def _check_whole(what: str, value: object, least: int) -> None:
     if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
-        raise IndicatorError(f"{what} is a whole number from {least} on, got {value!r}.")
+        raise PerformanceIndexError(f"{what} is a whole number from {least} on, got {value!r}.")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.methods.counterpart import Counterpart, memory
-from inerter.methods.excitation import Drive
+from inerter.methods.excitation import Excited
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak
 from inerter.norms.response import frequency_response
@@ -68,7 +68,7 @@ class Runs:
     """Power spectra of some outputs of a design, one realisation after the other as they are asked for."""
 
     system: PiecewiseSystem
-    drive: Drive
+    drive: Excited
     outputs: tuple[str, ...]
     frictions: tuple[str, ...]  # velocities across them
     seed: int

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 from inerter.indices.question import Combination, Question
 from inerter.methods.method import Estimate
 from inerter.norms.h2 import h2
@@ -60,9 +60,9 @@ CONVENTIONS = {
 
 
 def check_conventions(name: object) -> None:
-    """Raises `IndicatorError` unless there are conventions of this name."""
+    """Raises `PerformanceIndexError` unless there are conventions of this name."""
     if not isinstance(name, str) or name not in CONVENTIONS:
-        raise IndicatorError(f"There are no conventions named {name!r} (known: {', '.join(CONVENTIONS)}).")
+        raise PerformanceIndexError(f"There are no conventions named {name!r} (known: {', '.join(CONVENTIONS)}).")
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,7 @@ class LinearProblem:
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
     """The descriptor for `question`, with delays from the road's speed and the filters that the conventions ask for.
 
-    Raises `IndicatorError` for a peak gain of anything but one output of one force.
+    Raises `PerformanceIndexError` for a peak gain of anything but one output of one force.
     """
     check_peak_gain(question)
     inputs, delays = arrivals(mechanism, question)
@@ -130,10 +130,10 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
 
 
 def check_peak_gain(question: Question) -> None:
-    """Raises `IndicatorError` for a peak gain of anything but one output of one force."""
+    """Raises `PerformanceIndexError` for a peak gain of anything but one output of one force."""
     alone = len(question.outputs) == 1 and len(question.inputs) == 1 and not question.road
     if question.combination is Combination.PEAK_GAIN and not alone:
-        raise IndicatorError("A peak gain goes from one force to one output, without a road.")
+        raise PerformanceIndexError("A peak gain goes from one force to one output, without a road.")
 
 
 def arrivals(mechanism: Mechanism, question: Question) -> tuple[tuple[str, ...], Array]:

@@ -10,7 +10,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.errors import OK, DesignError, IndicatorError, Status
+from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.norms.hinf import Peak
 from inerter.systems.graph import full_graph
@@ -149,8 +149,8 @@ class Method(Protocol):
 def evaluate(vehicle: Vehicle, index: Index, method: Method) -> Estimate:
     """One index of one design by one method.
 
-    Raises `DesignError` if the design still has free values, `MechanismError` if it is ill-posed, `IndicatorError`
-    if the vehicle cannot answer the index.
+    Raises `DesignError` if the design still has free values, `MechanismError` if it is ill-posed,
+    `PerformanceIndexError` if the vehicle cannot answer the index.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(4981)
@@ -185,15 +185,15 @@ def evaluate_many(
 
 
 def check_request(vehicle: Vehicle, index: Index, method: object) -> None:
-    """Raises `DesignError` or `IndicatorError` where an argument is not what its place asks for.
+    """Raises `DesignError` or `PerformanceIndexError` where an argument is not what its place asks for.
 
     So it does for an index that names an input or output which the vehicle does not have.
     """
     check_vehicle(vehicle)
     if isinstance(index, type) or not hasattr(index, "question"):
-        raise IndicatorError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
+        raise PerformanceIndexError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
     if isinstance(method, type) or not isinstance(method, Method):
-        raise IndicatorError(f"Expected a method such as Norm(), got {method!r}.")
+        raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")
     mechanism = vehicle.mechanism()
     _check_names(mechanism, index.question(mechanism))
 
@@ -202,12 +202,12 @@ def _check_names(mechanism: Mechanism, question: Question) -> None:
     inputs = [*(road.name for road in mechanism.roads), *(force.name for force in mechanism.forces)]
     for name in question.inputs:
         if name not in inputs:
-            raise IndicatorError(f"There is no input named {name!r} (there are: {', '.join(inputs) or 'none'}).")
+            raise PerformanceIndexError(f"There is no input named {name!r} (there are: {', '.join(inputs) or 'none'}).")
     unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(mechanism)]
     if unusual:  # finding all names takes longer than most norms
         known = outputs(mechanism, full_graph(mechanism))
         for name in unusual:
-            find(known, name, IndicatorError)
+            find(known, name, PerformanceIndexError)
 
 
 def check_points(vehicle: Vehicle, values: Mapping[str, ArrayLike]) -> dict[str, Array]:

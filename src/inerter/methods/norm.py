@@ -27,7 +27,7 @@ class Norm:
     `conventions` is "exact", or "paper2008" for what the printed numbers of Wang and Su (2008) need: a fifth-order
     Pade approximant of the wheelbase delay, and tyre loads over s + 2 pi rad/s where the road arrives at two axles.
 
-    Raises `IndicatorError` for other conventions.
+    Raises `PerformanceIndexError` for other conventions.
     """
 
     conventions: str = "exact"

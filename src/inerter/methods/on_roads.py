@@ -16,7 +16,7 @@ from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
 from inerter.methods.linear import Conventions
 from inerter.methods.method import Estimate
-from inerter.methods.realisations import STEP, Drive, Ran, check_drive, drive, realisation_seeds, run, worst
+from inerter.methods.realisations import STEP, Ran, RoadDrive, check_drive, drive, realisation_seeds, run, worst
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.linear import LinearSystem
@@ -44,7 +44,7 @@ class OnRoads:
     system: PiecewiseSystem
     frictions: tuple[str, ...]
     question: Question
-    way: Drive
+    way: RoadDrive
     linear: Counterpart | None
     seed: int
     longest: int  # road that may be taken [s]

@@ -30,7 +30,7 @@ _FEWEST_PERIODS = 4  # of the longest roads, until they must repeat
 
 
 @dataclass(frozen=True)
-class Drive:
+class RoadDrive:
     """How a mechanism is driven over a road: the speed, when the road reaches each wheel, and the conventions."""
 
     road: Road
@@ -53,20 +53,22 @@ class Ran:
     periods: int  # until it repeated
 
 
-def drive(system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None) -> Drive:
+def drive(
+    system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None
+) -> RoadDrive:
     """How `question` drives the mechanism of `system`, over roads of the usual length or of another `period` [s]."""
     assert question.road is not None
     mechanism, road = system.mechanism, question.road
     delays = np.array([r.distance for r in mechanism.roads]) / road.speed
-    return Drive(road, tuple(delays.tolist()), len(mechanism.forces), conventions.hold, period or PERIOD)
+    return RoadDrive(road, tuple(delays.tolist()), len(mechanism.forces), conventions.hold, period or PERIOD)
 
 
-def table(way: Drive, seed: int) -> InputTable:
+def table(way: RoadDrive, seed: int) -> InputTable:
     """One period of a realisation along the knots of an integration."""
     return _kept_table(way, seed) if way.period <= PERIOD else _table(way, seed)
 
 
-def _table(way: Drive, seed: int) -> InputTable:
+def _table(way: RoadDrive, seed: int) -> InputTable:
     signal = way.signal(seed)
     moved = signal if way.hold is None else signal.held(way.hold)
     signals = [*(moved for _ in way.delays), *(None for _ in range(way.forces))]
@@ -78,7 +80,7 @@ def _table(way: Drive, seed: int) -> InputTable:
 _kept_table = lru_cache(maxsize=_KEPT)(_table)
 
 
-def check_drive(system: PiecewiseSystem, way: Drive) -> None:
+def check_drive(system: PiecewiseSystem, way: RoadDrive) -> None:
     """Raises `SimulationError` if the mechanism cannot be driven over roads that are held."""
     if way.hold is not None:
         held = Signal(label=f"a road held for {way.hold:g} s", hold="zero")
@@ -86,7 +88,7 @@ def check_drive(system: PiecewiseSystem, way: Drive) -> None:
 
 
 def run(
-    system: PiecewiseSystem, way: Drive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
+    system: PiecewiseSystem, way: RoadDrive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
 ) -> Ran:
     """One period of the steady state on the road of a realisation's seed; the first outputs pass through filters."""
     inputs = table(way, seed)

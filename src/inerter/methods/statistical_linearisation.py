@@ -40,8 +40,8 @@ class StatisticalLinearisation:
 
     Source: Caughey (1963); Roberts and Spanos, Random Vibration and Statistical Linearization (1990).
 
-    Raises `IndicatorError` for other conventions; where it is used, for a gap with play, and for a peak gain with
-    friction whose index says no amplitude.
+    Raises `PerformanceIndexError` for other conventions; where it is used, for a gap with play, and for a peak gain
+    with friction whose index says no amplitude.
     """
 
     conventions: str = "exact"

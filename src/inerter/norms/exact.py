@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade_coefficients
 from inerter.norms.gain_squared import GainSquared
-from inerter.norms.mean_square import Response, UnknownError, lasting, mean_square
+from inerter.norms.mean_square import Transfer, UnknownError, lasting, mean_square
 from inerter.systems.linear import LinearSystem
 from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirrored, multiply
 
@@ -63,7 +63,7 @@ def peaks_exactly(system: LinearSystem) -> tuple[list[tuple[float, float]], Stat
         for row in functions.numerators
         for source in sources
     ]
-    response = Response(functions.denominator, tuple(entries), (0.0,) * len(entries)).reduced()
+    response = Transfer(functions.denominator, tuple(entries), (0.0,) * len(entries)).reduced()
     frequencies = lasting(response.denominator)
     if frequencies:
         return [(frequency, math.inf) for frequency in frequencies], undamped(frequencies)
@@ -83,7 +83,7 @@ def _functions(system: LinearSystem) -> TransferFunctions:
 
 def _by_source(
     denominator: Polynomial, row: Sequence[Polynomial], system: LinearSystem, pade_order: int | None
-) -> list[Response]:
+) -> list[Transfer]:
     """One output's response to each source, with what arrives at one time added up."""
     found = []
     for source in dict.fromkeys(system.sources):
@@ -93,12 +93,12 @@ def _by_source(
                 arrivals[delay] = add(arrivals.get(delay, []), numerator)
         times = sorted(arrivals)
         numerators = [arrivals[time] for time in times]
-        response = Response(denominator, tuple(numerators), tuple(times))
+        response = Transfer(denominator, tuple(numerators), tuple(times))
         found.append((response if pade_order is None else _approximated(response, pade_order)).reduced())
     return [response for response in found if any(response.numerators)]
 
 
-def _approximated(response: Response, order: int) -> Response:
+def _approximated(response: Transfer, order: int) -> Transfer:
     """With a Pade approximant for the time between one arrival and the next: they become one."""
     denominator, total, factor = response.denominator, response.numerators[0], [1]
     for before, time, numerator in zip(response.times, response.times[1:], response.numerators[1:], strict=False):
@@ -106,7 +106,7 @@ def _approximated(response: Response, order: int) -> Response:
         factor = multiply(factor, mirrored(bottom))
         total = add(multiply(total, bottom), multiply(numerator, factor))
         denominator = multiply(denominator, bottom)
-    return Response(denominator, (total,), (0.0,))
+    return Transfer(denominator, (total,), (0.0,))
 
 
 def _pade(time: float, order: int) -> Polynomial:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from inerter.norms.mean_square import Response, UnknownError
+from inerter.norms.mean_square import Transfer, UnknownError
 from inerter.systems.polynomials import Polynomial, add, derivative, mirrored, multiply, positive_roots, scaled, value
 
 _FLAT = 1e-13  # relative difference of gains over a peak that ends its refinement
@@ -21,7 +21,7 @@ class GainSquared:
     bottom: Polynomial
 
     @staticmethod
-    def of(response: Response) -> GainSquared:
+    def of(response: Transfer) -> GainSquared:
         top: Polynomial = []
         for numerator in response.numerators:
             top = add(top, _on_axis_squared(numerator))

@@ -38,20 +38,20 @@ class UnknownError(ArithmeticError):
 
 
 @dataclass(frozen=True)
-class Response:
+class Transfer:
     """One output over one source: numerators over one denominator, each with the time at which it arrives [s]."""
 
     denominator: Polynomial
     numerators: tuple[Polynomial, ...]
     times: tuple[float, ...]
 
-    def reduced(self) -> Response:
+    def reduced(self) -> Transfer:
         """Without the roots that all share."""
         common = shared(self.denominator, *self.numerators)
         if len(common) == 1:
             return self
         numerators = tuple(quotient(n, common) if n else n for n in self.numerators)
-        return Response(quotient(self.denominator, common), numerators, self.times)
+        return Transfer(quotient(self.denominator, common), numerators, self.times)
 
     @property
     def is_direct(self) -> bool:
@@ -66,7 +66,7 @@ def lasting(denominator: Polynomial) -> list[float]:
     return [0.0] * bool(zeros) + [math.sqrt(high) for _, high in squares]
 
 
-def mean_square(response: Response) -> tuple[float, list[float]]:
+def mean_square(response: Transfer) -> tuple[float, list[float]]:
     """Variance of the response to unit white noise, and the frequencies of undamped motions that make it infinite.
 
     `response` is reduced and passes no noise straight through. Raises `UnknownError`.
@@ -114,7 +114,7 @@ def _square(a: Polynomial, numerators: Sequence[Polynomial], times: Sequence[flo
     return total
 
 
-def _drifting(response: Response) -> Decimal:
+def _drifting(response: Transfer) -> Decimal:
     """As `_square`, with a pole at zero that the sum over all arrivals has not, as a tyre's share of the road has.
 
     With p/(s a) = r/s + h/a, each arrival adds a step r to the decaying rest; the steps add up to zero in the end.

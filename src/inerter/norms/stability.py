@@ -17,7 +17,7 @@ _VISIBLE = 1e-10  # relative size below which rounding, not mechanics, connects 
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class Subsystem:
     """Matrices of a part of a system, in coordinates of its own."""
 
     A: Matrix
@@ -29,8 +29,8 @@ class Part:
 class Split:
     """A system as the sum of a part that decays and a part that does not; `poles` are those of the latter."""
 
-    decaying: Part
-    lasting: Part
+    decaying: Subsystem
+    lasting: Subsystem
     poles: NDArray[np.complex128]
     rate: float = 0.0  # size of the whole system's rates [1/s]
 
@@ -74,8 +74,8 @@ def split(system: LinearSystem) -> Split:
     rates, errors = pole_rates(A)
     margins = rates + errors
     if np.all(margins < 0.0):
-        empty = Part(np.zeros((0, 0)), np.zeros((0, B.shape[1])), np.zeros((C.shape[0], 0)))
-        return Split(Part(A, B, C), empty, np.zeros(0, dtype=complex))
+        empty = Subsystem(np.zeros((0, 0)), np.zeros((0, B.shape[1])), np.zeros((C.shape[0], 0)))
+        return Split(Subsystem(A, B, C), empty, np.zeros(0, dtype=complex))
     decays = np.sort(rates[margins < 0.0])
     edge = 0.5 * (decays[-1] + np.min(rates[margins >= 0.0])) if decays.size else -np.inf
     T, Z, count = scipy.linalg.schur(A, output="real", sort=lambda re, im: re < edge)
@@ -85,8 +85,8 @@ def split(system: LinearSystem) -> Split:
         if 0 < count < n
         else (np.zeros((count, n - count)))
     )
-    decaying = Part(T[:count, :count], Bz[:count] - X @ Bz[count:], Cz[:, :count])
-    lasting = Part(T[count:, count:], Bz[count:], Cz[:, count:] + Cz[:, :count] @ X)
+    decaying = Subsystem(T[:count, :count], Bz[:count] - X @ Bz[count:], Cz[:, :count])
+    lasting = Subsystem(T[count:, count:], Bz[count:], Cz[:, count:] + Cz[:, :count] @ X)
     return Split(decaying, lasting, np.asarray(np.linalg.eigvals(lasting.A), dtype=complex), float(np.linalg.norm(A)))
 
 

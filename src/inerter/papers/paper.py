@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from inerter.files.study.running import StudyResult
 
 
-class Reproduction(Protocol):
+class PaperResults(Protocol):
     """What was recomputed of a paper, of which only the studies are looked into by others."""
 
     @property
@@ -39,7 +39,7 @@ class Paper:
     data: str
     text: str
 
-    def reproduce(self, folder: Path, *, only: Sequence[str] = (), **settings: Any) -> Reproduction:
+    def reproduce(self, folder: Path, *, only: Sequence[str] = (), **settings: Any) -> PaperResults:
         """Recompute it, or some of its parts, into `folder`, with tables, figures and a page.
 
         `settings` are `jobs`, `resume`, `force` and `progress`, as `run_study` takes them, but that `progress` is told
@@ -47,15 +47,15 @@ class Paper:
 
         Raises `StudyError` as `run_study` does, or for an unknown part; `WorkError` as `run_study` does.
         """
-        found: Reproduction = _loaded(self.recompute)(folder, only=only, finish=_loaded(self.write), **settings)
+        found: PaperResults = _loaded(self.recompute)(folder, only=only, finish=_loaded(self.write), **settings)
         return found
 
-    def as_data(self, found: Reproduction) -> dict[str, Any]:
+    def as_data(self, found: PaperResults) -> dict[str, Any]:
         """What was recomputed as plain rows."""
         tables: dict[str, Any] = _loaded(self.data)(found)
         return tables
 
-    def as_text(self, found: Reproduction) -> str:
+    def as_text(self, found: PaperResults) -> str:
         """What was recomputed as text of 80 columns."""
         return str(_loaded(self.text)(found))
 

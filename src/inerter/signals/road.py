@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from inerter.checks import check_positive
-from inerter.errors import IndicatorError
+from inerter.errors import PerformanceIndexError
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Road:
     Its velocity is then white noise. `roughness` is kappa of Wang and Su (2008); the one-sided displacement spectrum
     of ISO 8608 at n0 = 0.1 cycle/m is Gd(n0) = 2 kappa / n0^2.
 
-    Raises `IndicatorError` unless both are positive and finite.
+    Raises `PerformanceIndexError` unless both are positive and finite.
     """
 
     roughness: float  # kappa [m^3/cycle]
@@ -24,7 +24,7 @@ class Road:
 
     def __post_init__(self) -> None:
         for name, unit in (("roughness", "m^3/cycle"), ("speed", "m/s")):
-            check_positive(IndicatorError, f"The {name} of a road", getattr(self, name), unit)
+            check_positive(PerformanceIndexError, f"The {name} of a road", getattr(self, name), unit)
 
     @property
     def velocity_intensity(self) -> float:

@@ -157,12 +157,12 @@ class Signal:
             speed=speed_or_none(speed),
         )
 
-    def __add__(self, other: object) -> Combination:
+    def __add__(self, other: object) -> SignalSum:
         if not isinstance(other, Signal):
             raise SignalError(f"Only a signal can be added to a signal, got {other!r}.")
         return _combined((1.0, self), (1.0, other))
 
-    def __mul__(self, factor: object) -> Combination:
+    def __mul__(self, factor: object) -> SignalSum:
         if not is_number(factor):
             raise SignalError(f"A signal can be multiplied by a finite number, got {factor!r}.")
         return _combined((float(factor), self))
@@ -215,7 +215,7 @@ class Sampled(Signal):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Combination(Signal):
+class SignalSum(Signal):
     """A weighted sum of signals; `+` and `*` make one.
 
     Its hold is the roughest of theirs. It repeats only if the longest period is a whole multiple of every other.
@@ -235,14 +235,14 @@ class Combination(Signal):
         return _total((weight, signal.sample(time)) for weight, signal in self.terms)
 
 
-def _combined(*terms: tuple[float, Signal]) -> Combination:
+def _combined(*terms: tuple[float, Signal]) -> SignalSum:
     signals = [signal for _, signal in terms]
     speeds = {signal.speed for signal in signals} - {None}
     if len(speeds) > 1:
         raise SignalError(
             f"Signals of different speeds cannot be added, got {' and '.join(f'{v:g}' for v in speeds)} m/s."
         )
-    return Combination(
+    return SignalSum(
         terms=terms,
         label=" + ".join(s.label if weight == 1.0 else f"{weight:g} x ({s.label})" for weight, s in terms),
         period=_common_period([signal.period for signal in signals]),

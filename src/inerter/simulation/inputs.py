@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.checks import check_positive
 from inerter.errors import SimulationError
 from inerter.signals.arguments import slack
-from inerter.signals.signal import Combination, Signal
+from inerter.signals.signal import Signal, SignalSum
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
 
@@ -223,7 +223,7 @@ def _from_the_left(
 
 def _widest(signal: Signal) -> float | None:
     """The largest interval of the tables in a signal: how far a knot reaches follows from it."""
-    terms = [term for _, term in signal.terms] if isinstance(signal, Combination) else []
+    terms = [term for _, term in signal.terms] if isinstance(signal, SignalSum) else []
     return max((_widest(term) or 0.0 for term in terms), default=signal.interval or 0.0) or None
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import combinations, pairwise
 
 from inerter.papers.wang_su_2008.between import WORSE, Found, crossings, excess_there
-from inerter.papers.wang_su_2008.judging import Claim, Evidence, Part, is_near, kilo
-from inerter.papers.wang_su_2008.over_stiffness import Array, Crossing, Curves
+from inerter.papers.wang_su_2008.judging import Claim, Evidence, Statement, is_near, kilo
+from inerter.papers.wang_su_2008.over_stiffness import Array, Curves, Intersection
 from inerter.papers.wang_su_2008.paper import CLAIMS
 
 _SOFT = 60e3  # [N/m] half the stiffness for which Table 1 is printed: what is called small here
@@ -23,7 +23,7 @@ def friction_claims(curves: Curves) -> list[Claim]:
     return [claim(curves) for claim in (_claim_4, _claim_5, _claim_8, _claim_9, _claim_10)]
 
 
-def _shrinks(curves: Curves, index: str) -> list[Part]:
+def _shrinks(curves: Curves, index: str) -> list[Statement]:
     """Whether the optimum is worse with a hard shaft than with none, and worse still with a soft one, at every k."""
     parts, base = [], curves.of("S1", index)
     for layout in _LAYOUTS:
@@ -31,7 +31,7 @@ def _shrinks(curves: Curves, index: str) -> list[Part]:
         exceptions = curves.k[curves.worse(ideal, hard, index) | curves.worse(hard, soft, index)]
         losses = [100.0 * (curves.of(name, index) - curves.of(ideal, index)) / base for name in (hard, soft)]
         text = f"{layout}: the benefit shrinks by up to {losses[0].max():.2f} (hard) and {losses[1].max():.2f} (soft) "
-        parts.append(Part(f"{text}percentage points{_but(exceptions)}", exceptions.size == 0))
+        parts.append(Statement(f"{text}percentage points{_but(exceptions)}", exceptions.size == 0))
     return parts
 
 
@@ -46,7 +46,7 @@ def _claim_2(curves: Curves, between: Found) -> Claim:
         found = crossings(between, "J3", f"S3-{kind}", "S3")
         once = bool(excess[0] < 0.0 < excess[-1]) and len(found) == 1
         text = f"{kind}: better below k = {kilo(found)} kN/m, by at most {-100.0 * float(excess.min()):.2f} %"
-        parts.append(Part(text, once, once and is_near(found[0], 120e3, curves.step)))
+        parts.append(Statement(text, once, once and is_near(found[0], 120e3, curves.step)))
     return Claim(2, CLAIMS[2], tuple(parts))
 
 
@@ -58,7 +58,7 @@ def _claim_3(curves: Curves, between: Found) -> Claim:
         where = f", and worse from k = {kilo(found, ' to ')} kN/m" if len(found) == 2 else ""
         word = "worse" if there > 0.0 else "better"
         text = f"at 55 kN/m S3 {kind} is {abs(100.0 * there):.2f} % {word} than S1{where}"
-        parts.append(Part(text, there > WORSE))
+        parts.append(Statement(text, there > WORSE))
     return Claim(3, CLAIMS[3], tuple(parts))
 
 
@@ -71,19 +71,23 @@ def _claim_4(curves: Curves) -> Claim:
             contrary = curves.k[curves.worse(none, ten, index) | curves.worse(ten, twenty, index)]
             spans = [f"{cost.min():.1f} to {cost.max():.1f} % ({f} N)" for f, cost in zip((10, 20), costs, strict=True)]
             parts.append(
-                Part(f"{index} of {layout}: friction costs {' and '.join(spans)}{_but(contrary)}", contrary.size == 0)
+                Statement(
+                    f"{index} of {layout}: friction costs {' and '.join(spans)}{_but(contrary)}", contrary.size == 0
+                )
             )
     for layout in _LAYOUTS:
         name = f"{layout}-10N"
         found, soft = curves.crossings(name, "S1", "J1"), bool(curves.worse(name, "S1", "J1")[0])
         where = f"worse than S1's up to k = {_at(found)} kN/m" if soft else "not certainly worse than S1's at small k"
         once = soft and len(found) == 1
-        parts.append(Part(f"J1 of {layout} with 10 N is {where}", once, once and _is_at(found[0], 15e3, curves.step)))
+        parts.append(
+            Statement(f"J1 of {layout} with 10 N is {where}", once, once and _is_at(found[0], 15e3, curves.step))
+        )
     for layout in _LAYOUTS:
         name = f"{layout}-10N"
         last = -100.0 * curves.excess(name, "S1", "J1")[-1]
         text = f"J1 of {layout} with 10 N is {last:.1f} % better than S1's at k = {kilo([curves.k[-1]], '', 0)} kN/m"
-        parts.append(Part(text, bool(curves.worse("S1", name, "J1")[-1])))
+        parts.append(Statement(text, bool(curves.worse("S1", name, "J1")[-1])))
     return Claim(4, CLAIMS[4], tuple(parts))
 
 
@@ -98,7 +102,7 @@ def _claim_5(curves: Curves) -> Claim:
                 most = 100.0 * float(curves.excess(name, "S1", index)[there].max())
                 at = kilo(curves.k[there].tolist(), ", ", 0)
                 text = f"{index} of {layout} with {force} N: worse than S1's at k = {at} kN/m, by at most {most:.2f} %"
-            parts.append(Part(text, bool(there.any())))
+            parts.append(Statement(text, bool(there.any())))
     return Claim(
         5,
         CLAIMS[5],
@@ -115,10 +119,10 @@ def _claim_8(curves: Curves) -> Claim:
         gap = curves.excess(friction, elastic, "J1")
         text = f"{layout}: friction alone is better than elasticity alone above k = {_at(found)} kN/m"
         once = bool(gap[0] > 0.0 > gap[-1]) and len(found) == 1
-        parts.append(Part(text, once, once and _is_at(found[0], printed, curves.step)))
+        parts.append(Statement(text, once, once and _is_at(found[0], printed, curves.step)))
         exceptions = curves.not_worst(both, (layout, friction, elastic), "J1")
         text = f"{layout}: both together are the worst{' at every k' if not exceptions.size else ''}{_but(exceptions)}"
-        parts.append(Part(text, exceptions.size == 0))
+        parts.append(Statement(text, exceptions.size == 0))
     return Claim(8, CLAIMS[8], tuple(parts))
 
 
@@ -136,7 +140,7 @@ def _claim_9(curves: Curves) -> Claim:
         signs = ["<" if curves.certainly_better(a, b, "J3", at) else "≈" for a, b in pairwise(found)]
         line = "".join(f"{words[n.removeprefix(layout)]} {sign} " for n, sign in zip(found, [*signs, ""], strict=True))
         contrary = [curves.certainly_better(layout + b, layout + a, "J3", at) for a, b in combinations(order, 2)]
-        parts.append(Part(f"{layout} {where} kN/m: {line.rstrip()}", not any(contrary)))
+        parts.append(Statement(f"{layout} {where} kN/m: {line.rstrip()}", not any(contrary)))
     equal = [
         f"{layout} at k = {_at(curves.crossings(f'{layout}-10N', f'{layout}-soft', 'J3'))} kN/m" for layout in _LAYOUTS
     ]
@@ -154,18 +158,18 @@ def _claim_10(curves: Curves) -> Claim:
         friction, elastic, both = (f"{layout}-{kind}" for kind in ("10N", "soft", "soft-10N"))
         exceptions = curves.not_worst(both, (layout, friction, elastic), "J5")
         text = f"{layout}: both together are the worst{' at every k' if not exceptions.size else ''}{_but(exceptions)}"
-        parts.append(Part(text, exceptions.size == 0))
+        parts.append(Statement(text, exceptions.size == 0))
     more, less = curves.worse("S3-soft", "S3-10N", "J5"), curves.worse("S3-10N", "S3-soft", "J5")
     text = (
         f"S3: elasticity costs more than friction at {int(more.sum())} of {more.size} stiffnesses, less at "
         f"{int(less.sum())}, with no certain difference at the others"
     )
-    parts.append(Part(text, bool(more.any()) and not less.any()))
+    parts.append(Statement(text, bool(more.any()) and not less.any()))
     found = curves.crossings("S2-10N", "S2-soft", "J5")
     friction_more, elastic_more = curves.worse("S2-10N", "S2-soft", "J5"), curves.worse("S2-soft", "S2-10N", "J5")
     text = f"S2: friction and elasticity cost the same at k = {_at(found, ', ')} kN/m, elasticity more above"
     holds = bool(friction_more.any() and elastic_more[-1])
-    parts.append(Part(text, holds, len(found) == 1 and _is_at(found[0], 140e3, curves.step)))
+    parts.append(Statement(text, holds, len(found) == 1 and _is_at(found[0], 140e3, curves.step)))
     return Claim(10, CLAIMS[10], tuple(parts))
 
 
@@ -179,9 +183,9 @@ def claim_13(evidence: Evidence) -> Claim:
             exceptions = curves.k[curves.worse(layout, "S1", index)]
             text = f"{index} of {layout.split('-')[0]}: {better[-1]:.1f} % better at 300 kN/m"
             but = f", worse at k = {kilo(exceptions.tolist(), ', ', 0)} kN/m" if exceptions.size else ""
-            parts.append(Part(text + but, bool(better[-1] > 0.0) and exceptions.size == 0))
+            parts.append(Statement(text + but, bool(better[-1] > 0.0) and exceptions.size == 0))
     half = [evidence.improvement(3, index, case)[0] for index in ("J1", "J3", "J5") for case in (7, 13)]
-    parts.append(Part(f"half car, Method 2: {min(half):.1f} to {max(half):.1f} % better", min(half) > 0.0))
+    parts.append(Statement(f"half car, Method 2: {min(half):.1f} to {max(half):.1f} % better", min(half) > 0.0))
     return Claim(13, CLAIMS[13], tuple(parts), note="Worse means beyond two standard errors.")
 
 
@@ -189,11 +193,11 @@ def _but(exceptions: Array) -> str:
     return f", but not at k = {kilo(exceptions.tolist(), ', ', 0)} kN/m" if exceptions.size else ""
 
 
-def _at(found: list[Crossing], between: str = " and ") -> str:
+def _at(found: list[Intersection], between: str = " and ") -> str:
     return (
         between.join(f"{c.k / 1e3:.1f}{f' ± {c.error / 1e3:.1f}' if c.error else ''}" for c in found) or "(no crossing)"
     )
 
 
-def _is_at(found: Crossing, printed: float, step: float) -> bool:
+def _is_at(found: Intersection, printed: float, step: float) -> bool:
     return is_near(found.k, printed, step, found.error)

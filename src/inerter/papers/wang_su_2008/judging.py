@@ -14,7 +14,7 @@ HOLDS, OTHER_NUMBER, IN_PART, FAILS = "holds", "holds with another number", "hol
 
 
 @dataclass(frozen=True)
-class Part:
+class Statement:
     """One statement within a claim: what was found, whether it holds, and with the number that the paper gives."""
 
     found: str
@@ -28,7 +28,7 @@ class Claim:
 
     number: int
     statement: str
-    parts: tuple[Part, ...]
+    parts: tuple[Statement, ...]
     note: str = ""
 
     @property

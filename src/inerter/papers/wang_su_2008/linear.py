@@ -52,20 +52,22 @@ class FoundDesign:
 
 
 @dataclass(frozen=True, eq=False)
-class Linear:
+class LinearTables:
     """Everything linear in the paper's tables, recomputed."""
 
     compared: list[ComparedRow]
     found: list[FoundDesign]
 
 
-def recompute(studies: dict[str, StudyResult]) -> Linear:
+def recompute(studies: dict[str, StudyResult]) -> LinearTables:
     """Every linear number of Tables 1 to 3, and the designs of Tables 1 and 2 as the studies find them."""
     rows = linear_rows()
-    return Linear([compare(row) for row in rows], [_found(row, studies[row.study]) for row in rows if row.table < 3])
+    return LinearTables(
+        [compared_row(row) for row in rows], [_found(row, studies[row.study]) for row in rows if row.table < 3]
+    )
 
 
-def compare(row: PrintedRow) -> ComparedRow:
+def compared_row(row: PrintedRow) -> ComparedRow:
     """The printed design evaluated under both conventions."""
     index = row.asks()
     values = [evaluate(row.design(), index, Norm(conventions)).value for conventions in ("paper2008", "exact")]

@@ -17,7 +17,7 @@ Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Crossing:
+class Intersection:
     """Where one curve becomes better or worse than another [N/m], and its standard error."""
 
     k: float
@@ -66,7 +66,7 @@ class Curves:
         """Stiffnesses at which `one` is certainly not the worst."""
         return self.k[np.any([self.worse(other, one, index) for other in others], axis=0)]
 
-    def crossings(self, one: str, other: str, index: str) -> list[Crossing]:
+    def crossings(self, one: str, other: str, index: str) -> list[Intersection]:
         """Where `one` becomes better or worse than `other`, by linear interpolation between swept values.
 
         A stretch between turns, or before or behind them all, counts if the difference is certain anywhere on it.
@@ -77,7 +77,7 @@ class Curves:
         counted = [stretch for stretch in stretches if certain[stretch].any()]
         turns = [(s[-1], after[0]) for s, after in pairwise(counted) if gap[s[-1]] * gap[after[0]] < 0.0]
         return [
-            Crossing(
+            Intersection(
                 k=float(k[i] + (k[j] - k[i]) * gap[i] / (gap[i] - gap[j])),
                 error=float(max(error[i], error[j]) * (k[j] - k[i]) / abs(gap[i] - gap[j])),
             )

@@ -19,7 +19,7 @@ from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import Claim, Evidence
-from inerter.papers.wang_su_2008.linear import Linear
+from inerter.papers.wang_su_2008.linear import LinearTables
 from inerter.papers.wang_su_2008.paper import PAPER, PARTS
 from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
@@ -101,7 +101,7 @@ class Reproduction:
     parts: tuple[str, ...]
     studies: dict[str, StudyResult] = field(default_factory=dict)
     rig: RigTest | None = None
-    linear: Linear | None = None
+    linear: LinearTables | None = None
     rows: dict[tuple[int, str], SimulatedRow] = field(default_factory=dict)
     curves: xr.Dataset | None = None  # Figures 11, 13 and 14 over k
     methods: dict[str, Numbers] = field(default_factory=dict)

@@ -82,7 +82,7 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     )
     endless = replace(found, layout="S3", value=None, crossings=[], status="unbounded", message="better for every f")
     results = judged(designs())
-    asked = replace(study, evaluate=("norm", "expected-value"), indices=("J1",), force=1e3)
+    asked = replace(study, evaluate=("norm", "expected-value"), indices=("J1",), settings={"force": 1e3})
     text = Page(report(results, asked, tmp_path, [found, endless])).text.replace(SPACE, " ")
     assert "2.4447 ± 0.0098+6.00 ± 0.31 %" in text
     assert "up to 280.5 ± 6.6 N" in text

@@ -24,8 +24,11 @@ _MOTIONS = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # of 
 _MOUNTED = {Strut: ("force", "travel"), Tyre: ("load", "deflection")}  # what a mount carries, and how far it moves
 
 
+_EMPTY: Matrix = np.zeros(0)
+
+
 def _none() -> Matrix:
-    return np.zeros(0)
+    return _EMPTY
 
 
 @dataclass(frozen=True, eq=False)

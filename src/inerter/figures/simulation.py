@@ -18,6 +18,7 @@ from inerter.figures.curves import thinned
 from inerter.figures.labels import axis_label, capital, scale
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, styled
 from inerter.files.simulation.running import Nonlinear, SimulationResult
+from inerter.systems.outputs import force_of
 
 Matrix = NDArray[np.float64]
 Window = tuple[float, float]
@@ -81,10 +82,10 @@ def panels(result: SimulationResult) -> list[Panel]:
         shaded = tuple(n for n in result.nonlinear if n.strut == strut)
         inerters = result.inerters(strut)
         if not result.tyre_loads and inerters:
-            found.append(Panel(f"{strut} force", "N", (Curve(f"{strut}_force"),)))
+            found.append(Panel(f"{strut} force", "N", (Curve(force_of(strut)),)))
         title = f"{f'{strut} ' if len(struts) > 1 else ''}{'inerter' if inerters else strut} force"
         title = title.replace(f"{strut} {strut}", strut)
-        carried = tuple(f"{name}_force" for name in inerters) or (f"{strut}_force",)
+        carried = tuple(map(force_of, inerters)) or (force_of(strut),)
         numbers = range(struts.index(strut), len(carried) + struts.index(strut))
         labels = inerters if len(inerters) > 1 else ("",)
         found.append(Panel(title, "N", tuple(map(Curve, carried, labels, numbers)), shaded))

@@ -23,6 +23,7 @@ from inerter.methods.method import Estimate
 from inerter.norms.hinf import Peak
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filtered import filtered
+from inerter.systems.outputs import force_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -164,8 +165,8 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
     parts = equivalent(mechanism)
     descriptor = describe(
         parts.mechanism,
-        (*question.inputs, *(f"{name}_force" for name in parts.dampers)),
-        (question.outputs[0].output, *(f"{name}_velocity" for name in parts.dampers)),
+        (*question.inputs, *map(force_of, parts.dampers)),
+        (question.outputs[0].output, *map(velocity_of, parts.dampers)),
     )
     filters = (*question.filters, *(None for _ in parts.dampers))
     return HarmonicBalance(question, filtered(descriptor, filters), parts)

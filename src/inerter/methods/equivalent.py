@@ -23,6 +23,7 @@ from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
+from inerter.systems.outputs import force_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism, Tyre
 
 Array = NDArray[np.float64]
@@ -90,8 +91,9 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
     """Raises `PerformanceIndexError` for the velocity or force of a friction: a damper has its place."""
     branches = full_graph(mechanism).branches
     frictions = [branch.label for branch in branches if branch.element.statistical is Statistical.DAMPER]
+    told = {called(label) for label in frictions for called in (force_of, velocity_of)}
     for name in names:
-        if name.rpartition("_")[0] in frictions:
+        if name in told:
             raise PerformanceIndexError(
                 f"Statistical linearisation does not tell {name!r}: it puts a damper in the place of the friction. "
                 f"Use ExpectedValue() or ApproximateLinear(), which simulate it."
@@ -166,7 +168,7 @@ def slipping_freely(mechanism: Mechanism) -> frozenset[str]:
     found: frozenset[str] = frozenset()
     while True:
         parts = equivalent(mechanism, found)
-        velocities = [f"{name}_velocity" for name in parts.dampers]
+        velocities = [velocity_of(name) for name in parts.dampers]
         reached = _reached_directly(describe(parts.mechanism, sorted(roads), velocities))
         if not reached:
             return found

@@ -22,6 +22,7 @@ from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
 from inerter.methods.note import Note
 from inerter.systems.descriptor import close
+from inerter.systems.outputs import velocity_of
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
 Array = NDArray[np.float64]
@@ -336,7 +337,7 @@ class GaussianClosure:
 
 def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozenset[str]) -> Pattern:
     parts = equivalent(closure.mechanism, without, locked)
-    wanted = tuple(Weighted(f"{name}_velocity") for name in parts.dampers)
+    wanted = tuple(Weighted(velocity_of(name)) for name in parts.dampers)
     outputs = closure.question.outputs
     filters = (*closure.question.filters, *(None for _ in wanted))
     joint_question = replace(closure.question, outputs=(*outputs, *wanted), filter=filters)

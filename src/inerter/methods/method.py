@@ -14,7 +14,7 @@ from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.norms.hinf import Peak
 from inerter.systems.graph import full_graph
-from inerter.systems.outputs import find, main_outputs, outputs
+from inerter.systems.outputs import check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
@@ -199,10 +199,7 @@ def check_request(vehicle: Vehicle, index: Index, method: object) -> None:
 
 
 def _check_names(mechanism: Mechanism, question: Question) -> None:
-    inputs = [*(road.name for road in mechanism.roads), *(force.name for force in mechanism.forces)]
-    for name in question.inputs:
-        if name not in inputs:
-            raise PerformanceIndexError(f"There is no input named {name!r} (there are: {', '.join(inputs) or 'none'}).")
+    check_inputs(mechanism, question.inputs, PerformanceIndexError)
     unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(mechanism)]
     if unusual:  # finding all names takes longer than most norms
         known = outputs(mechanism, full_graph(mechanism))

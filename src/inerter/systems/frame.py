@@ -68,7 +68,7 @@ class Frame:
     springs: tuple[Branch, ...]
     spring_rows: Matrix  # over nodes, and ...
     spring_roads: Matrix  # ... over the roads that are inputs
-    road_columns: tuple[int, ...]  # of the roads that are inputs, among all
+    road_columns: list[int]  # of the roads that are inputs, among all
     force_rows: Matrix  # of the other inputs over nodes
 
     @property
@@ -114,7 +114,7 @@ class Frame:
         if at.settles:
             eta[at.z1] = settling
         if roads is not None and roads.size:
-            u[: self.roads] = roads[list(self.road_columns)]
+            u[: self.roads] = roads[self.road_columns]
         return eta, x, u
 
     def acceleration(self, nodes: Matrix) -> Rows:
@@ -145,17 +145,19 @@ class Frame:
             case Linear.DAMPING:
                 return self.velocity(branch.nodes, branch.roads)
             case Linear.STIFFNESS:
-                return self.elongation(np.eye(len(self.springs))[self.spring_number[id(branch)]])
+                alone = np.zeros(len(self.springs))
+                alone[self.spring_number[id(branch)]] = 1.0
+                return self.elongation(alone)
         return self.blank()
 
     def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
         """The combination of spring elongations that is this displacement whatever moves, if there is one."""
         springs = np.hstack([self.spring_rows, self.spring_roads])
-        return combination(springs, np.hstack([nodes, roads[list(self.road_columns)]]))
+        return combination(springs, np.hstack([nodes, roads[self.road_columns]]))
 
 
 def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Sequence[str] = ()) -> Frame:
-    """The frame for these inputs, and for outputs that may ask how fast springs settle.
+    """The frame for these inputs, roads first, and for outputs that may ask how fast springs settle.
 
     Raises `MechanismError` for an inerter on the road itself, and for a node that is held by nothing.
     """
@@ -166,11 +168,11 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
                 f"follows the road's acceleration, which does not exist for a white road velocity. Mount it "
                 f"between moving parts."
             )
-    columns = tuple(i for i, road in enumerate(mechanism.roads) if road.name in inputs)
-    forces = _forces(mechanism, graph, [name for name in inputs if name not in {r.name for r in mechanism.roads}])
+    columns = [i for i, road in enumerate(mechanism.roads) if road.name in inputs]
+    forces = _forces(mechanism, graph, inputs[len(columns) :])
     springs = of_law(graph, Linear.STIFFNESS)
     spring_rows, spring_roads = stacked(springs, graph)
-    spring_roads = np.array([b.roads[list(columns)] for b in springs]).reshape(len(springs), len(columns))
+    spring_roads = np.array([b.roads[columns] for b in springs]).reshape(len(springs), len(columns))
     found = find_coordinates(
         graph.nodes,
         inertia=inertias(mechanism, graph)[0],

@@ -33,6 +33,12 @@ def inertias(mechanism: Mechanism, graph: Graph) -> tuple[Matrix, Matrix]:
     return np.vstack([masses, nodes]), np.vstack([np.zeros((len(masses), roads.shape[1])), roads])
 
 
+def inertia_values(mechanism: Mechanism, graph: Graph) -> Matrix:
+    """The values of `inertias`, none of which is free."""
+    inerters = (branch.element.coefficient for branch in of_law(graph, Linear.MASS))
+    return np.array([*(coordinate.inertia for coordinate in mechanism.coordinates), *inerters])
+
+
 def ports(mechanism: Mechanism, graph: Graph) -> Matrix:
     """Rows of the external forces over nodes."""
     rows = np.zeros((len(mechanism.forces), len(graph.nodes)))

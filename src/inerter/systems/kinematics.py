@@ -21,6 +21,7 @@ from inerter.networks.elements import Element, Network
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import clean, complete, independent_rows, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
+from inerter.systems.incidence import inertia_values, inertias, ports, stacked
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 
@@ -104,12 +105,10 @@ def _found(layout: _Layout) -> Kinematics:
     graph = full_graph(mechanism)
     branches = graph.branches
     inertia = _inertia(mechanism, graph)
-    ports = np.zeros((len(mechanism.forces), len(graph.nodes)))
-    for i, force in enumerate(mechanism.forces):
-        ports[i, : len(mechanism.coordinates)] = [force.port.get(c.name, 0.0) for c in mechanism.coordinates]
-    *motions, weighs = _velocities(graph, inertia, ports, len(mechanism.roads))
+    pushed = ports(mechanism, graph)
+    *motions, weighs = _velocities(graph, inertia, pushed, len(mechanism.roads))
     R, N, V = motions
-    nodes, roads = _stack(branches, graph)
+    nodes, roads = stacked(branches, graph)
     rates = (nodes @ R, nodes @ N, roads + nodes @ V)
     places = _places(mechanism, graph)
     together = _together(branches)
@@ -131,7 +130,7 @@ def _found(layout: _Layout) -> Kinematics:
         moving=_dense(np.vstack([positions, np.hstack(rates)[[*special, *dampers, *springs]]])),
         lengths=_dense(np.hstack(places.elongations)[special]),
         elements=np.array(names, dtype=np.int64).reshape(len(special), 2),
-        ports=ports,
+        ports=pushed,
         nonlinear=together,
         needs_acceleration=tuple(jolted | _locked_to(rates, special)),
         moves_elements=tuple(_moved_by(rates, [i for i in special if branches[i].element.acts])),
@@ -176,12 +175,7 @@ class _Inertia:
 
 
 def _inertia(mechanism: Mechanism, graph: Graph) -> _Inertia:
-    inerters = [b for b in graph.branches if b.element.linear is Linear.MASS]
-    nodes, roads = _stack(inerters, graph)
-    masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
-    still = np.zeros((len(masses), roads.shape[1]))
-    values = np.array([*(c.inertia for c in mechanism.coordinates), *(b.element.coefficient for b in inerters)])
-    return _Inertia(np.vstack([masses, nodes]), np.vstack([still, roads]), values)
+    return _Inertia(*inertias(mechanism, graph), inertia_values(mechanism, graph))
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +192,7 @@ class Places:
 def _places(mechanism: Mechanism, graph: Graph) -> Places:
     """The first independent ones among the elongations of gaps and springs and the displacements of coordinates."""
     branches = graph.branches
-    nodes, roads = _stack(branches, graph)
+    nodes, roads = stacked(branches, graph)
     gaps = [i for i, b in enumerate(branches) if b.element.switches_by(Guard.ELONGATION)]
     placed = gaps + [i for i, b in enumerate(branches) if b.element.linear is Linear.STIFFNESS]
     coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
@@ -230,7 +224,7 @@ def _moved_by(rates: tuple[Matrix, Matrix, Matrix], elements: list[int]) -> NDAr
     return np.asarray(np.any(moved[elements], axis=0))
 
 
-def _velocities(graph: Graph, inertia: _Inertia, ports: Matrix, roads: int) -> tuple[Matrix, Matrix, Matrix, bool]:
+def _velocities(graph: Graph, inertia: _Inertia, pushed: Matrix, roads: int) -> tuple[Matrix, Matrix, Matrix, bool]:
     """R, N and V: motions with inertia, massless motions, and what roads impose on a node between inerters alone.
 
     A motion that only inertia resists and nothing excites keeps its momentum of zero, so it follows the others at once.
@@ -239,7 +233,7 @@ def _velocities(graph: Graph, inertia: _Inertia, ports: Matrix, roads: int) -> t
     count = len(graph.nodes)
     others = [b for b in graph.branches if b.element.linear is not Linear.MASS]
     holding = [b for b in others if b.element.switch is None or b.element.switch.always_holds(b.element.coefficient)]
-    loose = null_space(np.vstack([inertia.nodes, _stack(holding, graph)[0]]))
+    loose = null_space(np.vstack([inertia.nodes, stacked(holding, graph)[0]]))
     if loose.shape[1]:
         node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]
         raise MechanismError(
@@ -247,8 +241,8 @@ def _velocities(graph: Graph, inertia: _Inertia, ports: Matrix, roads: int) -> t
             f"friction resists its motion. Join the gaps into one, or add what holds the part between them."
         )
     N = null_space(inertia.nodes)
-    U = null_space(_stack(others, graph)[0])
-    for row in ports:
+    U = null_space(stacked(others, graph)[0])
+    for row in pushed:
         U = U @ null_space((row @ U)[None])
     R = complete(np.hstack([U, N]), np.eye(count))
     if not U.shape[1]:
@@ -287,13 +281,6 @@ def _check_locks(found: Kinematics) -> None:
                 f"The force of {which} is not determined when it does not slip: nothing between given motions gives "
                 f"way. Put the spring of the real part (such as a shaft) in series with it."
             )
-
-
-def _stack(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
-    """Rows of some branches over nodes and over roads."""
-    nodes, roads = len(graph.nodes), next((b.roads.size for b in graph.branches), 0)
-    on_nodes = np.array([b.nodes for b in branches]).reshape(len(branches), nodes)
-    return on_nodes, np.array([b.roads for b in branches]).reshape(len(branches), roads)
 
 
 def _dense(matrix: Matrix) -> Matrix:

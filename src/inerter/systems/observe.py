@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -40,15 +41,16 @@ def motion(moving: Moving, output: Output, nodes: int) -> Rows:
     """An output's velocities, accelerations and external forces."""
     rows = moving.blank()
     if output.velocity.size or output.road_velocity.size:
-        _add(rows, moving.velocity(_or(output.velocity, nodes), output.road_velocity))
+        add(rows, moving.velocity(_or(output.velocity, nodes), output.road_velocity))
     if output.acceleration.size:
-        _add(rows, moving.acceleration(output.acceleration))
+        add(rows, moving.acceleration(output.acceleration))
     if output.external.size:
-        _add(rows, moving.external(output.external))
+        add(rows, moving.external(output.external))
     return rows
 
 
-def _add(rows: Rows, more: Rows) -> None:
+def add(rows: Rows, more: Iterable[Matrix]) -> None:
+    """Add rows to others in place."""
     for row, other in zip(rows, more, strict=True):
         row += other
 

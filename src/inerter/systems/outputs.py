@@ -24,8 +24,11 @@ _MOTIONS = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # of 
 _MOUNTED = {Strut: ("force", "travel"), Tyre: ("load", "deflection")}  # what a mount carries, and how far it moves
 
 
+_EMPTY: Matrix = np.zeros(0)
+
+
 def _none() -> Matrix:
-    return np.zeros(0)
+    return _EMPTY
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +66,13 @@ def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
 def main_outputs(mechanism: Mechanism) -> list[str]:
     """Names of the outputs that every analysis has: motions of coordinates, what mounts carry and how far they move."""
     coordinates = [f"{c.name}_{what}" for c in mechanism.coordinates for what in _MOTIONS]
-    return coordinates + [f"{mount.name}_{what}" for mount in mechanism.mounts() for what in _MOUNTED[type(mount)]]
+    return coordinates + [name for mount in mechanism.mounts() for name in of_mount(mount)]
+
+
+def of_mount(mount: Strut | Tyre) -> tuple[str, str]:
+    """The names of what a mount carries, and of how far it moves."""
+    carried, moved = _MOUNTED[type(mount)]
+    return f"{mount.name}_{carried}", f"{mount.name}_{moved}"
 
 
 def input_names(mechanism: Mechanism) -> list[str]:
@@ -104,12 +113,12 @@ def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
 def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
     found = []
     for part in mechanism.mounts():
-        mount, (force, travel), said = graph.mounts[part.name], _MOUNTED[type(part)], _said(part.name)
+        mount, (force, travel) = graph.mounts[part.name], of_mount(part)
         total = np.zeros(len(graph.branches))
         total[list(mount.carriers)] = 1.0
         found += [
-            Output(f"{part.name}_{force}", "N", f"{said} {force}", forces=total),
-            Output(f"{part.name}_{travel}", "m", f"{said} {travel}", displacement=mount.nodes, road=mount.roads),
+            Output(force, "N", _said(force), forces=total),
+            Output(travel, "m", _said(travel), displacement=mount.nodes, road=mount.roads),
         ]
     return found
 

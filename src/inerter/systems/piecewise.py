@@ -17,8 +17,11 @@ from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
+from inerter.systems.frame import Rows
 from inerter.systems.graph import Graph, switching
+from inerter.systems.incidence import inertia_values
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements
+from inerter.systems.observe import add, motion
 from inerter.systems.outputs import Output
 from inerter.vehicle.mechanism import Mechanism, check_values
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
@@ -143,8 +146,7 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
 def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
     graph, rates, places = known.graph, known.rates, known.places
     R, _, V = known.motions
-    inerters = (b.element.coefficient for b in graph.branches if b.element.linear is Linear.MASS)
-    inertia = np.array([*(c.inertia for c in mechanism.coordinates), *inerters])
+    inertia = inertia_values(mechanism, graph)
     kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
     _check_inertia(kinetic, inertia)
     resistance = _weighted(graph, Linear.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
@@ -230,50 +232,80 @@ def _felt(damping: Matrix, na: int) -> Matrix:
     return damping[:na, nv:] - damping[:na, na:nv] @ np.linalg.pinv(damping[na:, na:nv]) @ damping[na:, nv:]
 
 
-def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix, Matrix]:
-    """An output as rows over the state, the inputs and eta."""
-    roads = len(system.mechanism.roads)
-    na, nw = system.motions[0].shape[1], system.motions[1].shape[1]
-    on_x, on_u = np.zeros(system.order), np.zeros(system.inputs)
-    on_eta = np.zeros(na + nw + len(system.nonlinear))
-    z, rate, acceleration = (slice(i * roads, (i + 1) * roads) for i in range(3))
-    count = len(system.mechanism.coordinates)
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    """The coordinates of a piecewise system, as rows over eta, the state and the inputs."""
 
-    def add_velocity(weights: tuple[Matrix, Matrix, Matrix]) -> None:
-        on_x[:na] += weights[0]
-        on_eta[na : na + nw] += weights[1]
-        on_u[rate] += weights[2]
+    system: PiecewiseSystem
 
-    if output.displacement.size:
-        moved = output.displacement[:count]
-        on_x[na:] += moved @ system.displacements[0]
-        on_u[z] += moved @ system.displacements[1]
-    if output.velocity.size:
-        velocity = output.velocity
-        add_velocity((velocity @ system.motions[0], velocity @ system.motions[1], velocity @ system.motions[2]))
-    if output.acceleration.size:
-        on_eta[:na] += output.acceleration @ system.motions[0]  # massless motions have no part in a coordinate's
-        on_u[acceleration] += output.acceleration @ system.motions[2]
-    for i in np.flatnonzero(output.forces):
-        element, share = system.graph.branches[i].element, output.forces[i]
-        value = share * element.coefficient
-        E_a, E_w, E_z = (rows[i] for rows in system.rates)
+    def blank(self) -> Rows:
+        """Rows of zeros."""
+        R, N, _ = self.system.motions
+        eta = R.shape[1] + N.shape[1] + len(self.system.nonlinear)
+        return np.zeros(eta), np.zeros(self.system.order), np.zeros(self.system.inputs)
+
+    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
+        """The velocity of a combination of nodes and roads."""
+        R, N, V = self.system.motions
+        return self._moving((nodes @ R, nodes @ N, nodes @ V if roads is None or not roads.size else nodes @ V + roads))
+
+    def acceleration(self, nodes: Matrix) -> Rows:
+        """The acceleration of a combination of nodes that inertia carries."""
+        R, _, V = self.system.motions
+        return self._accelerating(nodes @ R, nodes @ V)
+
+    def external(self, weights: Matrix) -> Rows:
+        """A combination of the external forces."""
+        eta, x, u = self.blank()
+        u[3 * len(self.system.mechanism.roads) :] = weights
+        return eta, x, u
+
+    def displacement(self, over_g: Matrix, over_z: Matrix) -> Rows:
+        """What positions and heights of roads make up."""
+        eta, x, u = self.blank()
+        x[self.system.motions[0].shape[1] :], u[self._roads(0)] = over_g, over_z
+        return eta, x, u
+
+    def force(self, i: int) -> Rows:
+        """The force of a branch."""
+        element, rates = self.system.graph.branches[i].element, [rows[i] for rows in self.system.rates]
+        value = element.coefficient
         match element.linear:
             case Linear.STIFFNESS:
-                on_x[na:] += value * system.elongations[0][i]
-                on_u[z] += value * system.elongations[1][i]
+                return self.displacement(*(value * rows[i] for rows in self.system.elongations))
             case Linear.DAMPING:
-                add_velocity((value * E_a, value * E_w, value * E_z))
+                return self._moving((value * rates[0], value * rates[1], value * rates[2]))
             case Linear.MASS:
-                on_eta[:na] += value * E_a
-                on_u[acceleration] += value * E_z
-            case _:
-                for number, group in enumerate(system.nonlinear):
-                    on_eta[na + nw + number] += share * group.get(int(i), 0.0)
-    if output.road.size:
-        on_u[z] += output.road
-    if output.road_velocity.size:
-        on_u[rate] += output.road_velocity
-    if output.external.size:
-        on_u[3 * roads :] += output.external
+                return self._accelerating(value * rates[0], value * rates[2])
+        eta, x, u = self.blank()
+        eta[eta.size - len(self.system.nonlinear) :] = [group.get(i, 0.0) for group in self.system.nonlinear]
+        return eta, x, u
+
+    def _moving(self, rates: tuple[Matrix, Matrix, Matrix]) -> Rows:
+        eta, x, u = self.blank()
+        na = rates[0].size
+        x[:na], eta[na : na + rates[1].size], u[self._roads(1)] = rates
+        return eta, x, u
+
+    def _accelerating(self, over_a: Matrix, over_z: Matrix) -> Rows:
+        eta, x, u = self.blank()
+        eta[: over_a.size], u[self._roads(2)] = over_a, over_z
+        return eta, x, u
+
+    def _roads(self, derivative: int) -> slice:
+        roads = len(self.system.mechanism.roads)
+        return slice(derivative * roads, (derivative + 1) * roads)
+
+
+def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix, Matrix]:
+    """An output as rows over the state, the inputs and eta."""
+    frame, count = _Frame(system), len(system.mechanism.coordinates)
+    rows = motion(frame, output, len(system.graph.nodes))
+    if output.displacement.size or output.road.size:
+        moved = output.displacement[:count] if output.displacement.size else np.zeros(count)
+        over_g, over_z = (moved @ part for part in system.displacements)
+        add(rows, frame.displacement(over_g, over_z + output.road if output.road.size else over_z))
+    for i in np.flatnonzero(output.forces):
+        add(rows, [output.forces[i] * row for row in frame.force(int(i))])
+    on_eta, on_x, on_u = rows
     return on_x, on_u, on_eta

@@ -16,7 +16,7 @@ from typing import Any
 
 from inerter.networks.elements import Element, Free
 from inerter.systems.graph import Graph
-from inerter.systems.outputs import Output, outputs
+from inerter.systems.outputs import Output, force_of, outputs
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
 from inerter.vehicle.mechanism import Mechanism
 
@@ -72,7 +72,7 @@ class _Nodal:
         names = [coordinate.name for coordinate in mechanism.coordinates]
         forces = {name: {names.index(at): lever for at, lever in port.items() if lever} for name, port in ports.items()}
         forces |= {
-            f"{branch.label}_force": {i: -float(lever) for i, lever in enumerate(branch.nodes) if lever}
+            force_of(branch.label): {i: -float(lever) for i, lever in enumerate(branch.nodes) if lever}
             for branch in graph.branches
         }
         levers = [float(x) for b in graph.branches for row in (b.nodes, b.roads) for x in row if x]

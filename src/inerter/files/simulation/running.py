@@ -18,6 +18,7 @@ from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.graph import full_graph, switching
+from inerter.systems.outputs import of_mount
 from inerter.vehicle.mechanism import Mechanism
 from inerter.work.origin import versions
 from inerter.writing import write_netcdf, write_text
@@ -64,7 +65,7 @@ class SimulationResult:
     @property
     def tyre_loads(self) -> tuple[str, ...]:
         """Outputs that are forces of tyres."""
-        return tuple(f"{tyre.name}_load" for tyre in self.mechanism.tyres)
+        return tuple(of_mount(tyre)[0] for tyre in self.mechanism.tyres)
 
     @property
     def struts(self) -> tuple[str, ...]:
@@ -74,7 +75,7 @@ class SimulationResult:
     @property
     def main_outputs(self) -> tuple[str, ...]:
         """What a summary tells of."""
-        forces = tuple(f"{strut}_{what}" for strut in self.struts for what in ("force", "travel"))
+        forces = tuple(name for strut in self.mechanism.struts for name in of_mount(strut))
         return (*self.accelerations, *self.tyre_loads, *forces)
 
     def rms(self, name: str) -> float:

@@ -26,6 +26,7 @@ from inerter.identification.suspects import Suspect
 from inerter.records.kinds import RecordFinding
 from inerter.records.remedy import Remedy
 from inerter.records.writers import write_record
+from inerter.report import identified_values
 
 TOKEN = "told."  # what was once looked for in sentences, and what begins a status, are the worst of tokens
 CONFIG = """
@@ -43,6 +44,7 @@ starts = 8
 """
 WORDS = {
     "sentence", "status", "message", "notes", "next_experiment", "remedy", "choice", "versions", "title", "model",
+    "elements",
 }  # fmt: skip
 
 
@@ -57,6 +59,7 @@ def opaque(patch: pytest.MonkeyPatch) -> None:
         patch.setattr(shown, "sentence", property(lambda found: TOKEN))
     for error in (InerterError, RecordError):
         patch.setattr(error, "__str__", lambda error: TOKEN)
+    patch.setattr(identified_values, "_WORDS", dict.fromkeys(identified_values.Known, TOKEN))
     made = Status.__init__
 
     def other(status: Status, kind: StatusKind = StatusKind.OK, message: str = "") -> None:

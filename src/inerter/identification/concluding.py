@@ -62,6 +62,7 @@ def fit_of(solution: Solution, explain: bool = True) -> Fit:
         draft,
         parameters=parameters,
         identifiable=identifiable,
+        doubt=doubt,
         status=OK if doubt is None else Status(StatusKind.INACCURATE, doubt.sentence),
         suggestions=tuple(suggestions(space, parameters, identifiable, comparisons)),
     )

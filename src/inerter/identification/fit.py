@@ -143,6 +143,7 @@ class Fit:
     misfit: Misfit
     explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the likeliest first
     status: Status = OK
+    doubt: Finding | None = None  # why it is not to be relied on
     findings: tuple[Finding, ...] = ()  # what has to be known about the estimates
     suggestions: tuple[Finding, ...] = ()  # what the next experiment may be
     settings: dict[str, object] = field(default_factory=dict)

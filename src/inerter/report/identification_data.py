@@ -26,6 +26,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "model": found.name,
         "layout": written(found.model, [e.label for e in found.model.elements()]),
         "status": str(fit.status),
+        "doubt": None if fit.doubt is None else str(fit.doubt.kind),
         "explained": fit.explained,
         "parameters": {
             name: {

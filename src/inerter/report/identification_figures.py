@@ -21,7 +21,7 @@ from inerter.figures.identification import (
 )
 from inerter.files.identification.running import Identified, Responses
 from inerter.identification.fit import Comparison
-from inerter.report.identified_values import NOT_IDENTIFIABLE, WITHHELD, scale_of, value_and_interval
+from inerter.report.identified_values import Known, known, scale_of, value_and_interval
 
 Matrix = NDArray[np.float64]
 _PERIODS = 4.0  # of the motion in a window that can be read
@@ -126,14 +126,15 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
     ends = (points[0, 0], points[-1, 0])
     own = scale_of(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
     value, _ = value_and_interval(found, name)
-    low, high = (parameter.best,) * 2 if value == WITHHELD else parameter.interval
+    what = known(found, name)
+    low, high = (parameter.best,) * 2 if what is Known.NOTHING else parameter.interval
     return ProfileCurve(
         label=name,
         values=points[:, 0] * own.factor,
         rises=points[:, 1],
         interval=(low * own.factor, high * own.factor),
         unit=own.unit,
-        remark=value if value in (NOT_IDENTIFIABLE, WITHHELD) else "",
+        remark="" if what is Known.VALUE else value,
     )
 
 

@@ -10,7 +10,7 @@ import pytest
 import inerter as it
 from inerter.figures import identification as figures
 from inerter.figures.curves import thinned
-from inerter.figures.identification import Motion
+from inerter.figures.identification import MotionCurve
 from inerter.figures.style import styled
 
 RATE = 500.0
@@ -35,7 +35,7 @@ def answered(gaps, count):
 MANY, BROKEN = answered(False, 100), answered(True, 100)
 FEW = it.frequency_response(RECORD)
 LINEAR = it.linear_response(DEVICE, np.geomspace(1.0, 300.0, 50))
-MOTION = Motion("measured", TIME, SINE, FORCE)
+MOTION = MotionCurve("measured", TIME, SINE, FORCE)
 PROFILES = [
     figures.ProfileCurve("ks", np.array([99.0, 100.0, 101.5]), np.array([1.0, 0.0, 1.0]), (99.0, 101.5), "kN/m"),
     figures.ProfileCurve(
@@ -50,7 +50,7 @@ FIGURES = {
     "response with gaps": lambda: figures.response_figure(BROKEN),
     "one line": lambda: figures.response_figure(FEW, FEW, LINEAR),
     "friction test": lambda: figures.time_figure(MOTION),
-    "fit": lambda: figures.time_figure(MOTION, Motion("fitted", TIME, SINE, 1.01 * FORCE), (0.0, 2.0)),
+    "fit": lambda: figures.time_figure(MOTION, MotionCurve("fitted", TIME, SINE, 1.01 * FORCE), (0.0, 2.0)),
     "record": lambda: figures.record_figure(RECORD, RECORD.trim(1.0, 5.0)),
     "residual": lambda: figures.residual_figure(TIME, 0.1 * FORCE, LAGS, np.exp(-9.0 * LAGS), 0.03),
     "profiles": lambda: figures.profile_figure(PROFILES),

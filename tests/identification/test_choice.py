@@ -150,7 +150,7 @@ def test_friction_that_falls_with_speed_is_stribecks(size):
     assert found.p_value < 1e-4
 
 
-def test_what_cannot_be_told_is_said():
+def test_what_is_not_identifiable_is_said():
     none = it.VirtualRig(SHAFT - it.Inerter(5.0), seed=0).run(it.cosine(1e-3, 0.1), 20.0)
     assert friction_law(none, 5.0).law == "not identifiable"
     assert "no friction shows" in friction_law(none, 5.0).sentence
@@ -161,7 +161,7 @@ def test_what_cannot_be_told_is_said():
         friction_law("record")
 
 
-def test_residuals_of_a_fit_tell_of_a_damper_that_it_lacks():
+def test_residuals_of_a_fit_show_a_damper_that_it_lacks():
     device = SHAFT - (it.Inerter(113.0) | it.Friction(10.0) | it.Damper(100.0))
     model = SHAFT - (it.Inerter(it.free(50.0, 200.0, name="b")) | it.Friction(it.free(0.0, 50.0, name="f")))
     record = record_of(device, 0)

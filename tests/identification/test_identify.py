@@ -107,7 +107,7 @@ def test_a_record_that_begins_in_motion():
     assert fit.parameters["ks"].value == pytest.approx(1e6, rel=0.02)
 
 
-def test_what_a_record_does_not_tell_gets_no_number():
+def test_what_is_not_identifiable_gets_no_number():
     """A slow motion tells the friction; nothing of the inertance but that it is small."""
     record = it.VirtualRig(device(b=5.0), seed=8).run(it.cosine(amplitude=1e-3, frequency=0.2), duration=6.0)
     model = (it.Spring(1e6) | it.Damper(3200)) - (

@@ -19,13 +19,14 @@ from inerter.errors import InerterError, RecordError, Status, StatusKind
 from inerter.files.study import running
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.loading import load_study
-from inerter.identification.friction_law import FrictionLaw
+from inerter.identification.friction_law import FrictionLaw, friction_law
 from inerter.identification.identifiability import Identifiability
 from inerter.identification.kinds import FitFinding
 from inerter.identification.suspects import Suspect
 from inerter.records.kinds import RecordFinding
 from inerter.records.remedy import Remedy
 from inerter.records.writers import write_record
+from inerter.report import identified_values
 
 TOKEN = "told."  # what was once looked for in sentences, and what begins a status, are the worst of tokens
 CONFIG = """
@@ -43,6 +44,7 @@ starts = 8
 """
 WORDS = {
     "sentence", "status", "message", "notes", "next_experiment", "remedy", "choice", "versions", "title", "model",
+    "elements",
 }  # fmt: skip
 
 
@@ -57,6 +59,7 @@ def opaque(patch: pytest.MonkeyPatch) -> None:
         patch.setattr(shown, "sentence", property(lambda found: TOKEN))
     for error in (InerterError, RecordError):
         patch.setattr(error, "__str__", lambda error: TOKEN)
+    patch.setattr(identified_values, "_WORDS", dict.fromkeys(identified_values.Known, TOKEN))
     made = Status.__init__
 
     def other(status: Status, kind: StatusKind = StatusKind.OK, message: str = "") -> None:
@@ -100,6 +103,19 @@ def test_an_identification_is_the_same_with_tokens_for_words(bench: Path, capsys
             ran.append((code, data["status"].partition(":")[0], without_words(data)))
     assert ran[0] == ran[1]
     assert ran[0][0] == (bench.name.startswith("late") or bench.name.startswith("saturated"))
+
+
+def test_a_choice_and_a_law_are_the_same_with_tokens_for_words() -> None:
+    record = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=1, sampling=400.0).run(it.cosine(1e-3, 4.0), 1.5)
+    ran = []
+    for tokens in (False, True):
+        with pytest.MonkeyPatch.context() as patch:
+            if tokens:
+                opaque(patch)
+            found, law = it.choose(record, ["ideal", "friction"], starts=8), friction_law(record, 113.0)
+            assert (found.notes[0] == TOKEN) == (law.sentence == TOKEN) == tokens
+            ran.append((found.name, [(c.name, c.loss, c.as_good, c.status.kind) for c in found.candidates], law.law))
+    assert ran[0] == ran[1]
 
 
 @pytest.mark.parametrize("force", [np.ones(400), np.full(400, np.nan), np.ones(3)], ids=["constant", "nan", "short"])

@@ -36,7 +36,7 @@ _WIDEST = 3.0  # spacings between two frequencies that a curve joins
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class MotionCurve:
     """What one curve shows: its name in the legend, and some channels in SI units."""
 
     label: str
@@ -125,7 +125,9 @@ def draw_coherence(ax: Axes, response: Response, style: dict[str, Any]) -> Axes:
     return ax
 
 
-def time_figure(measured: Motion, model: Motion | None = None, window: tuple[float, float] | None = None) -> Figure:
+def time_figure(
+    measured: MotionCurve, model: MotionCurve | None = None, window: tuple[float, float] | None = None
+) -> Figure:
     """Displacement and force over time: Figure 8 of the paper, and with a model Figure 9."""
     with styled():
         figure, axes = new_figure(2, height=_HEIGHT)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, Status, StatusKind
 from inerter.identification.experiment import saturated
 from inerter.identification.explaining import explanations
-from inerter.identification.fit import Comparison, Explanation, Fit, Parameter
+from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import BestFit, Profile
 from inerter.identification.kinds import FitFinding
@@ -62,6 +62,7 @@ def fit_of(solution: Solution, explain: bool = True) -> Fit:
         draft,
         parameters=parameters,
         identifiable=identifiable,
+        doubt=doubt,
         status=OK if doubt is None else Status(StatusKind.INACCURATE, doubt.sentence),
         suggestions=tuple(suggestions(space, parameters, identifiable, comparisons)),
     )
@@ -97,7 +98,7 @@ def _misfit(fit: Fit, best: Explanation | None) -> Finding:
     return Finding(FitFinding.MISFIT, "warning", numbers=numbers)
 
 
-def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[Comparison]) -> Iterator[Finding]:
+def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[RecordFit]) -> Iterator[Finding]:
     """What an offset of the load cell may be instead."""
     kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
     friction = sum(v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is Linear.OPEN)
@@ -153,7 +154,7 @@ def _parameter(space: Space, i: int, optimum: BestFit, profile: Profile, best: f
     )
 
 
-def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
+def _comparisons(solution: Solution) -> tuple[RecordFit, ...]:
     problem, optimum = solution.problem, solution.optimum
     result, first = [], 0
     residuals, offsets = problem.residual(optimum.point), problem.offsets(optimum.point)
@@ -166,7 +167,7 @@ def _comparisons(solution: Solution) -> tuple[Comparison, ...]:
         gaps = {_name_of(b) for b in problem.rig.device.elements() if b.switches_by(Guard.ELONGATION)}
         openings = {g: sum(event.element == g and event.after == "open" for event in run.events) for g in gaps}
         result.append(
-            Comparison(
+            RecordFit(
                 experiment=e,
                 model=force + offsets[n],
                 offset=offsets[n],

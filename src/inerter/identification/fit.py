@@ -84,7 +84,7 @@ class Explanation:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class RecordFit:
     """One record as used, what the model answers to it, and the tests of what is left."""
 
     experiment: Experiment
@@ -135,7 +135,7 @@ class Fit:
     correlation: Matrix  # (parameters, parameters)
     covariance: Matrix  # the same shape, in units of the values
     device: Network  # the model with the best values
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[RecordFit, ...]
     criterion: float  # Bayesian information criterion, lower is better
     costs: tuple[float, ...]  # of the different fits to half of the records that the best starts came to, sorted
     simulations: int
@@ -143,6 +143,7 @@ class Fit:
     misfit: Misfit
     explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the likeliest first
     status: Status = OK
+    doubt: Finding | None = None  # why it is not to be relied on
     findings: tuple[Finding, ...] = ()  # what has to be known about the estimates
     suggestions: tuple[Finding, ...] = ()  # what the next experiment may be
     settings: dict[str, object] = field(default_factory=dict)

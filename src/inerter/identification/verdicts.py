@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from inerter.identification.fit import Comparison, Parameter
+from inerter.identification.fit import Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import Profile
 from inerter.identification.kinds import FitFinding
@@ -19,7 +19,7 @@ _ROOM = 1.5  # times the largest force: a load cell that bears more has room
 
 
 def identifiability(
-    parameter: Parameter, profile: Profile, space: Space, index: int, comparisons: Sequence[Comparison]
+    parameter: Parameter, profile: Profile, space: Space, index: int, comparisons: Sequence[RecordFit]
 ) -> Identifiability:
     """Whether the records identify a parameter, and why not."""
     low, high = parameter.interval
@@ -46,7 +46,7 @@ def suggestions(
     space: Space,
     parameters: Mapping[str, Parameter],
     identifiable: Mapping[str, Identifiability],
-    comparisons: Sequence[Comparison],
+    comparisons: Sequence[RecordFit],
 ) -> Iterator[Finding]:
     """The next experiment, for each parameter that the records do not identify."""
     peak = max(float(np.abs(c.record.force).max()) for c in comparisons)

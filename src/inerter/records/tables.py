@@ -29,7 +29,7 @@ _DELIMITERS = ("\t", ";", ",", None)  # None: any white space
 
 
 @dataclass(frozen=True)
-class Layout:
+class TableLayout:
     """How a table is written, and where its numbers begin."""
 
     delimiter: str | None
@@ -60,7 +60,7 @@ def opened(path: str, source: str) -> Iterator[Contents]:
         yield Contents(channels, read, meta={"preamble": layout.preamble} if layout.preamble else {})
 
 
-def _layout(source: str, head: bytes) -> Layout:
+def _layout(source: str, head: bytes) -> TableLayout:
     start = 3 if head.startswith(b"\xef\xbb\xbf") else 0
     raw = head[start:].splitlines(keepends=True)
     if len(head) == HEAD:
@@ -122,14 +122,16 @@ def _is_row(cells: list[str]) -> bool:
     return numbers >= 2 or (numbers == 1 and all(_is_number(cell) or cell.casefold() in MISSING for cell in cells))
 
 
-def _described(source: str, lines: list[str], at: int, delimiter: str | None, offset: int, encoding: str) -> Layout:
+def _described(
+    source: str, lines: list[str], at: int, delimiter: str | None, offset: int, encoding: str
+) -> TableLayout:
     columns = len(_cells(lines[at], delimiter))
     header, above = _header(source, lines[:at], delimiter, columns)
     names, units = _names(header, columns)
     numbers = [cell for line in lines[at:] for cell in _cells(line, delimiter) if _is_number(cell)]
     decimal = "," if delimiter != "," and any("," in cell for cell in numbers) else "."
     preamble = tuple(line.strip() for line in lines[: at - above][:50] if line.strip())
-    return Layout(delimiter, decimal, columns, offset, at + 1, encoding, names, units, preamble)
+    return TableLayout(delimiter, decimal, columns, offset, at + 1, encoding, names, units, preamble)
 
 
 def _header(source: str, above: list[str], delimiter: str | None, columns: int) -> tuple[list[list[str]], int]:
@@ -178,7 +180,7 @@ def _names(header: list[list[str]], columns: int) -> tuple[tuple[str, ...], tupl
 
 
 def _columns(
-    source: str, file: BinaryIO, layout: Layout, wanted: list[int], progress: Progress
+    source: str, file: BinaryIO, layout: TableLayout, wanted: list[int], progress: Progress
 ) -> list[NDArray[np.float64]]:
     """The wanted columns, read block by block so that the text is never held as a whole."""
     size = max(os.fstat(file.fileno()).st_size, 1)
@@ -199,7 +201,7 @@ def _columns(
     return [np.concatenate(parts.pop(0)) for _ in wanted]
 
 
-def _parsed(source: str, block: bytes, line: int, layout: Layout, wanted: list[int]) -> list[NDArray[np.float64]]:
+def _parsed(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> list[NDArray[np.float64]]:
     """The wanted columns of a block of lines; what is odd about it is looked for by a second, slower reading."""
     import pandas as pd
 
@@ -220,12 +222,12 @@ def _parsed(source: str, block: bytes, line: int, layout: Layout, wanted: list[i
     return columns
 
 
-def _even(block: bytes, rows: int, layout: Layout) -> bool:
+def _even(block: bytes, rows: int, layout: TableLayout) -> bool:
     """Whether there are as many delimiters as rows of equal length have."""
     return layout.delimiter is not None and block.count(layout.delimiter.encode()) == rows * (layout.columns - 1)
 
 
-def _inspect(source: str, block: bytes, line: int, layout: Layout, wanted: list[int]) -> None:
+def _inspect(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> None:
     """Raises `RecordError` for the first row of another length, or cell that is neither a number nor missing."""
     for at, text in enumerate(block.decode(layout.encoding, errors="replace").split("\n"), line):
         cells = _cells(text.split("#")[0], layout.delimiter)

@@ -24,9 +24,9 @@ from inerter.report.identification_text import (
     whiteness,
 )
 from inerter.report.identified_values import (
-    NOT_IDENTIFIABLE,
-    WITHHELD,
+    Known,
     elements_block,
+    known,
     plain,
     scale_of,
     single,
@@ -126,8 +126,8 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
 def _answers(found: Identified) -> Iterator[str]:
     for name in found.fit.parameters if found.explains else ():
         value, interval = value_and_interval(found, name)
-        if value in (NOT_IDENTIFIABLE, WITHHELD):
-            yield f"{name} {value}: {interval}".rstrip(": ") + "."
+        if known(found, name) is not Known.VALUE:
+            yield f"{name} {value}: {interval}." if interval else f"{name} {value}."
         else:
             yield f"{name} = {value}, with 95 % confidence {interval}."
     parts = [c.explained(bool(c.checked.any())) for c in found.fit.comparisons]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from inerter.files.identification.running import Identified, Reading, Responses
-from inerter.identification.fit import Comparison
+from inerter.identification.fit import RecordFit
 from inerter.networks.parser import written
 from inerter.records.result import Response
 from inerter.report.identified_values import elements_block
@@ -26,6 +26,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "model": found.name,
         "layout": written(found.model, [e.label for e in found.model.elements()]),
         "status": str(fit.status),
+        "doubt": None if fit.doubt is None else str(fit.doubt.kind),
         "explained": fit.explained,
         "parameters": {
             name: {
@@ -85,7 +86,7 @@ def write_residuals(found: Identified, path: Path) -> None:
                 file.write(f"{number},{','.join(map(repr, row))},{part}\n")
 
 
-def _record(reading: Reading, comparison: Comparison) -> dict[str, Any]:
+def _record(reading: Reading, comparison: RecordFit) -> dict[str, Any]:
     record, motion = comparison.record, comparison.experiment.motion
     return {
         "source": record.source,

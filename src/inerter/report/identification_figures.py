@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from inerter.figures.identification import (
-    Motion,
+    MotionCurve,
     ProfileCurve,
     loops_figure,
     profile_figure,
@@ -20,8 +20,8 @@ from inerter.figures.identification import (
     time_figure,
 )
 from inerter.files.identification.running import Identified, Responses
-from inerter.identification.fit import Comparison
-from inerter.report.identified_values import NOT_IDENTIFIABLE, WITHHELD, scale_of, value_and_interval
+from inerter.identification.fit import RecordFit
+from inerter.report.identified_values import Known, known, scale_of, value_and_interval
 
 Matrix = NDArray[np.float64]
 _PERIODS = 4.0  # of the motion in a window that can be read
@@ -58,7 +58,7 @@ def figures(found: Identified, answered: Responses) -> Iterator[Drawn]:
         yield Drawn("response", "response", figure, _response_caption(answered))
 
 
-def window(comparison: Comparison) -> tuple[int, int]:
+def window(comparison: RecordFit) -> tuple[int, int]:
     """The samples of a few periods of the motion at the end of what was fitted."""
     used = np.flatnonzero(comparison.fitted)
     first, last = int(used[0]), int(used[-1])
@@ -69,14 +69,14 @@ def window(comparison: Comparison) -> tuple[int, int]:
     return max(first, last - length), last
 
 
-def _of_fit(c: Comparison) -> Iterator[tuple[str, Figure, str]]:
+def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
     record, (first, last) = c.record, window(c)
-    measured = Motion("measured", record.time, record.displacement, record.force)
-    model = Motion("model", record.time, record.displacement, c.model)
+    measured = MotionCurve("measured", record.time, record.displacement, record.force)
+    model = MotionCurve("model", record.time, record.displacement, c.model)
     part = (float(record.time[first]), float(record.time[last]))
     yield "fit", time_figure(measured, model), f"the model over the measurement, {_checked(c)}."
     inside = slice(max(first - 1, 0), last + 2)
-    near = [Motion(m.label, m.time[inside], m.displacement[inside], m.force[inside]) for m in (measured, model)]
+    near = [MotionCurve(m.label, m.time[inside], m.displacement[inside], m.force[inside]) for m in (measured, model)]
     yield "window", time_figure(near[0], near[1], part), f"{part[0]:.4g} to {part[1]:.4g} s of it."
     used = np.flatnonzero(c.fitted | c.checked)
     whole = slice(int(used[0]), int(used[-1]) + 1)
@@ -102,7 +102,7 @@ def _of_fit(c: Comparison) -> Iterator[tuple[str, Figure, str]]:
     )
 
 
-def _checked(c: Comparison) -> str:
+def _checked(c: RecordFit) -> str:
     if not c.checked.any():
         return "all of it fitted"
     start = float(c.record.time[int(np.flatnonzero(c.checked)[0])])
@@ -126,14 +126,15 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
     ends = (points[0, 0], points[-1, 0])
     own = scale_of(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
     value, _ = value_and_interval(found, name)
-    low, high = (parameter.best,) * 2 if value == WITHHELD else parameter.interval
+    what = known(found, name)
+    low, high = (parameter.best,) * 2 if what is Known.NOTHING else parameter.interval
     return ProfileCurve(
         label=name,
         values=points[:, 0] * own.factor,
         rises=points[:, 1],
         interval=(low * own.factor, high * own.factor),
         unit=own.unit,
-        remark=value if value in (NOT_IDENTIFIABLE, WITHHELD) else "",
+        remark="" if what is Known.VALUE else value,
     )
 
 

@@ -9,7 +9,7 @@ from textwrap import wrap
 from inerter.figures.labels import measured
 from inerter.files.identification.running import Identified, Reading, model_title
 from inerter.identification.choice import Candidate
-from inerter.identification.fit import Comparison
+from inerter.identification.fit import RecordFit
 from inerter.report.identified_values import elements_block, single, value_and_interval
 from inerter.report.options import as_options
 from inerter.report.text import WIDTH
@@ -81,7 +81,7 @@ def about(reading: Reading) -> str:
     return f"{record.time.size} samples over {record.duration:.6g} s at {1.0 / record.interval:.6g} Hz"
 
 
-def done(found: Identified, reading: Reading, comparison: Comparison) -> Iterator[str]:
+def done(found: Identified, reading: Reading, comparison: RecordFit) -> Iterator[str]:
     """What was done to a record, in sentences."""
     yield from reading.used.notes
     yield from comparison.record.notes[len(reading.used.notes) :]
@@ -179,7 +179,7 @@ def share(explained: float) -> str:
     return f"{100.0 * explained:.{decimals}f} %"
 
 
-def whiteness(comparison: Comparison) -> str:
+def whiteness(comparison: RecordFit) -> str:
     """What the test of the residuals says."""
     p = comparison.whiteness
     size = f"p = {p:.1g}" if p > 1e-16 else "p < 1e-16"

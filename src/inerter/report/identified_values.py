@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from enum import Enum, auto
 from math import floor, isnan, log10
 
 from inerter.figures.labels import Scale, scale
@@ -11,10 +12,28 @@ from inerter.networks.elements import Element, Free
 from inerter.networks.parser import written
 from inerter.units import format_quantity
 
-NOT_IDENTIFIABLE, WITHHELD = "not identifiable", "withheld"
 _FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
 _MOST_DIGITS = 6
 _SMALL: dict[str, Scale] = {"m": Scale(1e6, "um"), "s": Scale(1e3, "ms")}
+
+
+class Known(Enum):
+    """What is known of a parameter."""
+
+    VALUE = auto()
+    BOUNDS = auto()  # at most: it is not identifiable
+    NOTHING = auto()  # its interval is withheld
+
+
+_WORDS = {Known.BOUNDS: "not identifiable", Known.NOTHING: "withheld"}
+
+
+def known(found: Identified, name: str) -> Known:
+    """Whether there is a value to show."""
+    parameter = found.fit.parameters[name]
+    if isnan(parameter.interval[0]):
+        return Known.NOTHING
+    return Known.VALUE if found.explains and not isnan(parameter.value) else Known.BOUNDS
 
 
 def scale_of(value: float, unit: str) -> Scale:
@@ -30,11 +49,12 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     """The value of a parameter, or that it is not identifiable, and its interval of 95 %, empty if there is none."""
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
     low, high = parameter.interval
-    if isnan(low) or not found.explains:
-        return WITHHELD if isnan(low) else NOT_IDENTIFIABLE, ""
+    what = known(found, name)
+    if what is Known.NOTHING or not found.explains:
+        return _WORDS[what], ""
     own = scale_of(parameter.best or high, parameter.unit)
     decimals = _decimals(low * own.factor, high * own.factor)
-    if parameter.value == parameter.value:
+    if what is Known.VALUE:
         far = low <= 0.0 or high > _FAR * low
         interval = (
             f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
@@ -46,10 +66,10 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
     above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
     if above and not below:
-        return NOT_IDENTIFIABLE, f"below {single(high, parameter.unit)}"
+        return _WORDS[what], f"below {single(high, parameter.unit)}"
     if below and not above:
-        return NOT_IDENTIFIABLE, f"above {single(low, parameter.unit)}"
-    return NOT_IDENTIFIABLE, f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
+        return _WORDS[what], f"above {single(low, parameter.unit)}"
+    return _WORDS[what], f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
 
 
 def single(value: float, unit: str, digits: int = 3) -> str:
@@ -125,5 +145,7 @@ def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
     if not isinstance(free.value, Free):
         return value, "as given"
     name = str(free.value.name)
-    known, interval = value_and_interval(found, name)
-    return value, f"{known}: {interval}".rstrip(": ") if known in (NOT_IDENTIFIABLE, WITHHELD) else f"95 %: {interval}"
+    shown, interval = value_and_interval(found, name)
+    if known(found, name) is Known.VALUE:
+        return value, f"95 %: {interval}"
+    return value, f"{shown}: {interval}" if interval else shown

@@ -12,7 +12,7 @@ import numpy as np
 from inerter.errors import InerterError, RecordError
 from inerter.files.identification.loading import CUSTOM, IdentificationRequest, RecordRequest
 from inerter.identification.choice import Candidate, choose
-from inerter.identification.fit import Comparison, Fit
+from inerter.identification.fit import Fit, RecordFit
 from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
 from inerter.identification.models import VISCOUS, mounted
@@ -178,7 +178,7 @@ def model_title(found: Identified) -> str:
     return "the model of the configuration" if found.name == CUSTOM else f"the model {found.name}"
 
 
-def _corrected(comparison: Comparison, gain: float, delay: float) -> Record:
+def _corrected(comparison: RecordFit, gain: float, delay: float) -> Record:
     moved = (comparison.record.fixture_mass or 0.0) * comparison.experiment.motion.acceleration
     record = comparison.record.noted(force=(comparison.record.force - comparison.offset) / gain - moved)
     return shift_force(record, delay) if delay else record

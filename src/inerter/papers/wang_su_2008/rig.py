@@ -37,7 +37,7 @@ class Found:
     name: str
     unit: str
     printed: float
-    value: float  # nan where it cannot be told
+    value: float  # nan where it is not identifiable
     interval: tuple[float, float]
     sentence: str
 
@@ -49,7 +49,7 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class RigTest:
-    """The three tests and what they told."""
+    """The three tests and what they found."""
 
     parameters: tuple[Found, ...]
     friction: dict[str, Matrix]  # time [s], displacement [m], force [N], model [N]

@@ -48,7 +48,7 @@ def _rig_tables(found: Reproduction) -> dict[str, list[dict[str, Any]]]:
             "lower": p.interval[0],
             "upper": p.interval[1],
             "difference_percent": 100.0 * p.difference if p.difference == p.difference else None,
-            "told": p.sentence,
+            "identifiability": p.sentence,
         }
         for p in rig.parameters
     ]

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from inerter.figures.identification import Motion, response_figure, time_figure
+from inerter.figures.identification import MotionCurve, response_figure, time_figure
 from inerter.figures.labels import axis_label, capital, index_title, index_unit, indices, scale
 from inerter.figures.style import LayoutStyle, add_legend, colour, log_axis, new_figure, save, styled
 from inerter.papers.wang_su_2008.paper import (
@@ -39,7 +39,7 @@ _EFFECTS = {"": "ideal", "-soft": "elastic", "-10N": "friction", "-soft-10N": "b
 def draw_rig(found: RigTest, folder: Path) -> list[Path]:
     """Figures 8 to 10: the friction test, the test at 3 Hz with its fit, and the frequency responses."""
     (slow, _), (fast, model) = (
-        [Motion(label, part["time"], part["displacement"], part[name]) for label, name in _CURVES]
+        [MotionCurve(label, part["time"], part["displacement"], part[name]) for label, name in _CURVES]
         for part in (found.friction, found.fit)
     )
     figures = {

@@ -114,13 +114,13 @@ def rig_table(found: Reproduction) -> Table | None:
             p.name,
             [
                 Cell(printed(p.printed, p.unit)),
-                Cell(printed(p.value, p.unit) if told else f"below {printed(p.interval[1], p.unit)}"),
+                Cell(printed(p.value, p.unit) if known else f"below {printed(p.interval[1], p.unit)}"),
                 Cell(f"{printed(p.interval[0], p.unit)} to {printed(p.interval[1], p.unit)}"),
-                Cell(typeset(f"{signed(100.0 * p.difference)} %") if told else ""),
+                Cell(typeset(f"{signed(100.0 * p.difference)} %") if known else ""),
             ],
         )
         for p in found.rig.parameters
-        for told in (p.value == p.value,)
+        for known in (p.value == p.value,)
     ]
     header = ["Parameter", "Printed", "Identified", "95 % interval", "Difference"]
     return Table("Identified by the staged protocol from simulated records, beside the printed values", header, rows)

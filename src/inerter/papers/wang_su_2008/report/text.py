@@ -47,8 +47,9 @@ def reproduction_text(found: Reproduction) -> str:
 
 def _rig_line(p: Found) -> str:
     low, high = (format_quantity(value, p.unit, digits=5) for value in p.interval)
-    value = format_quantity(p.value, p.unit, digits=5) if p.value == p.value else "not told"
-    return f"{p.name:5}printed {format_quantity(p.printed, p.unit):11}identified {value:14}{low} to {high}"
+    known = p.value == p.value
+    value = f"identified {format_quantity(p.value, p.unit, digits=5)}" if known else "not identifiable"
+    return f"{p.name:5}printed {format_quantity(p.printed, p.unit):11}{value:25}{low} to {high}"
 
 
 def agreement_of(compared: list[ComparedRow]) -> str:

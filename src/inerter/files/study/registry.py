@@ -20,13 +20,13 @@ INDEX: dict[str, Callable[[Study], Index]] = {
 
 
 def _expected_value(study: Study) -> Method:
-    from inerter.methods.expected_value import ExpectedValue  # the simulation loads its compiler
+    from inerter.methods.expected_value import ExpectedValue  # noqa: PLC0415 - heavy
 
     return ExpectedValue(**_roads(study), jobs=1)
 
 
 def _approximate_linear(study: Study) -> Method:
-    from inerter.methods.approximate_linear import ApproximateLinear
+    from inerter.methods.approximate_linear import ApproximateLinear  # noqa: PLC0415 - heavy
 
     return ApproximateLinear(**_roads(study))
 

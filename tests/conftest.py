@@ -33,5 +33,10 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         prepare(kernel for kernel in found if isinstance(kernel, Kernel) and kernel.signature is not None)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Those that are allowed more time than others come first, so that none is left to run alone at the end."""
+    items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
+
+
 def _imported(name: str) -> ModuleType:
     return import_module(f"{kernels.__name__}.{name}")

@@ -139,7 +139,7 @@ def _places(name: str) -> list[str]:
 
 
 def _entries() -> tuple[EntryPoint, ...]:
-    from importlib.metadata import entry_points  # takes as long as all else that --help loads
+    from importlib.metadata import entry_points  # noqa: PLC0415 - heavy
 
     return tuple(entry_points(group=GROUP))
 

@@ -175,7 +175,7 @@ def _fail(text: object, problem: str, expected: str, example: str) -> NoReturn:
 
 @cache
 def _registry() -> UnitRegistry[Any]:
-    import pint
+    import pint  # noqa: PLC0415 - heavy
 
     registry: UnitRegistry[Any] = pint.UnitRegistry(on_redefinition="ignore")
     # Pint has cycle = 2 pi rad and Hz = 1/s, each of which would silently put 2 pi into a road or a frequency.

@@ -105,8 +105,8 @@ def write_text(path: Path, text: str) -> None:
 
 def write_netcdf(path: Path, data: xarray.Dataset) -> None:
     """Write a dataset as a whole. It is made in memory: the library that writes such files dies of a full disk."""
-    import h5netcdf
-    from xarray.backends import H5NetCDFStore
+    import h5netcdf  # noqa: PLC0415 - heavy
+    from xarray.backends import H5NetCDFStore  # noqa: PLC0415 - heavy
 
     content = io.BytesIO()
     with h5netcdf.File(content, "w") as file:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import doctest
+import json
+import math
 import re
 import shlex
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from campaigns import sampled
 from pages import NUMBER, PAGES, ROOT, assert_figures, blocks, commands, printed, rounds_to, run, table, text_of
@@ -83,6 +86,7 @@ def nothing(folder: Path) -> None:
 
 IDENTIFY = "inerter identify fit.csv --model ball-screw --force-bandwidth"
 SHOWN = f'{IDENTIFY} "300 Hz" --force-range "100 kgf"'
+WHOLE = "inerter reproduce wang-su-2008 -o paper"
 COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter run examples/quarter-car.toml": nothing,
     "inerter simulate examples/backlash_rattle.toml": nothing,
@@ -101,7 +105,7 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter reproduce wang-su-2008 --only linear": nothing,
     "inerter reproduce wang-su-2008 --only rig": nothing,
     "inerter reproduce wang-su-2008 --only methods": nothing,
-    "inerter reproduce wang-su-2008 -o paper": nothing,
+    WHOLE: nothing,
 }
 BRIEF = [
     "inerter simulate examples/backlash_rattle.toml",
@@ -119,7 +123,13 @@ def test_every_command_of_the_pages_is_run() -> None:
 
 
 @pytest.mark.timeout(1200)
-@pytest.mark.parametrize("command", sampled(COMMANDS, BRIEF))
+@pytest.mark.parametrize(
+    "command",
+    [
+        *sampled([command for command in COMMANDS if command != WHOLE], BRIEF),
+        pytest.param(WHOLE, marks=pytest.mark.marathon),  # whose parts are a campaign
+    ],
+)
 def test_a_command_does_what_the_page_shows(command: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     COMMANDS[command](folder)
     capsys.readouterr()
@@ -131,6 +141,20 @@ def test_a_command_does_what_the_page_shows(command: str, folder: Path, capsys: 
             assert NUMBER.sub("#", out.strip("\n")) == NUMBER.sub("#", shown)
             for found, expected in zip(NUMBER.findall(out), NUMBER.findall(shown), strict=True):
                 assert rounds_to(float(found), expected, 2.0), f"{page}: {expected}, now {found}"
+
+
+@pytest.mark.campaign
+def test_what_a_slow_record_tells(folder: Path) -> None:
+    """The friction to so many per cent, of the inertance its order of magnitude only."""
+    said = re.search(r"tells f to ([\d.]+) %, but of b only the order of magnitude", text_of("identification.md"))
+    assert said is not None
+    a_friction_test(folder)
+    assert call(shlex.split('identify friction.csv --model ball-screw --force-bandwidth "80 Hz"')) == 0
+    found = json.loads((folder / "friction-results" / "fit.json").read_text())["parameters"]
+    low, high = found["f"]["interval"]
+    assert_figures(said[1], [50.0 * (high - low) / found["f"]["value"]], "f")
+    low, high = found["b"]["interval"]
+    assert high > 3.0 * low
 
 
 def test_output_is_shown_where_there_is_some() -> None:
@@ -206,3 +230,28 @@ def test_how_far_harmonic_balance_is_off() -> None:
         )
         assert_figures(error, [100.0 * abs(balanced.value / simulated.value - 1.0)], friction)
         assert balanced.status.ok == (float(friction) <= 400.0)
+
+
+def test_statistical_linearisation_finds_as_good_a_design_as_simulation() -> None:
+    """Nearly, on the same roads."""
+    assert "is as good on these roads, within 0.03 %" in text_of("methods.md")
+    c, b = it.Damper(it.free(100, 100e3, name="c")), it.Inerter(it.free(1, 2000, name="b"))
+    inner = c - (it.Spring(1e6) | it.Damper(3200)) - (b | it.Friction(100))
+    rough = it.QuarterCar(181.75, 25, 120e3, strut=it.Spring(120e3) | inner)
+    roads = it.ExpectedValue(realisations=4)
+    simulated = it.optimise(rough, COMFORT, roads, seed=0)
+    linearised = it.optimise(rough, COMFORT, LINEARISED, seed=0)
+    assert it.evaluate(linearised.design, COMFORT, roads).value == pytest.approx(simulated.value, rel=3e-4)
+
+
+def test_how_fast_the_inerter_moves_on_the_road_and_on_the_excitation() -> None:
+    """Sums over lines: a road of kappa V / f^2, and 3.162 mm of white noise up to 500 Hz."""
+    said = re.search(r"r\.m\.s\. value of ([\d.]+) m/s on the paper's road and of ([\d.]+) m/s", text_of("methods.md"))
+    assert said is not None
+    system = it.assemble(best_of_table_1(0.0), "road", "b_velocity")
+    frequency = np.arange(0.01, 500.0, 0.01)
+    gains = np.abs(it.frequency_response(system, 2.0 * np.pi * frequency)[:, 0, 0])
+    on_road = 2.0 * np.pi * math.sqrt(2.0 * ROAD.roughness * ROAD.speed * float(np.sum(gains**2)) * 0.01)
+    heights = 3.162e-3 * gains * 2.0 * np.pi * frequency
+    assert_figures(said[1], [on_road], "the road")
+    assert_figures(said[2], [math.sqrt(float(np.mean(heights**2)))], "the excitation")

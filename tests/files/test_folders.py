@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import hashlib
 import json
 import os
 import random
@@ -16,6 +17,7 @@ from unittest.mock import patch
 
 import pytest
 from campaigns import sampled
+from filelock import FileLock
 from limits import file_size
 from world import PARTS, RIG_FILE, SIMULATION_FILE, STUDY, cheap, files_of, inputs, is_whole, results_of
 
@@ -209,8 +211,6 @@ def test_an_input_is_never_replaced_by_whatever_path_it_is_given(
     known = listing(home / "out")
     path.write_text(table)  # as if a table had been written there
     entry = json.loads((home / "out" / ".inerter" / "files.json").read_text())
-    import hashlib
-
     entry["files"]["events.csv"]["sha256"] = [hashlib.sha256(table.encode()).hexdigest()]
     (home / "out" / ".inerter" / "files.json").write_text(json.dumps(entry))
     assert known is not None
@@ -237,8 +237,6 @@ def test_work_that_is_refused_late_leaves_no_folder(where: str, home: Path, caps
 
 
 def test_a_folder_in_use_is_refused(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from filelock import FileLock
-
     assert call(RUN) == 0
     with FileLock(home / "out" / ".inerter" / "lock"):
         for option in ("--force", "--resume"):

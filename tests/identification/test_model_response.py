@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfiltfilt
 
 import inerter as it
 from inerter.errors import LinearSystemError
@@ -23,8 +24,6 @@ def measured(device, source, duration, seed=0, step=2e-4):
 
 
 def noise(seed, duration, rms, lowest=0.5, highest=15.0):
-    from scipy.signal import butter, sosfiltfilt
-
     count = round(duration * RATE) + 1
     pass_band = butter(4, [lowest, highest], "bandpass", fs=RATE, output="sos")
     x = sosfiltfilt(pass_band, np.random.default_rng(seed).normal(size=count))

@@ -72,6 +72,24 @@ def test_a_row_of_the_approximated_linear_model() -> None:
     assert abs(row.improvement - float(row.row.improvement)) < 1.5
 
 
+@pytest.mark.campaign
+@pytest.mark.timeout(1200)
+def test_how_far_method_1_is_from_the_printed_table() -> None:
+    """As docs/methods.md tells."""
+    page = (Path(__file__).parents[2] / "docs" / "methods.md").read_text(encoding="utf-8")
+    text = " ".join(page.partition("**Beside the printed table.**")[2].split())
+    comfort, load, both = re.findall(r"within ([\d.]+) %", text)[:3]
+    off: dict[tuple[str, bool], list[float]] = {}
+    for row in simulated_rows(2):
+        found = judged(2, f"{row.index} {row.case}")
+        alone = row.index == "J5" and "elastic" not in row.nonlinearity
+        off.setdefault((row.index, alone), []).append(100.0 * found.difference)
+    for said, index in ((comfort, "J1"), (load, "J3"), (both, "J5")):
+        assert f"{max(map(abs, off[index, False])):.1f}" == said
+    assert [f"{value:.0f}" for value in off["J5", True]] == ["5", "11", "-5", "-13"]
+    assert "5 and 11 % higher than printed for S2 (10 and 20 N), and 5 and 13 % lower for S3" in text
+
+
 def test_every_simulated_row_is_there() -> None:
     assert [len(simulated_rows(table)) for table in (1, 2, 3)] == [33, 18, 39]
     for table in (1, 2, 3):

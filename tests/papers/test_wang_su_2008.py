@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from importlib.resources import files
 from itertools import product
 
 import numpy as np
@@ -85,8 +86,6 @@ def test_last_digit_is_that_of_the_printed_text() -> None:
 
 
 def test_tables_hold_the_rows_with_friction_too() -> None:
-    from importlib.resources import files
-
     text = (files("inerter.papers.wang_su_2008") / "data" / "table2.csv").read_text(encoding="utf-8")
     rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
     assert len(rows) == 39

@@ -114,7 +114,7 @@ def test_tdms_with_instants_and_small_numbers(tmp_path):
 
 def test_tdms_of_several_groups(tmp_path):
     path = tmp_path / "a.tdms"
-    from nptdms import ChannelObject, TdmsWriter
+    from nptdms import ChannelObject, TdmsWriter  # noqa: PLC0415 - an extra
 
     def group(name, sign):
         wave = {"wf_increment": 2e-3}

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import LinearSystemError, RecordError, Status
@@ -117,14 +118,12 @@ def smoothed(record: Record, cutoff: float) -> Record:
 
     As it is where the cut-off is close to half the rate.
     """
-    from scipy.signal import butter, sosfiltfilt
-
     if cutoff >= _HIGHEST * 0.5 / record.interval:
         return record.noted("The displacement is as measured: it reaches up to nearly half the rate.")
-    filter_ = butter(_ORDER, cutoff, fs=1.0 / record.interval, output="sos")
+    filter_ = scipy.signal.butter(_ORDER, cutoff, fs=1.0 / record.interval, output="sos")
     return record.noted(
         f"The displacement smoothed up to {cutoff:.4g} Hz (Butterworth, forward and backward).",
-        displacement=sosfiltfilt(filter_, record.displacement),
+        displacement=scipy.signal.sosfiltfilt(filter_, record.displacement),
     )
 
 

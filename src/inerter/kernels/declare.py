@@ -45,7 +45,7 @@ class Kernel:
     def ready(self) -> Any:
         """The compiled function: for a kernel with a signature, compiled or read from the cache by now."""
         if self._compiled is None:
-            from inerter.kernels.compiler import compiled  # Numba takes a third of a second
+            from inerter.kernels.compiler import compiled  # noqa: PLC0415 - heavy
 
             self._compiled = compiled(self.function, self.signature, fused=self.fused, borrowing=self.borrowing)
         return self._compiled
@@ -83,7 +83,7 @@ class Part:
 
     @cached_property
     def _dispatcher(self) -> Any:
-        from inerter.kernels.compiler import PartDispatcher  # compiled code asks for it, so that Numba is there
+        from inerter.kernels.compiler import PartDispatcher  # noqa: PLC0415 - heavy
 
         return PartDispatcher(self.function, self.signature, self.borrowing, self.place)
 
@@ -119,7 +119,7 @@ class Instruction:
 
     @cached_property
     def _numba_type_(self) -> Any:
-        from inerter.kernels.compiler import instruction_type  # compiled code asks for it, so that Numba is there
+        from inerter.kernels.compiler import instruction_type  # noqa: PLC0415 - heavy
 
         return instruction_type(self.definition)
 

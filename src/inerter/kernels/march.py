@@ -45,10 +45,10 @@ class March:
 @instruction
 def march_at(typing: Any, address: Any) -> Any:
     """The march at an address: to pass the function itself runs Python code within the call, which Ctrl-C can break."""
-    from numba import types  # the compiler asks, and so is there
-    from numba.core import cgutils
+    from numba import types  # noqa: PLC0415 - heavy
+    from numba.core import cgutils  # noqa: PLC0415 - heavy
 
-    from inerter.kernels.compiler import parsed
+    from inerter.kernels.compiler import parsed  # noqa: PLC0415 - heavy
 
     kind: Any = types.FunctionType(parsed(SIGNATURE))
 
@@ -183,7 +183,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
             h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
         )  # fmt: skip
 
-    from inerter.kernels.compiler import address_of  # Numba takes a third of a second
+    from inerter.kernels.compiler import address_of  # noqa: PLC0415 - heavy
 
     function = march.ready()  # type: ignore[attr-defined]
     return March(function, address_of(function, SIGNATURE))

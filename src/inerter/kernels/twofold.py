@@ -12,7 +12,7 @@ Array = Any
 @instruction
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
     """Compile a b + c with one rounding."""
-    from numba import types  # the compiler asks, and so is there
+    from numba import types  # noqa: PLC0415 - heavy
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.fma(*arguments)

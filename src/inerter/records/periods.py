@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
@@ -105,12 +106,10 @@ def common_periods(records: Sequence[Record]) -> list[float] | None:
 
 def _difference(displacement: Matrix) -> Matrix:
     """Mean square of x(t + lag) - x(t) over all t there are, relative to that of unrelated samples, for each lag."""
-    from scipy.signal import correlate
-
     x = displacement - displacement.mean()
     n = x.size
     lags = np.arange(n // 2 + 2)
-    products = correlate(x, x, method="fft")[n - 1 : n - 1 + lags.size]
+    products = scipy.signal.correlate(x, x, method="fft")[n - 1 : n - 1 + lags.size]
     energy = np.concatenate([[0.0], np.cumsum(x**2)])
     both = energy[n - lags] + energy[n] - energy[lags]
     return np.asarray((both - 2.0 * products) / (n - lags) / (2.0 * energy[n] / n))
@@ -142,8 +141,7 @@ def _in_phase(displacement: Matrix, period: float) -> float:
 def _folded(values: Matrix, samples: float, whole: int, count: int, between: bool) -> Matrix:
     if not between:
         return values[values.size - count * whole :].reshape(count, whole)
-    from scipy.interpolate import CubicSpline
-
     index = np.arange(count * whole) * (samples / whole)
     at = index + max(values.size - 1 - index[-1], 0.0)
-    return np.asarray(CubicSpline(np.arange(values.size), values)(np.minimum(at, values.size - 1))).reshape(count, -1)
+    spline = scipy.interpolate.CubicSpline(np.arange(values.size), values)
+    return np.asarray(spline(np.minimum(at, values.size - 1))).reshape(count, -1)

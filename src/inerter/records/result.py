@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, RecordError, Status
@@ -79,7 +80,7 @@ class Response:
 
     def to_xarray(self) -> xarray.Dataset:
         """A dataset over `omega`, with units and long names."""
-        import xarray
+        import xarray  # noqa: PLC0415 - heavy
 
         data = {
             name: ("omega", values, {"units": _COLUMNS[name][0], "long_name": _COLUMNS[name][1]})
@@ -178,6 +179,4 @@ def named(records: Sequence[Record]) -> str:
 
 def _student(averages: Matrix) -> Matrix:
     """Quantile of Student's t for two degrees of freedom an average, but for the first."""
-    from scipy.stats import t
-
-    return np.asarray(t.isf(0.5 * (1.0 - _CONFIDENCE), 2.0 * (averages - 1.0)))
+    return np.asarray(scipy.stats.t.isf(0.5 * (1.0 - _CONFIDENCE), 2.0 * (averages - 1.0)))

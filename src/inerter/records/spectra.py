@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
@@ -102,13 +103,9 @@ class Lines:
         Their power exceeds their own scatter (an F test), and that of their neighbours by so much that none of all
         harmonics would if it were nothing but noise.
         """
-        from scipy.ndimage import median_filter
-        from scipy.stats import chi2
-        from scipy.stats import f as fisher
-
         means = np.array([amplitudes.mean(axis=0) for amplitudes in self.displacement])
         power, squares = np.mean(np.abs(means) ** 2, axis=0), 2 * len(means)
-        many = float(fisher.isf(_LEVEL / power.size, squares, 1e6))
+        many = float(scipy.stats.f.isf(_LEVEL / power.size, squares, 1e6))
         least = np.full(power.size, max(many * self.least, np.finfo(float).tiny))
         freedom = 2 * sum(amplitudes.shape[0] - 1 for amplitudes in self.displacement)
         if freedom:
@@ -117,8 +114,11 @@ class Lines:
                 count = amplitudes.shape[0]
                 if count > 1:
                     noise += np.sum(np.abs(amplitudes - mean) ** 2, axis=0) / (count - 1) / count / len(means)
-            usual = median_filter(noise, _NEIGHBOURS, mode="nearest") * (freedom / chi2.median(freedom))
-            least = np.maximum(least, np.maximum(float(fisher.isf(_LEVEL, squares, freedom)) * noise, many * usual))
+            usual = scipy.ndimage.median_filter(noise, _NEIGHBOURS, mode="nearest")
+            usual = usual * (freedom / scipy.stats.chi2.median(freedom))
+            least = np.maximum(
+                least, np.maximum(float(scipy.stats.f.isf(_LEVEL, squares, freedom)) * noise, many * usual)
+            )
         return np.asarray(power > least)
 
 
@@ -146,8 +146,6 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
 
     Raises `RecordError` if the rates differ, or the records are too short for two segments.
     """
-    from scipy import signal
-
     interval = records[0].interval
     if any(abs(record.interval - interval) > 1e-6 * interval for record in records):
         rates = ", ".join(f"{1.0 / record.interval:g}" for record in records)
@@ -161,7 +159,7 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
             f"Too short: {' and '.join(f'{r.source!r} of {r.duration:g} s' for r in records)} cannot be cut into two "
             f"or more segments of {length * interval:g} s and at least {_LEAST_SAMPLES} samples."
         )
-    window = signal.windows.hann(length, sym=False)
+    window = scipy.signal.windows.hann(length, sym=False)
     sums = [np.zeros(length // 2 + 1, dtype=complex) for _ in range(3)]
     for record, count in zip(records, counts, strict=True):
         x, force = record.displacement, record.force
@@ -169,7 +167,7 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
             total += (
                 count
                 / counts.sum()
-                * signal.csd(
+                * scipy.signal.csd(
                     one, other, 1.0 / interval, "hann", nperseg=length, noverlap=length - step, detrend="constant"
                 )[1]
             )
@@ -203,22 +201,18 @@ def _related(coherence: Matrix, chosen: Chosen, count: float) -> Chosen:
 
     Nowhere, if there are no more such frequencies than noise would have, and none that sticks out of all of them.
     """
-    from scipy.stats import binom
-
     chance = np.power(np.maximum(1.0 - coherence, 0.0), max(count - 1.0, 1e-9))  # of so high a one by noise
     related = chosen & (chance < _CHANCE)
-    some = related.sum() > binom.isf(_LEVEL, chosen.sum(), _CHANCE)
+    some = related.sum() > scipy.stats.binom.isf(_LEVEL, chosen.sum(), _CHANCE)
     return np.asarray(related & (some or np.min(chance[related], initial=1.0) < _LEVEL / max(chosen.sum(), 1)))
 
 
 def _largest(power: Matrix) -> Matrix:
     """The largest of the values within a decade around each harmonic, from a tenth of its frequency to ten times."""
-    from scipy.ndimage import maximum_filter1d
-
     tenth = np.floor(10.0 * np.log10(np.arange(1, power.size + 1))).astype(int)
     peaks = np.zeros(tenth[-1] + 1)
     np.maximum.at(peaks, tenth, power)
-    return np.asarray(maximum_filter1d(peaks, 21, mode="nearest")[tenth])
+    return np.asarray(scipy.ndimage.maximum_filter1d(peaks, 21, mode="nearest")[tenth])
 
 
 def _unsettled(x: Complex, force: Complex) -> int:

@@ -203,7 +203,7 @@ def _columns(
 
 def _parsed(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> list[NDArray[np.float64]]:
     """The wanted columns of a block of lines; what is odd about it is looked for by a second, slower reading."""
-    import pandas as pd
+    import pandas as pd  # noqa: PLC0415 - heavy
 
     options: dict[str, Any] = {"sep": layout.delimiter or r"\s+", "decimal": layout.decimal, "comment": "#"}
     try:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import scipy
 
 from inerter.errors import RecordError
 from inerter.records.optional import library
@@ -46,7 +47,7 @@ def _tab(record: Record, name: str) -> None:
 
 
 def _table(record: Record, name: str, delimiter: str) -> None:
-    import pandas as pd
+    import pandas as pd  # noqa: PLC0415 - heavy
 
     headed = {f"{role} [{CHANNELS[role]}]": values for role, values in record.channels().items()}
     with open(name, "w", encoding="utf-8", newline="") as file:
@@ -78,12 +79,10 @@ def _mdf(record: Record, name: str) -> None:
 
 
 def _mat(record: Record, name: str) -> None:
-    from scipy.io import savemat
-
     channels = record.channels()
     units = {role: CHANNELS[role] for role in channels}
     text = {"source": record.source or _NOT_GIVEN, "notes": "\n".join(record.notes) or "none"}
-    savemat(name, {**channels, "units": units, **text}, do_compression=True, oned_as="column")
+    scipy.io.savemat(name, {**channels, "units": units, **text}, do_compression=True, oned_as="column")
 
 
 WRITERS: dict[str, Callable[[Record, str], None]] = {

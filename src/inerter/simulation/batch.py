@@ -49,7 +49,7 @@ class Batch:
 
     def to_xarray(self) -> xarray.Dataset:
         """R.m.s. values and numbers of events over `design` and `signal`."""
-        import xarray
+        import xarray  # noqa: PLC0415 - heavy
 
         dims = ("design", "signal")
         data = {

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError, Status
@@ -145,7 +146,7 @@ class Trajectory:
 
     def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
         """The named outputs, or all, as a dataset over `time` with units and long names."""
-        import xarray
+        import xarray  # noqa: PLC0415 - heavy
 
         chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
         data = {
@@ -188,8 +189,6 @@ class Trajectory:
 
         Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
         """
-        from scipy.io import savemat
-
         chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
         data: dict[str, Any] = {name[:31]: self[name] for name in chosen}
         data["time"] = self.time
@@ -201,4 +200,4 @@ class Trajectory:
             "after": np.array([e.after for e in self.events], dtype=object),
         }
         with export(path, SimulationError, overwrite=overwrite) as draft:
-            savemat(draft, data, oned_as="column", long_field_names=True)
+            scipy.io.savemat(draft, data, oned_as="column", long_field_names=True)

@@ -54,7 +54,7 @@ def same(one, other, outputs, close=1e-9):
         size = slow.rms(name)
         assert motion[name] == pytest.approx(slow[name], abs=1e3 * close * size)
         for integration, samples in (one, other):
-            assert integration.record.sums[0, i] == pytest.approx(np.sum(samples[name][1:] ** 2), rel=close)
+            assert integration.record.squares[i] == pytest.approx(np.sum(samples[name][1:] ** 2), rel=close)
     assert run.record.states == pytest.approx(check.record.states, abs=1e-9 * np.abs(check.record.states).max())
 
 

@@ -19,8 +19,7 @@ from scipy.io import loadmat
 import inerter as it
 from inerter.errors import SimulationError
 from inerter.kernels import compiler
-from inerter.kernels.events import over_columns
-from inerter.kernels.flow import first_root
+from inerter.kernels.flow import first_root, over_columns
 
 ROAD = it.Road(roughness=5e-7, speed=25)
 

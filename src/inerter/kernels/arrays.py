@@ -1,35 +1,225 @@
-"""The arrays that the modes of a piecewise-linear mechanism live in, and where what is in them."""
+"""The structures that compiled code works on: what is in them, by name, and of which type it is.
+
+Annotations are types to the compiler too: `Annotated` says them in its words, or by a data type of NumPy.
+"""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
-Array = Any
+import numpy as np
+
+Array = Any  # of any type: compiled for those that it is called with
+Ints = Annotated[Any, "int64[::1]"]
+Flags = Annotated[Any, "boolean[::1]"]
+IntTable = Annotated[Any, "int64[:,::1]"]
+Floats = Annotated[Any, "float64[::1]"]
+Matrix = Annotated[Any, "float64[:,::1]"]
+Matrices = Annotated[Any, "float64[:,:,::1]"]
+ConstantInts = Annotated[Any, "Array(int64, 1, 'C', readonly=True)"]
+
 FRICTION, GAP = 0, 1
-KIND, OWN_POSITION = 0, 1  # columns of `Mechanics.elements`
-NA, NW, NR, N, K, DAMPERS, OUTPUTS, GUARD, ETA, ENTRY, OUTPUT, SEEN = range(12)  # in `Mechanics.sizes`
+KIND, OWN_POSITION = 0, 1  # columns of the table of elements of a piecewise system
+NONE: Any = np.int64(-1)  # no mode, or nobody: a plain -1 is a type of its own to the compiler, and compiles twice
 SHARP = 4  # terms of a guard's sway over a step that are values, where that is worth it
+
+
+def record(fields: list[tuple[str, type]]) -> np.dtype[Any]:
+    """A type of records whose fields are attributes, in Python as in compiled code."""
+    return np.dtype((np.record, fields))
+
+
+PLACE = record(
+    [
+        ("segment", np.int64),  # between which knots
+        ("mode", np.int64),  # number of the mode, or -1 before the first one is known
+        ("events", np.int64),  # so many so far
+        ("special", np.int64),  # which segment of another length than the step comes next
+        ("jumped", np.int64),  # BEFORE, SMOOTH or BROKEN: what has been done about the inputs at this knot
+        ("switches", np.int64),  # within this segment
+        ("wanted", np.int64),  # the state that an element in question must have
+        ("settled", np.int64),  # the first knot whose squares count
+        ("known", np.int64),  # order of the last derivative that is known
+        ("left", np.int64),  # pieces before the next look at the keyboard
+        ("ended", np.int64),  # 1: a slip may have ended with the segment before
+        ("clock", np.float64),  # time within the segment [s]
+    ]
+)
+BEFORE, SMOOTH, BROKEN = 0, 1, 2  # nothing yet; inputs go on as they were; a value or a slope is another one
+WATCH = record(
+    [
+        ("trial", np.int64),  # the state on trial
+        ("touch", np.int64),  # so many leading coefficients of its guard are zero just now ...
+        ("side", np.int64),  # ... at this limit, -1 or 1
+        ("crossed", np.int64),  # the limit that has been crossed with a slope beyond all rounding, or 0
+    ]
+)
+EVENT = record([("time", np.float64), ("element", np.int64), ("before", np.int64), ("after", np.int64)])
+
+
+class Sizes(NamedTuple):
+    """How many there are of everything."""
+
+    inertial: int  # velocities that inertia carries
+    massless: int  # velocities of massless motions
+    roads: int
+    states: int
+    inputs: int  # roads' z, z', z'', and forces
+    elements: int  # frictions and gaps
+    dampers: int
+    squares: int  # outputs that are squared and added up
+
+
+class Rows(NamedTuple):
+    """First rows of the parts of `Modes.maps` that come after the rates of the state."""
+
+    guard: int  # of each element
+    eta: int  # a', w and the forces of the elements
+    entry: int  # conditions on entry
+    output: int  # squared outputs, then what the energy account needs
+    seen: int  # the state as the mode sees it
 
 
 class Mechanics(NamedTuple):
     """A mechanism's constants. Columns of maps are the state (a, g), roads' z, z', z'', forces, and 1 (`width`)."""
 
-    sizes: Array  # na, nw, nr, n, k, numbers of dampers and squared outputs, then first rows of parts of `Modes.maps`
-    balance: Array  # (na + nw, na + nw + width): M, C_aw; 0, C_ww; then right-hand sides without elements' forces
-    rates: Array  # (ng + k + dampers + springs, na + nw + nr): of positions and elongations, over a, w, z'
-    lengths: Array  # (k, ng + nr): elongation of the gaps from positions and roads
-    elements: Array  # (k, 2) FRICTION or GAP; number of the position that is the gap's own elongation, or -1
-    limit: Array  # (k,) force or half-width; an element whose limit is zero never changes its state
-    over: Array  # (outputs, n + nu + na + nw + k): outputs over the state, the inputs, and (a', w, F)
+    sizes: Sizes
+    rows: Rows
+    balance: Matrix  # (na + nw, na + nw + width): M, C_aw; 0, C_ww; then right-hand sides without elements' forces
+    rates: Matrix  # (ng + k + dampers + springs, na + nw + nr): of positions and elongations, over a, w, z'
+    lengths: Matrix  # (k, ng + nr): elongation of the gaps from positions and roads
+    kind: Ints  # (k,) FRICTION or GAP
+    own_position: Ints  # (k,) number of the position that is the gap's own elongation, or -1
+    limit: Floats  # (k,) force or half-width; an element whose limit is zero never changes its state
+    over: Matrix  # (outputs, n + nu + na + nw + k): outputs over the state, the inputs, and (a', w, F)
+
+
+class Mode(NamedTuple):
+    """One row of `Modes`, without what `discretise` makes of it."""
+
+    state: Ints
+    conditions: Ints
+    maps: Matrix
+    reaction: Matrix
+    limits: Matrix
+    entry_limits: Matrix
 
 
 class Modes(NamedTuple):
     """Modes met so far, one row each."""
 
-    number: Array  # (3^k,) index of the mode that a state of the elements has, or -1
-    state: Array  # (capacity, k + 3): -1, 0, 1 of each element; numbers of conditions on velocity, springs, the loose
-    maps: Array  # (capacity, rows, width): rates, guards, (a', w, F), entry conditions, outputs, the state as seen
-    reaction: Array  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
-    limits: Array  # (capacity, 2 k, 2): intervals of the guards while the mode lasts, and on entry
-    steps: Array  # (capacity, columns, rows): see `march.lines_of`, then jumps of the state with inputs
-    reach: Array  # (capacity,) how far a Taylor series of the flow serves [s]
+    number: Ints  # (3^k,) index of the mode that a state of the elements has, or -1
+    state: IntTable  # (capacity, k): -1, 0, 1 of each element
+    conditions: IntTable  # (capacity, 3): numbers of conditions on velocity, of springs, of the loose
+    maps: Matrices  # (capacity, rows, width): rates, guards, (a', w, F), entry conditions, outputs, the state as seen
+    reaction: Matrices  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
+    limits: Matrices  # (capacity, k, 2): intervals of the guards while the mode lasts
+    entry_limits: Matrices  # the same on entry
+    steps: Matrices  # (capacity, columns, rows): see `march.lines_of`, then jumps of the state with inputs
+    reach: Floats  # (capacity,) how far a Taylor series of the flow serves [s]
+
+
+class Motion(NamedTuple):
+    """Where an integration is; it can be taken up again at any point."""
+
+    place: Annotated[Any, (PLACE,)]  # one
+    state: Floats
+    scale: Floats  # largest size of each state so far
+    energy: Floats  # through roads and forces, then that which branches took
+    watch: Annotated[Any, (WATCH,)]  # (k,) what is known of each element
+
+
+class Room(NamedTuple):
+    """What an integration works with, and what it finds on the way: all is made anew at every use."""
+
+    numbers: Floats  # the cubics of the inputs over this segment, see `flow.knot_numbers`
+    line: Floats  # of the march
+    guess: Floats  # a state on trial
+    residual: Floats  # of conditions on entry
+    given: Floats  # inputs at one time
+    guard: Floats  # polynomial of a guard ...
+    distance: Floats  # ... and of its distance from a limit
+    ends: Floats  # of intervals in which a root is looked for
+    inputs: Matrix  # (orders, inputs): coefficients of the inputs in powers of t / d; those beyond a cubic stay zero
+    input_sizes: Matrix  # sums of the sizes of what these are added up from
+    series: Matrix  # (orders + 1, n): coefficients of the state in powers of t / d
+    sizes: Matrix  # as `input_sizes`
+
+
+class Run(NamedTuple):
+    """An integration under way."""
+
+    mechanics: Mechanics
+    modes: Modes
+    motion: Motion
+    room: Room
+
+
+class Knots(NamedTuple):
+    """The inputs, and which knots are samples."""
+
+    time: Floats  # (segments + 1,)
+    value: Matrix  # (segments + 1, channels) of roads, then of forces
+    slope: Matrix
+    value_before: Matrix  # the same from the left
+    slope_before: Matrix
+    special: Ints  # segments of another length than the step, then one past the end
+    slot: Ints  # (segments + 1,) number of the sample at each knot, or -1
+
+
+class Record(NamedTuple):
+    """What is kept of a motion."""
+
+    states: Matrix  # (samples or 0, n)
+    visited: Ints  # (samples or 0,) mode at each sample
+    squares: Floats  # (outputs,) sums of squares
+    last: Floats  # the last squares that were added
+    events: Annotated[Any, (EVENT,)]
+
+
+class Account(NamedTuple):
+    """What the energy account needs, if it is asked for."""
+
+    wanted: bool
+    branch_road: Matrix  # (branches or 0, roads)
+    nodes: Floats  # of Gauss's rule on [0, 1]
+    weights: Floats
+
+
+class Shape(NamedTuple):
+    """Sizes of a march, see `march.march_of`."""
+
+    states: int
+    inputs: int  # numbers of the inputs over a step that are used
+    elements: int
+    squares: int
+    jumps: int  # inputs that may jump at every knot
+    rows: int
+    sharp: bool
+
+
+class March(NamedTuple):
+    """Whole steps: compiled code for one shape at an address, or 0, and what it was compiled for."""
+
+    address: int
+    shape: Shape
+    numbers: Ints  # which of `flow.knot_numbers` are used
+
+
+class Lines(NamedTuple):
+    """What whole steps of one mode are made from."""
+
+    steps: Matrix  # a line each column, then the jump of the state with each input
+    limits: Matrix  # of the guards
+    state: Floats  # changed in place
+    work: Floats  # room for columns, rows, and the state before a jump
+
+
+class Span(NamedTuple):
+    """Which steps are to be made."""
+
+    step: float
+    mode: int
+    first: int  # segment
+    stop: int
+    settled: int  # the first segment whose squares count

@@ -18,7 +18,7 @@ from multiprocessing import parent_process
 from pathlib import Path
 from threading import Event
 
-from inerter.kernels.declare import Kernel
+from inerter.kernels.declare import Kernel, way
 
 _TOLD = Event()
 _SHOWN: list[bool] = []  # not empty if people know that the compiler is at work
@@ -26,15 +26,15 @@ _IMPORTED = re.compile(r"^from inerter\.kernels\.(\w+) import", re.MULTILINE)
 
 
 def source_hash(module: Path) -> str:
-    """A short hash of a kernel module, of every kernel module that it rests on, and of the compiler's version."""
+    """A short hash of a kernel module, of all that it rests on, of the compiler's version and of how it is used."""
     found: set[Path] = set()
-    waiting = [module, module.with_name("compiler.py")]
+    waiting = [module, module.with_name("compiler.py"), module.with_name("tuned.py")]
     while waiting:
         path = waiting.pop()
         if path not in found and path.exists():
             found.add(path)
             waiting += [path.with_name(f"{name}.py") for name in _IMPORTED.findall(path.read_text(encoding="utf-8"))]
-    digest = hashlib.sha256(version("numba").encode())
+    digest = hashlib.sha256(f"{version('numba')} {way()}".encode())
     for path in sorted(found):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]

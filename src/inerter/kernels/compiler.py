@@ -1,65 +1,26 @@
-"""All that touches the compiler: how declared functions become machine code, and where that is kept."""
+"""The compiler: how declared functions become machine code, and which parts of it are used.
+
+There are two ways. The plain one, here, is `numba.njit` with options that its documentation tells. The tuned one, in
+`inerter.kernels.tuned`, compiles the same functions in half the time: it rests on private parts of Numba, which may
+change with any release. `declare.way` is the switch between them, and nothing else touches Numba.
+"""
 
 from __future__ import annotations
 
-import errno
-import gc
-import os
 from collections.abc import Callable
-from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from threading import RLock
-from types import SimpleNamespace
+from types import FunctionType
 from typing import Any, cast
 
 import numba
-from numba.core import sigutils, typeinfer
-from numba.core.caching import FunctionCache
-from numba.core.codegen import JITCodeLibrary
-from numba.core.registry import CPUDispatcher, cpu_target
-from numba.experimental import function_type
 
-from inerter.kernels.cache import cache_folder, tell, tell_of_no_cache
-from inerter.kernels.declare import Signature
+from inerter.kernels.cache import cache_folder
+from inerter.kernels.declare import PLAIN, Instruction, Kernel, Part, Signature, way
 
+FUSED = {"contract"}
 _ALONE = RLock()
-_FUSED = {"contract"}
-
-
-class _Cache(FunctionCache):
-    """The compiler's cache, which may fail: what cannot be read is compiled, and what cannot be kept is not."""
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        try:
-            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
-        except Exception:  # a file cut short may raise anything
-            self._forget()
-            return None
-
-    def save_overload(self, sig: Any, data: Any) -> None:
-        try:
-            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
-        except OSError as error:
-            self._forget()
-            tell_of_no_cache(Path(self.cache_path).parents[1], error)
-
-    def _forget(self) -> None:
-        with suppress(OSError):
-            self.flush()  # type: ignore[no-untyped-call]
-
-
-def _cache_in(folder: Path | None, function: Callable[..., Any]) -> _Cache | None:
-    """The cache of a function in a folder; None if nothing can be written there."""
-    if folder is None:
-        return None
-    try:
-        found: Any = _Cache(function)  # type: ignore[no-untyped-call]
-    except RuntimeError:  # no place at all can be written
-        found = None
-    if found is not None and Path(found.cache_path).is_relative_to(folder):
-        return cast("_Cache", found)
-    tell_of_no_cache(folder.parent, OSError(errno.EACCES, os.strerror(errno.EACCES)))
-    return None
 
 
 def compiled(
@@ -70,129 +31,38 @@ def compiled(
     One thread at a time: the compiler's settings, such as where it keeps its files, belong to the whole process.
     """
     with _ALONE:
-        return _compiled(function, _types(signature), fused, borrowing)
-
-
-def _types(signature: Signature) -> Any:
-    """A signature as the compiler takes it."""
-    return signature(numba.types) if callable(signature) else signature
-
-
-def _compiled(function: Callable[..., Any], signature: Any, fused: bool, borrowing: bool) -> Callable[..., Any]:
-    folder = cache_folder(Path(function.__code__.co_filename))
-    settings: Any = numba.config
-    before = settings.CACHE_DIR, settings.SLP_VECTORIZE
-    settings.CACHE_DIR = str(folder)
-    try:
-        empty = folder is not None and not any(folder.iterdir())
-        kept = _cache_in(folder, function)
-        if empty and kept:
-            tell()
-        options: dict[str, Any] = {"error_model": "numpy", "nogil": True}
-        if fused:  # a product and a sum in one instruction, with one rounding, and four of them side by side
-            options["fastmath"] = _FUSED
-            settings.SLP_VECTORIZE = 1
-        if borrowing:  # no reference counts, which took half of the time
-            options["_nrt"] = False
-        result: Any = numba.njit(**options)(function)
-        if kept:
-            result._cache = kept
-        if signature is not None and not settings.DISABLE_JIT:
-            _compile(result, signature)
-    finally:
-        settings.CACHE_DIR, settings.SLP_VECTORIZE = before
-    return cast("Callable[..., Any]", result)
-
-
-def _compile(function: Any, signature: Any) -> None:
-    """Compile for one signature; it stays the only one if it has a type that is returned."""
-    collecting = gc.isenabled()
-    gc.disable()  # compiling makes millions of objects that stay: looking for garbage takes a sixth of the time
-    try:
-        with typeinfer.register_dispatcher(function):
-            function.compile(signature)
-    finally:
-        if collecting:
-            gc.enable()
-    if not isinstance(parsed(signature), tuple):
-        function.disable_compile()
-
-
-def parsed(signature: Any) -> Any:
-    """A signature as types; without one that is returned, only those of the arguments."""
-    arguments, returned = sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
-    return arguments if returned is None else returned(*arguments)
-
-
-def address_of(function: Any, signature: str) -> int:
-    """The address of a compiled function, for other compiled code that is handed it."""
-    wrapper_address: Any = function_type._get_wrapper_address
-    return int(wrapper_address(function, parsed(signature)))
-
-
-def instruction_type(definition: Callable[..., Any]) -> Any:
-    """The compiler's type of an instruction."""
-    made: Any = numba.extending.intrinsic(definition)
-    context = cpu_target.typing_context
-    context.refresh()
-    return context.resolve_value_type(made)
-
-
-class PartDispatcher(CPUDispatcher):
-    """What makes a part of compiled code: see `declare.part`."""
-
-    def __init__(self, function: Callable[..., Any], signature: Signature, borrowing: bool, place: str) -> None:
-        self.library: Any = {"apart": _Apart, "inside": _Inside, "within": _Within}[place]
-        options: dict[str, Any] = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
-        options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-        if place == "inside":
-            options["fastmath"] = _FUSED
-        super().__init__(function, targetoptions=options | ({"_nrt": False} if borrowing else {}))
-        self.wanted = _types(signature)
-
-    def get_call_template(self: Any, args: Any, kws: Any) -> Any:
-        codegen = cpu_target.target_context.codegen()  # the compiler's lock is held here
-        before, codegen._library_class = codegen._library_class, self.library
+        folder = cache_folder(Path(function.__code__.co_filename))
+        settings: Any = numba.config
+        before = settings.CACHE_DIR, settings.SLP_VECTORIZE
+        settings.CACHE_DIR = str(folder)
         try:
-            if self.wanted is not None and self._can_compile:
-                self.compile(self.wanted)
-                self.disable_compile()
-            return super().get_call_template(args, kws)
+            if way() == PLAIN:
+                return _plain(function, fused, folder)
+            from inerter.kernels.tuned import tuned  # noqa: PLC0415 - heavy
+
+            return tuned(function, signature, fused, borrowing, folder)
         finally:
-            codegen._library_class = before
+            settings.CACHE_DIR, settings.SLP_VECTORIZE = before
 
 
-class _Within(JITCodeLibrary):
-    """Code that others contain: they optimise it, and it never becomes machine code by itself."""
-
-    codegen = SimpleNamespace(set_env=lambda name, environment: None)
-
-    def get_pointer_to_function(self: Any, name: str) -> int:
-        self._ensure_finalized()
-        return 0
-
-    def _optimize_final_module(self) -> None:
-        pass
-
-    def _finalize_final_module(self) -> None:
-        self._finalized = True
+def _plain(function: Callable[..., Any], fused: bool, folder: Path | None) -> Callable[..., Any]:
+    """Compiled at each first call with other types, with all that it calls."""
+    options: dict[str, Any] = {"fastmath": FUSED} if fused else {}
+    decorate = numba.njit(error_model="numpy", nogil=True, cache=folder is not None, **options)
+    return cast("Callable[..., Any]", decorate(_copied(function)))
 
 
-class _Marked(_Within):
-    """Code whose functions carry an attribute that tells the optimiser what to do with calls of them."""
-
-    attribute: str
-
-    def add_llvm_module(self, module: Any) -> None:
-        for function in module.functions:
-            if not function.is_declaration:
-                function.add_function_attribute(self.attribute)
-        super().add_llvm_module(module)  # type: ignore[no-untyped-call]
+def _copied(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function that calls compiled code by the names by which it calls what is only declared."""
+    names: dict[str, Any] = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        if isinstance(names.get(name), (Kernel, Part, Instruction)):
+            names[name] = _plain_part(names[name])
+    code, closure = function.__code__, function.__closure__
+    return FunctionType(code, names, function.__name__, function.__defaults__, closure)
 
 
-class _Inside(_Marked):
-    attribute = "alwaysinline"
-
-
-class _Apart(_Marked):
-    attribute = "noinline"
+@cache
+def _plain_part(declared: Kernel | Part | Instruction) -> Any:
+    fused = isinstance(declared, Part) and declared.fused
+    return _plain(declared.function if isinstance(declared, Kernel) else declared.plain, fused, None)

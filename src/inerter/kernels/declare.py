@@ -5,12 +5,28 @@ The compiler itself is behind `inerter.kernels.compiler`, which is loaded by tha
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from functools import cached_property, update_wrapper
 from typing import Any, TypeVar, cast
 
+from inerter.errors import InerterError
+
 F = TypeVar("F", bound=Callable[..., Any])
 Signature = str | Callable[[Any], Any] | None  # in the compiler's words, or made from its module of types
+TUNED, PLAIN, NONE = "tuned", "plain", "none"
+SWITCH = "INERTER_COMPILER"
+
+
+def way() -> str:
+    """How kernels are compiled: TUNED, PLAIN, by what the compiler documents alone, or NONE, by Python.
+
+    Raises `InerterError` if the environment asks for something else.
+    """
+    chosen = os.environ.get(SWITCH) or TUNED
+    if chosen not in (TUNED, PLAIN, NONE):
+        raise InerterError(f'{SWITCH} is "{TUNED}", "{PLAIN}" or "{NONE}", got {chosen!r}.')
+    return chosen
 
 
 class Kernel:
@@ -44,6 +60,8 @@ class Kernel:
 
     def ready(self) -> Any:
         """The compiled function: for a kernel with a signature, compiled or read from the cache by now."""
+        if self._compiled is None and way() == NONE:
+            self._compiled = _quiet(self.function)
         if self._compiled is None:
             from inerter.kernels.compiler import compiled  # noqa: PLC0415 - heavy
 
@@ -55,37 +73,65 @@ class Kernel:
         return self.ready()._numba_type_
 
 
+def _quiet(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function as Python, in which a quotient by zero is as quiet as in compiled code."""
+    import numpy as np  # noqa: PLC0415 - heavy
+
+    return np.errstate(all="ignore")(function)
+
+
 def kernel(
-    title: str, signature: Signature = None, *, fused: bool = False, borrowing: bool = False
+    title: str, signature: Signature = None, *, typed: bool = False, fused: bool = False, borrowing: bool = False
 ) -> Callable[[F], F]:
     """Compile for Python to call, and keep the result between processes.
 
-    With a `signature` it can be made ready before it is called. A signature with a type that is returned is the only
-    one; other arguments than those of one without it compile the function once more. `fused`: a product and a sum may
-    become one instruction, with one rounding. `borrowing`: without reference counts.
+    With a `signature`, or `typed` by annotations, it can be made ready before it is called. A signature with a type
+    that is returned is the only one; other arguments than those of one without it compile the function once more.
+    `fused`: a product and a sum may become one instruction, with one rounding. `borrowing`: without reference counts.
     """
 
     def declared(function: F) -> F:
-        return cast("F", Kernel(function, title, signature, fused=fused, borrowing=borrowing))
+        given = _annotated(function) if typed else signature
+        return cast("F", Kernel(function, title, given, fused=fused, borrowing=borrowing))
 
     return declared
+
+
+def _annotated(function: Callable[..., Any]) -> Signature:
+    """The signature that a function's annotations tell: numbers, and what `kernels.arrays` names."""
+
+    def signature(types: Any) -> Any:
+        from inerter.kernels.tuned import signature_of  # noqa: PLC0415 - heavy
+
+        return signature_of(function)
+
+    return signature
 
 
 class Part:
     """A function that is compiled within the compiled code that calls it; see `part`."""
 
-    def __init__(self, function: Callable[..., Any], signature: Signature, borrowing: bool, place: str) -> None:
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        signature: Signature,
+        borrowing: bool,
+        fused: bool,
+        place: str,
+        plain: Callable[..., Any] | None,
+    ) -> None:
         update_wrapper(self, function)
-        self.function, self.signature, self.borrowing, self.place = function, signature, borrowing, place
+        self.function, self.signature, self.borrowing, self.fused = function, signature, borrowing, fused
+        self.place, self.plain = place, getattr(plain, "function", function)
 
     def __call__(self, *args: Any) -> Any:
-        return self.function(*args)
+        return self.plain(*args)
 
     @cached_property
     def _dispatcher(self) -> Any:
-        from inerter.kernels.compiler import PartDispatcher  # noqa: PLC0415 - heavy
+        from inerter.kernels.tuned import PartDispatcher  # noqa: PLC0415 - heavy
 
-        return PartDispatcher(self.function, self.signature, self.borrowing, self.place)
+        return PartDispatcher(self.function, self.signature, self.borrowing, self.fused, self.place)
 
     @property
     def _numba_type_(self) -> Any:
@@ -93,37 +139,77 @@ class Part:
 
 
 def part(
-    signature: Signature = None, *, borrowing: bool = False, apart: bool = False, inside: bool = False
+    signature: Signature = None,
+    *,
+    typed: bool = False,
+    borrowing: bool = False,
+    apart: bool = False,
+    inside: bool = False,
+    fused: bool = False,
+    plain: Callable[..., Any] | None = None,
 ) -> Callable[[F], F]:
     """Compile as a part of the compiled code that calls it, and only there: from elsewhere it is plain Python.
 
     The compiler would make every function ready to be called from Python, optimise it and keep it on disk, for itself
     and once more in everything that calls it; that took half of the time. `apart` parts are not copied into what calls
-    them: right for long ones that are called in many places. `inside` ones always are, fused: what calls them with
-    constants becomes code for these, and yet they are read and typed only once. Calls with constants share the one
-    `signature` given.
+    them: right for long ones that are called in many places. `inside` ones always are: what calls them with
+    constants becomes code for these, and yet they are read and typed only once, and structures cost nothing to hand
+    over. Calls with constants share the one `signature` given, or told by annotations if it is `typed`. `fused` is as
+    in `kernel`. `plain` is what does the same without private parts of
+    the compiler, where the function needs them.
     """
     place = "apart" if apart else "inside" if inside else "within"
 
     def declared(function: F) -> F:
-        return cast("F", Part(function, signature, borrowing, place))
+        given = _annotated(function) if typed else signature
+        return cast("F", Part(function, given, borrowing, fused, place, plain))
 
     return declared
 
 
 class Instruction:
-    """What the compiler is told to generate, as in `numba.extending.intrinsic`."""
+    """What the compiler is told to generate, as in `numba.extending.intrinsic`, and what does the same elsewhere."""
 
-    def __init__(self, definition: Callable[..., Any]) -> None:
-        self.definition = definition
+    def __init__(self, definition: Callable[..., Any], plain: Callable[..., Any]) -> None:
+        self.definition, self.plain = definition, getattr(plain, "function", plain)
+
+    def __call__(self, *args: Any) -> Any:
+        return self.plain(*args)
 
     @cached_property
     def _numba_type_(self) -> Any:
-        from inerter.kernels.compiler import instruction_type  # noqa: PLC0415 - heavy
+        from inerter.kernels.tuned import instruction_type  # noqa: PLC0415 - heavy
 
         return instruction_type(self.definition)
 
 
-def instruction(definition: Callable[..., Any]) -> Any:
+def instruction(plain: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
     """Declare an instruction: the definition gets the types of its arguments, and imports the compiler itself."""
-    return Instruction(definition)
+    return lambda definition: Instruction(definition, plain)
+
+
+class FunctionAt:
+    """Compiled code that calls other compiled code of one type by its address; see `Part.plain` for code without."""
+
+    def __init__(self, kind: Callable[..., Any]) -> None:
+        self.signature, self._alive = _annotated(kind), list[Any]()
+
+    @cached_property
+    def _numba_type_(self) -> Any:
+        from inerter.kernels.tuned import function_at_type  # noqa: PLC0415 - heavy
+
+        return function_at_type(self.signature)
+
+    def address_of(self, function: Any) -> int:
+        """The address of a kernel of this type, compiled by now; 0 where none is needed."""
+        if way() != TUNED:
+            return 0
+        from inerter.kernels.tuned import address_of  # noqa: PLC0415 - heavy
+
+        self._alive.append(function)  # its code goes with it
+        return address_of(function.ready(), self.signature)
+
+
+def function_at(kind: Callable[..., Any]) -> Any:
+    """In compiled code, the function of the type of `kind` at an address."""
+    return FunctionAt(kind)

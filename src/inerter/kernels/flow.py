@@ -66,6 +66,17 @@ def input_sizes(numbers: Array, nr: int, nu: int, length: float, start: float, d
             U[0, i], U[1, i] = 2.0 * c2 / (d * d), 6.0 * c3 / (d * d)
 
 
+@part("float64(float64[::1], float64[::1], float64[::1], int64, int64)", borrowing=True)
+def over_columns(row: Array, x: Array, u: Array, n: int, nu: int) -> float:
+    """A row over a mode's columns times (state, inputs, 1)."""
+    total = row[n + nu]
+    for j in range(n):
+        total += row[j] * x[j]
+    for j in range(nu):
+        total += row[n + j] * u[j]
+    return float(total)
+
+
 @part("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])", borrowing=True)
 def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array) -> int:
     """Coefficients X[k] of the flow from x in powers of t / d, until they are below rounding; returns their number.
@@ -99,6 +110,15 @@ def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array)
         if small == 2:
             return k + 1
     return int(last)
+
+
+@part("float64(float64[:,::1], int64, int64, float64)", borrowing=True)
+def polynomial(coefficients: Array, count: int, i: int, s: float) -> float:
+    """The polynomial with coefficients[0, i], ..., coefficients[count - 1, i]."""
+    total = coefficients[count - 1, i]
+    for j in range(count - 2, -1, -1):
+        total = total * s + coefficients[j, i]
+    return float(total)
 
 
 @part("float64(float64[::1], int64, float64)", borrowing=True)

@@ -2,63 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import numpy as np
 
-from inerter.kernels.arrays import SHARP
-from inerter.kernels.declare import instruction, kernel, part
-
-_ARGUMENTS = (
-    "float64[:,::1]",  # steps of the mode: a line each column, then the jump of the state with each input
-    "float64[:,::1]",  # limits of the guards
-    "float64[::1]",  # state, changed in place
-    "float64[::1]",  # work space: columns, rows, the state before a jump
-    "float64[:,::1]",  # values of the inputs at the knots
-    "float64[:,::1]",  # slopes
-    "float64[:,::1]",  # values from the left
-    "float64[:,::1]",  # slopes from the left
-    "int64[::1]",  # sample number at each knot, or -1
-    "float64[:,::1]",  # samples of the state
-    "int64[::1]",  # modes at the samples
-    "float64[:,::1]",  # squared outputs: their sums, and the last that were added
-    "float64",  # step
-    "int64",  # number of the mode
-    "int64",  # first segment
-    "int64",  # last
-    "int64",  # first segment whose squares count
-)
-_SIZES = (*("int64",) * 6, "boolean", "Array(int64, 1, 'C', readonly=True)")
-SIGNATURE = f"int64({', '.join(_ARGUMENTS)})"
-
-
-@dataclass(frozen=True)
-class March:
-    """A march for other compiled code, which takes its address and so need not be compiled anew for each."""
-
-    function: Any
-    address: int
-
-
-@instruction
-def march_at(typing: Any, address: Any) -> Any:
-    """The march at an address: to pass the function itself runs Python code within the call, which Ctrl-C can break."""
-    from numba import types  # noqa: PLC0415 - heavy
-    from numba.core import cgutils  # noqa: PLC0415 - heavy
-
-    from inerter.kernels.compiler import parsed  # noqa: PLC0415 - heavy
-
-    kind: Any = types.FunctionType(parsed(SIGNATURE))
-
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        struct_of: Any = cgutils.create_struct_proxy
-        function = struct_of(kind)(context, builder)
-        function[0] = builder.inttoptr(given[0], cgutils.voidptr_t)
-        return function._getvalue()
-
-    return kind(types.int64), generate
+from inerter.kernels.arrays import SHARP, Array, ConstantInts, Knots, Lines, March, Record, Shape, Span
+from inerter.kernels.declare import function_at, kernel, part
 
 
 def padded(rows: int) -> int:
@@ -72,93 +21,152 @@ def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp
     return n + inputs + 1, padded(rows), padded(elements)
 
 
-@part(f"int64({', '.join((*_ARGUMENTS, *_SIZES))})", borrowing=True, inside=True)
-def go_on(  # type: ignore[no-untyped-def]
-    steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
-    h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
-):  # fmt: skip
+@part(inside=True, borrowing=True, fused=True)
+def leap(lines: Lines, knots: Knots, k: int, shape: Shape, v: Array, before: Array) -> bool:
+    """Have positions follow inputs that jump at knot k, and keep the state before; whether one jumps."""
+    leaps, columns = False, shape.states + shape.inputs + 1
+    for c in range(shape.jumps):
+        leaps = leaps or knots.value[k, c] != knots.value_before[k, c]
+    if leaps:
+        for i in range(shape.states):
+            before[i] = v[i]
+        for c in range(shape.jumps):
+            rise = knots.value[k, c] - knots.value_before[k, c]
+            for i in range(shape.states):
+                v[i] += lines.steps[columns + c, i] * rise
+    return leaps
+
+
+@part(inside=True, borrowing=True, fused=True)
+def feed(knots: Knots, k: int, step: float, shape: Shape, numbers: Array, v: Array) -> None:
+    """What the inputs do over the step after knot k, in those of `flow.knot_numbers` that are used."""
+    for j in range(shape.inputs):
+        c, number, at = numbers[j] // 4, numbers[j] % 4, shape.states + j
+        if number == 0:
+            v[at] = knots.value[k, c]
+        elif number == 1:
+            v[at] = knots.value_before[k + 1, c] - knots.value[k, c]
+        elif number == 2:
+            v[at] = step * knots.slope[k, c]
+        else:
+            v[at] = step * knots.slope_before[k + 1, c]
+
+
+@part(inside=True, borrowing=True, fused=True)
+def follow(steps: Array, v: Array, shape: Shape, y: Array) -> None:
+    """All that follows from the state and the inputs, and last how far each guard may sway."""
+    columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
+    for i in range(0, shape.rows, 4):  # four rows at once, which one instruction does
+        y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
+        for j in range(columns - 1, -1, -1):  # the inputs first, which need not wait for the state
+            y0 += steps[j, i] * v[j]
+            y1 += steps[j, i + 1] * v[j]
+            y2 += steps[j, i + 2] * v[j]
+            y3 += steps[j, i + 3] * v[j]
+        y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
+    for i in range(shape.rows, shape.rows + sways, 4):
+        y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
+        for j in range(columns):
+            size = abs(v[j])
+            y0 += steps[j, i] * size
+            y1 += steps[j, i + 1] * size
+            y2 += steps[j, i + 2] * size
+            y3 += steps[j, i + 3] * size
+        y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
+
+
+@part(inside=True, borrowing=True, fused=True)
+def is_safe(limits: Array, shape: Shape, y: Array) -> bool:
+    """Whether no guard can be crossed within the step."""
+    safe, n = True, shape.states
+    bends = n + 2 * shape.elements + shape.squares * (2 if shape.jumps else 1)  # rows of the sway's first terms
+    terms = SHARP if shape.sharp else 0
+    for e in range(shape.elements):
+        end, start, sway = y[n + e], y[n + shape.elements + e], y[shape.rows + e]
+        for term in range(terms):
+            sway += abs(y[bends + term * shape.elements + e])
+        if not (min(start, end) - sway > limits[e, 0] and max(start, end) + sway < limits[e, 1]):
+            safe = False
+    return safe
+
+
+@part(inside=True, borrowing=True, fused=True)
+def renew(record: Record, slot: int, counts: bool, shape: Shape, v: Array, y: Array) -> None:
+    """The sample at a jump, and its squares if that `counts`, are those after it."""
+    if slot < record.states.shape[0]:
+        for i in range(shape.states):
+            record.states[slot, i] = v[i]
+    if counts:
+        for o in range(shape.squares):
+            at_start = shape.states + 2 * shape.elements + shape.squares + o
+            record.squares[o] += y[at_start] ** 2 - record.last[o]
+
+
+@part(inside=True, borrowing=True, fused=True)
+def keep(record: Record, slots: Array, k: int, span: Span, shape: Shape, v: Array, y: Array) -> None:
+    """Go over to the end of the step, and keep what is to be kept of it."""
+    if k >= span.settled and slots[k + 1] >= 0:
+        for o in range(shape.squares):
+            record.last[o] = y[shape.states + 2 * shape.elements + o] ** 2
+            record.squares[o] += record.last[o]
+    for i in range(shape.states):
+        v[i] = y[i]
+    slot = slots[k + 1]
+    if slot >= 0 and slot < record.states.shape[0]:
+        record.visited[slot] = span.mode
+        for i in range(shape.states):
+            record.states[slot, i] = y[i]
+
+
+@part(typed=True, borrowing=True, inside=True, fused=True)
+def go_on(lines: Lines, knots: Knots, record: Record, span: Span, shape: Shape, numbers: ConstantInts) -> int:
     """Go on while no guard can be crossed within the step; the first segment that needs more care."""
-    columns, sways = n + inputs + 1, (elements + 3) // 4 * 4
-    bends = n + 2 * elements + outputs * (2 if jumps else 1)  # rows of the sway's first terms
-    terms = SHARP if sharp else 0
-    at_end, at_start = n + 2 * elements, n + 2 * elements + outputs  # rows of outputs
-    v, y, before = work[:columns], work[columns : columns + rows + sways], work[columns + rows + sways :]
-    for i in range(n):
-        v[i] = x[i]
+    columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
+    v, y = lines.work[:columns], lines.work[columns : columns + shape.rows + sways]
+    before = lines.work[columns + shape.rows + sways :]
+    for i in range(shape.states):
+        v[i] = lines.state[i]
     v[columns - 1] = 1.0
-    k = first
-    while k < stop:
-        leaps = False
-        for c in range(jumps):
-            leaps = leaps or value[k, c] != value_before[k, c]
-        if leaps:
-            for i in range(n):
-                before[i] = v[i]
-            for c in range(jumps):
-                rise = value[k, c] - value_before[k, c]
-                for i in range(n):
-                    v[i] += steps[columns + c, i] * rise
-        for j in range(inputs):
-            c, number = numbers[j] // 4, numbers[j] % 4
-            if number == 0:
-                v[n + j] = value[k, c]
-            elif number == 1:
-                v[n + j] = value_before[k + 1, c] - value[k, c]
-            elif number == 2:
-                v[n + j] = h * slope[k, c]
-            else:
-                v[n + j] = h * slope_before[k + 1, c]
-        for i in range(0, rows, 4):  # four rows at once, which one instruction does
-            y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
-            for j in range(columns - 1, -1, -1):  # the inputs first, which need not wait for the state
-                y0 += steps[j, i] * v[j]
-                y1 += steps[j, i + 1] * v[j]
-                y2 += steps[j, i + 2] * v[j]
-                y3 += steps[j, i + 3] * v[j]
-            y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
-        for i in range(rows, rows + sways, 4):
-            y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
-            for j in range(columns):
-                size = abs(v[j])
-                y0 += steps[j, i] * size
-                y1 += steps[j, i + 1] * size
-                y2 += steps[j, i + 2] * size
-                y3 += steps[j, i + 3] * size
-            y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
-        safe = True
-        for e in range(elements):
-            end, start, sway = y[n + e], y[n + elements + e], y[rows + e]
-            for term in range(terms):
-                sway += abs(y[bends + term * elements + e])
-            if not (min(start, end) - sway > limits[e, 0] and max(start, end) + sway < limits[e, 1]):
-                safe = False
-        if not safe:
+    k = span.first
+    while k < span.stop:
+        leaps = leap(lines, knots, k, shape, v, before)
+        feed(knots, k, span.step, shape, numbers, v)
+        follow(lines.steps, v, shape, y)
+        if not is_safe(lines.limits, shape, y):
             if leaps:
-                for i in range(n):
+                for i in range(shape.states):
                     v[i] = before[i]
             break
-        if leaps and slot[k] >= 0:  # the sample and its squares are those after the jump
-            if slot[k] < states.shape[0]:
-                for i in range(n):
-                    states[slot[k], i] = v[i]
-            if k > settled:
-                for o in range(outputs):
-                    sums[0, o] += y[at_start + o] ** 2 - sums[1, o]
-        if k >= settled and slot[k + 1] >= 0:
-            for o in range(outputs):
-                sums[1, o] = y[at_end + o] ** 2
-                sums[0, o] += sums[1, o]
-        for i in range(n):
-            v[i] = y[i]
+        if leaps and knots.slot[k] >= 0:
+            renew(record, knots.slot[k], k > span.settled, shape, v, y)
+        keep(record, knots.slot, k, span, shape, v, y)
         k += 1
-        sample = slot[k]
-        if sample >= 0 and sample < states.shape[0]:
-            visited[sample] = mode
-            for i in range(n):
-                states[sample, i] = y[i]
-    for i in range(n):
-        x[i] = v[i]
+    for i in range(shape.states):
+        lines.state[i] = v[i]
     return k
+
+
+def march_type(lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+    """The type of a march, which is called through its address."""
+    raise NotImplementedError
+
+
+march_at = function_at(march_type)
+
+
+@part(borrowing=True)
+def by_sizes(march: March, lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+    """`go_on` with sizes that are read as it runs: the same numbers, at half the speed."""
+    return go_on(lines, knots, record, span, march.shape, march.numbers)
+
+
+@part(borrowing=True, plain=by_sizes)
+def whole_steps(march: March, lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+    """`go_on` by the code for this shape.
+
+    Its address is handed over, not the function: that would run Python code within the call, which Ctrl-C can break.
+    """
+    return int(march_at(march.address)(lines, knots, record, span))
 
 
 @cache
@@ -169,21 +177,12 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
     signals are held, the first `jumps` inputs may jump at every knot: positions follow at once. `sharp`: the first
     terms of the guards' sway are values, not sums of sizes, which sees that large motions cancel in them.
     """
-    inputs = len(used)
-    _, rows, _ = lines_of(n, inputs, elements, outputs, jumps, sharp)
+    _, rows, _ = lines_of(n, len(used), elements, outputs, jumps, sharp)
+    shape = Shape(n, len(used), elements, outputs, jumps, rows, sharp)
     numbers = np.array(used or (0,), np.int64)
 
-    @kernel("march", SIGNATURE, fused=True, borrowing=True)
-    def march(  # type: ignore[no-untyped-def]
-        steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
-        h, mode, first, stop, settled,
-    ):  # fmt: skip
-        return go_on(  # type: ignore[no-untyped-call]
-            steps, limits, x, work, value, slope, value_before, slope_before, slot, states, visited, sums,
-            h, mode, first, stop, settled, n, inputs, elements, outputs, jumps, rows, sharp, numbers,
-        )  # fmt: skip
+    @kernel("march", typed=True, fused=True, borrowing=True)
+    def march(lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+        return go_on(lines, knots, record, span, shape, numbers)
 
-    from inerter.kernels.compiler import address_of  # noqa: PLC0415 - heavy
-
-    function = march.ready()  # type: ignore[attr-defined]
-    return March(function, address_of(function, SIGNATURE))
+    return March(march_at.address_of(march), shape, numbers)

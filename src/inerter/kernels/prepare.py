@@ -12,7 +12,7 @@ from importlib import import_module
 from threading import Lock, Thread
 
 from inerter.kernels.cache import is_kept, told
-from inerter.kernels.declare import Kernel
+from inerter.kernels.declare import TUNED, Kernel, way
 
 Told = Callable[[str, int, int], None]  # title of the kernel that is begun, its number from 1, how many there are
 _ALONE = Lock()
@@ -28,7 +28,7 @@ def prepare(kernels: Iterable[Kernel], progress: Told | None = None) -> None:
     compiled where it is called. `progress` is called when a kernel is begun; without it one line says what goes on.
     """
     wanted = [kernel for kernel in dict.fromkeys(kernels) if kernel not in _SEEN]
-    if wanted:
+    if wanted and way() == TUNED:
         with _ALONE:
             missing = [kernel for kernel in wanted if not is_kept(kernel)]
             if missing:

@@ -9,7 +9,19 @@ from inerter.kernels.declare import instruction, part
 Array = Any
 
 
-@instruction
+_SPLIT = 134217729.0  # 2^27 + 1: parts a number into two of half its digits
+
+
+@part()
+def fused_by_halves(a: float, b: float, product: float) -> float:
+    """What rounding has taken from `-product`, the product of a and b (Dekker, 1971)."""
+    more, further = _SPLIT * a, _SPLIT * b
+    a_high, b_high = more - (more - a), further - (further - b)
+    a_low, b_low = a - a_high, b - b_high
+    return ((a_high * b_high + product) + a_high * b_low + a_low * b_high) + a_low * b_low
+
+
+@instruction(fused_by_halves)
 def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
     """Compile a b + c with one rounding."""
     from numba import types  # noqa: PLC0415 - heavy

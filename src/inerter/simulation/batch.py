@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import SimulationError, Status
-from inerter.kernels.events import EVENTS
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import InputTable, assign, check_holds, tabulate, whole_steps
@@ -112,9 +111,9 @@ def simulate_many(
             state, after = initial_state(system, table.value[0], initial, table.slope[0]), ending_of(initial)
             integration = event_driven.start(system, table, state, names, keep=False, settled=skipped, after=after)
         integration.advance(table.time.size - 1)
-        events[i, j], status[i, j] = integration.place[EVENTS], integration.status
+        events[i, j], status[i, j] = integration.place.events, integration.status
         if integration.status.ok:
-            squares[i, j] = integration.record.sums[0] / (knots - skipped)
+            squares[i, j] = integration.record.squares / (knots - skipped)
 
     runs = [(i, j) for j in range(count) for i in range(len(cars))]
     waiting, done = iter(runs), count_from(1)

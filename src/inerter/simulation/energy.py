@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.kernels.events import ENERGY, SEGMENT
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
@@ -19,9 +18,9 @@ def energy_of(integration: Integration) -> Energy:
     """Where the energy went since the integration began."""
     system, table = integration.system, integration.table
     names = [*(r.name for r in system.mechanism.roads), *(f.name for f in system.mechanism.forces)]
-    sums = integration.work[ENERGY]
+    sums = integration.motion.energy
     branches = list(zip(system.graph.branches, sums[len(names) :], strict=False))
-    knot = int(integration.place[SEGMENT])
+    knot = int(integration.place.segment)
     return Energy(
         inputs={name: float(w) for name, w in zip(names, sums, strict=False)},
         stored=_stored(system, table, integration.state, knot) - _stored(system, table, integration.begun, 0),

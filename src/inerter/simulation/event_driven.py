@@ -4,16 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import prod
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, SimulationError, Status, StatusKind
-from inerter.kernels import events as kernel
-from inerter.kernels.arrays import ENTRY, ETA, GUARD, SEEN, Mechanics, Modes
-from inerter.kernels.march import March, lines_of, march_of
-from inerter.kernels.modes import build, discretise
+from inerter.kernels import switching
+from inerter.kernels.arrays import (
+    EVENT,
+    KIND,
+    OWN_POSITION,
+    PLACE,
+    WATCH,
+    Account,
+    Knots,
+    March,
+    Mechanics,
+    Mode,
+    Modes,
+    Motion,
+    Record,
+    Room,
+    Rows,
+    Run,
+    Sizes,
+)
+from inerter.kernels.crossing import ORDERS
+from inerter.kernels.discretise import discretise
+from inerter.kernels.events import evaluate, integrate
+from inerter.kernels.march import lines_of, march_of
+from inerter.kernels.modes import build
 from inerter.kernels.prepare import prepare
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.simulation.inputs import InputTable
@@ -25,7 +47,9 @@ from inerter.systems.piecewise import PiecewiseSystem, output_rows
 Matrix = NDArray[np.float64]
 MOST_ELEMENTS = 12
 _SEGMENTS, _PIECES = 200_000, 4000  # at most between two looks at the keyboard: some 10 ms
+_TERMS = 31  # of a series, at most
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+_GAUSS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
 
 @dataclass
@@ -39,11 +63,11 @@ class Integration:
     modes: Modes
     begun: Matrix  # the state at the start, before anything that jumps there
     used: NDArray[np.int64]
-    work: Matrix
-    flags: NDArray[np.int64]
-    place: NDArray[np.int64]
-    record: kernel.Record
-    account: bool = False
+    motion: Motion
+    room: Room
+    knots: Knots
+    record: Record
+    account: Account
     count: int = 0
     status: Status = OK
     warning: Status = OK  # of a run that went to its end
@@ -53,23 +77,20 @@ class Integration:
 
         Raises `CancelledError` in a thread of `threads` whose work is not wanted any more.
         """
-        while self.status.ok and self.place[kernel.SEGMENT] < stop:
+        place = self.place
+        while self.status.ok and place.segment < stop:
             check_wanted()
-            self.place[kernel.LEFT] = _PIECES
-            until = min(stop, int(self.place[kernel.SEGMENT]) + _SEGMENTS)
-            m, c = self.modes, self.mechanics
-            now = kernel.Work(
-                self.work, self.flags, self.place, c.sizes, c.elements, c.limit, c.lengths,
-                m.number, m.state, m.maps, m.reaction, m.limits, m.reach,
-            )  # fmt: skip
-            code = kernel.integrate(self.march.address, m.steps, now, self.record, self.table.step, until)
-            if code == kernel.MODE_UNKNOWN:
-                if not self.build(self.flags[kernel.TRIAL]):
+            place.left = _PIECES
+            until = min(stop, int(place.segment) + _SEGMENTS)
+            run = Run(self.mechanics, self.modes, self.motion, self.room)
+            code = integrate(run, self.knots, self.record, self.account, self.march, self.table.step, until)
+            if code == switching.MODE_UNKNOWN:
+                if not self.build(self.motion.watch["trial"]):
                     self.status = self._failed(_SINGULAR)
-            elif code == kernel.EVENTS_FULL:
+            elif code == switching.EVENTS_FULL:
                 events = self.record.events
-                self.record = self.record._replace(events=np.concatenate([events, np.empty_like(events)]))
-            elif code not in (kernel.DONE, kernel.PAUSED):
+                self.record = self.record._replace(events=np.concatenate([events, events]))
+            elif code not in (switching.DONE, switching.PAUSED):
                 self.status = self._failed(_FAILURES[code])
 
     def build(self, states: NDArray[np.int64]) -> bool:
@@ -78,51 +99,57 @@ class Integration:
             more = (np.concatenate([array, np.zeros_like(array)]) for array in self.modes[1:])
             self.modes = Modes(self.modes.number, *more)
         modes, m, self.count = self.modes, self.count, self.count + 1
-        modes.state[m, : states.size] = states
-        modes.number[_code(states)] = m
-        if not build(*self.mechanics, modes.state[m], modes.maps[m], modes.reaction[m], modes.limits[m]):
+        modes.state[m], modes.number[_code(states)] = states, m
+        rows = (modes.state[m], modes.conditions[m], modes.maps[m], modes.reaction[m], modes.limits[m])
+        if not build(self.mechanics, Mode(*rows, modes.entry_limits[m])):
             return False
-        modes.reach[m] = discretise(self.mechanics.sizes, self.used, modes.maps[m], modes.steps[m], self.table.step)
+        sizes, first, step = self.mechanics.sizes, self.mechanics.rows, self.table.step
+        modes.reach[m] = discretise(sizes, first, self.used, modes.maps[m], modes.steps[m], step)
         return True
 
     def go_on_from(self, ending: Ending) -> None:
         """Begin in the mode in which another integration of the same mechanism ended."""
-        states, n = np.array(ending.mode, dtype=np.int64), self.system.order
+        states = np.array(ending.mode, dtype=np.int64)
         self.mode(states)
-        self.place[kernel.MODE] = self.record.visited[:1] = self.modes.number[_code(states)]
-        self.work[kernel.SCALE, :n] = np.maximum(self.work[kernel.SCALE, :n], ending.scale)
+        self.place.mode = self.record.visited[:1] = self.modes.number[_code(states)]
+        self.motion.scale[:] = np.maximum(self.motion.scale, ending.scale)
+
+    @property
+    def place(self) -> Any:
+        """Where it is, see `kernels.arrays.PLACE`."""
+        return self.motion.place[0]
 
     @property
     def now(self) -> float:
         """Time reached [s]."""
-        return float(self.record.time[self.place[kernel.SEGMENT]] + self.work[kernel.CLOCK, 0])
+        return float(self.table.time[self.place.segment] + self.place.clock)
 
     @property
     def state(self) -> Matrix:
         """State now."""
-        return self.work[kernel.STATE, : self.system.order].copy()
+        return np.array(self.motion.state)
 
     @property
     def ending(self) -> Ending:
         """What to go on with."""
-        mode = self.modes.state[self.place[kernel.MODE], : len(self.system.nonlinear)]
-        scale = np.maximum(self.work[kernel.SCALE, : self.system.order], np.abs(self.state))
+        mode = self.modes.state[self.place.mode]
+        scale = np.maximum(self.motion.scale, np.abs(self.state))
         return Ending(self.system.mechanism, tuple(mode.tolist()), scale)
 
     @property
     def eta(self) -> slice:
         """Rows of the maps that hold a', w and the nonlinear elements' forces."""
-        return slice(int(self.mechanics.sizes[ETA]), int(self.mechanics.sizes[ENTRY]))
+        return slice(self.mechanics.rows.eta, self.mechanics.rows.entry)
 
     @property
     def seen(self) -> slice:
         """Rows of the maps that hold the state as the mode sees it."""
-        return slice(int(self.mechanics.sizes[SEEN]), int(self.mechanics.sizes[SEEN]) + self.system.order)
+        return slice(self.mechanics.rows.seen, self.mechanics.rows.seen + self.system.order)
 
     @property
     def guards(self) -> slice:
         """Rows of the maps that hold what each state of an element is judged by: of a slip, its velocity."""
-        first = int(self.mechanics.sizes[GUARD])
+        first = self.mechanics.rows.guard
         return slice(first, first + len(self.system.nonlinear))
 
     def mode(self, states: NDArray[np.int64]) -> Matrix:
@@ -138,7 +165,7 @@ class Integration:
         """Change of the state since `before`, relative to the largest velocity, or position, so far."""
         na, n = self.system.motions[0].shape[1], self.system.order
         change = np.abs(self.state - before)
-        scale = np.max(np.abs([self.state, before, self.work[kernel.SCALE, :n]]), axis=0)  # the last knows events alone
+        scale = np.max(np.abs([self.state, before, self.motion.scale]), axis=0)  # the last knows events alone
         parts = (slice(0, na), slice(na, n))
         return max(float(change[p].max(initial=0.0) / max(scale[p].max(initial=0.0), 1e-300)) for p in parts)
 
@@ -152,14 +179,14 @@ def _code(states: NDArray[np.int64]) -> int:
 
 
 _FAILURES = {
-    kernel.CHATTER: "the elements change their states without end (chattering)",
-    kernel.IMPACT: "two inertias meet without compliance between them",
-    kernel.NO_MODE: "no combination of slip, stick and contact can go on",
-    kernel.NOT_FINITE: "the motion grows beyond all bounds",
-    kernel.STIFF: "something answers more than 10 000 times faster than the step (a damper on a small inertance, "
+    switching.CHATTER: "the elements change their states without end (chattering)",
+    switching.IMPACT: "two inertias meet without compliance between them",
+    switching.NO_MODE: "no combination of slip, stick and contact can go on",
+    switching.NOT_FINITE: "the motion grows beyond all bounds",
+    switching.STIFF: "something answers more than 10 000 times faster than the step (a damper on a small inertance, "
     "most often); take a step of that order, or leave out what is so fast",
 }
-KERNELS: tuple[Any, ...] = (build, kernel.integrate, discretise, kernel.evaluate)
+KERNELS: tuple[Any, ...] = (build, integrate, discretise, evaluate)
 _SINGULAR = "the forces in a combination of slip, stick and contact are not determined"
 
 
@@ -187,64 +214,130 @@ def start(
             f"The event-driven integrator takes up to {MOST_ELEMENTS} frictions and gaps, got {len(system.nonlinear)}. "
             f'Take integrator="time-stepping", or join those that always act together.'
         )
-    n, nu, k = system.order, system.inputs, len(system.nonlinear)
-    na, nw = (motion.shape[1] for motion in system.motions[:2])
     rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])
-    over = np.array([np.concatenate(row) for row in rows]).reshape(len(rows), n + nu + na + nw + k)
-    roads, channels = len(system.mechanism.roads), table.value.shape[1]
-    used = _used(system, table, bool(rows))
-    starts = np.cumsum([0, n, k, na + nw + k, nw + k, len(rows), n])
-    dampers = sum(b.element.linear is Linear.DAMPING for b in system.graph.branches)
-    mechanics = Mechanics(
-        sizes=np.array([na, nw, roads, n, k, dampers, len(outputs), *starts[1:6]], dtype=np.int64),
-        **vars(system.mechanics),
-        over=over,
-    )
-    branches = system.graph.branches if account else ()
-    samples, channels = table.samples if keep else 0, table.value.shape[1]
-    jumps = channels if table.jumps else 0
+    mechanics = _mechanics(system, rows, len(outputs))
+    sizes, used = mechanics.sizes, _used(system, table, bool(rows))
+    jumps = table.value.shape[1] if table.jumps else 0
     sharp = any(element.switches_by(Guard.ELONGATION) for element in system.nonlinear_elements)
-    columns, followed, swaying = lines_of(n, used.size, k, len(outputs), jumps, sharp)
-    work = np.zeros(
-        (kernel.ROWS, max(64, columns + followed + swaying + n, nu, 4 * channels, channels + len(branches)))
+    shape = (sizes.states, used.size, sizes.elements, sizes.squares, jumps, sharp)
+    columns, followed, swaying = lines_of(*shape)
+    record = _record(sizes, state, table.samples if keep else 0)
+    integration = Integration(
+        system=system,
+        table=table,
+        march=march_of(sizes.states, tuple(used.tolist()), *shape[2:]),
+        mechanics=mechanics,
+        modes=_modes(mechanics, columns + jumps, followed + swaying),
+        begun=state,
+        used=used,
+        motion=_motion(system, state, settled),
+        room=_room(sizes, table.value.shape[1], columns + followed + swaying + sizes.states),
+        knots=knots(table),
+        record=record,
+        account=_account(system, account),
     )
-    work[kernel.STATE, :n], work[kernel.SCALE, :n] = state, np.abs(state)
-    record = kernel.Record(
-        time=table.time,
-        value=table.value,
-        slope=table.slope,
-        value_before=table.value_before,
-        slope_before=table.slope_before,
-        special=table.special,
-        slot=table.slot,
-        states=np.empty((samples, n)),
-        visited=np.zeros(samples, np.int64),
-        sums=np.zeros((2, len(outputs))),
-        events=np.empty((1024, 4)),
-        branch_road=np.array([b.roads for b in branches]).reshape(len(branches), roads),
-        gauss=np.array([0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS]),
-    )
-    record.states[:1] = state
-    place = np.array([0, -1, 0, 0, 0, 0, 0, settled, account, nu, 0, 0, 0], np.int64)
-    march = march_of(n, tuple(used.tolist()), k, len(outputs), jumps, sharp)
-    capacity, width = min(3**k, 9), n + nu + 1
-    modes = Modes(
-        number=np.full(3**k, -1, np.int64),
-        state=np.zeros((capacity, k + 3), np.int64),
-        maps=np.zeros((capacity, int(starts[6]), width)),
-        reaction=np.zeros((capacity, n + k, nw + k)),
-        limits=np.zeros((capacity, 2 * k, 2)),
-        steps=np.zeros((capacity, columns + jumps, followed + swaying)),
-        reach=np.zeros(capacity),
-    )
-    flags = np.zeros((4, k), np.int64)
-    integration = Integration(system, table, march, mechanics, modes, state, used, work, flags, place, record, account)
-    if k == 1 and mechanics.limit[0] > 0.0:  # all three will be met: save the ways back to have them built
+    if sizes.elements == 1 and mechanics.limit[0] > 0.0:  # all three will be met: save the ways back to have them built
         for s in (0, 1, -1):
             integration.build(np.array([s]))
     if after is not None and after.mechanism == system.mechanism:
         integration.go_on_from(after)
     return integration
+
+
+def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]], squares: int) -> Mechanics:
+    """The constants, with rows of outputs, of which the first are squared."""
+    n, k = system.order, len(system.nonlinear)
+    na, nw = (motion.shape[1] for motion in system.motions[:2])
+    dampers = sum(b.element.linear is Linear.DAMPING for b in system.graph.branches)
+    constants, width, eta = system.mechanics, n + system.inputs + na + nw + k, n + k
+    entry, output = eta + na + nw + k, eta + na + nw + k + nw + k
+    return Mechanics(
+        sizes=Sizes(na, nw, len(system.mechanism.roads), n, system.inputs, k, dampers, squares),
+        rows=Rows(n, eta, entry, output, output + len(rows)),
+        balance=constants.balance,
+        rates=constants.rates,
+        lengths=constants.lengths,
+        kind=np.ascontiguousarray(constants.elements[:, KIND]),
+        own_position=np.ascontiguousarray(constants.elements[:, OWN_POSITION]),
+        limit=constants.limit,
+        over=np.array([np.concatenate(row) for row in rows]) if rows else np.zeros((0, width)),
+    )
+
+
+def _modes(mechanics: Mechanics, columns: int, rows: int) -> Modes:
+    """Room for modes, and for steps of so many columns and rows of each."""
+    sizes, k = mechanics.sizes, mechanics.sizes.elements
+    capacity = min(3**k, 9)
+    return Modes(
+        number=np.full(3**k, -1, np.int64),
+        state=np.zeros((capacity, k), np.int64),
+        conditions=np.zeros((capacity, 3), np.int64),
+        maps=np.zeros((capacity, mechanics.rows.seen + sizes.states, sizes.states + sizes.inputs + 1)),
+        reaction=np.zeros((capacity, sizes.states + k, sizes.massless + k)),
+        limits=np.zeros((capacity, k, 2)),
+        entry_limits=np.zeros((capacity, k, 2)),
+        steps=aligned(capacity, columns, rows),
+        reach=np.zeros(capacity),
+    )
+
+
+def aligned(*shape: int) -> Matrix:
+    """Zeros that begin where a cache line does: vectors of four then never lie across two."""
+    size, line = prod(shape), 64
+    room = np.zeros(size + line // 8)
+    first = -room.ctypes.data % line // 8
+    return room[first : first + size].reshape(shape)
+
+
+def _motion(system: PiecewiseSystem, state: Matrix, settled: int) -> Motion:
+    place = np.zeros(1, PLACE)
+    place[0].mode, place[0].settled = -1, settled
+    ports = len(system.mechanism.roads) + len(system.mechanism.forces)
+    return Motion(
+        place=place,
+        state=np.array(state, dtype=float),
+        scale=np.abs(state),
+        energy=np.zeros(ports + len(system.graph.branches)),
+        watch=np.zeros(len(system.nonlinear), WATCH),
+    )
+
+
+def _room(sizes: Sizes, channels: int, line: int) -> Room:
+    n, nu, most = sizes.states, sizes.inputs, sizes.massless + sizes.elements
+    return Room(
+        numbers=np.zeros(4 * channels),
+        line=aligned(line),
+        guess=np.zeros(n),
+        residual=np.zeros(most),
+        given=np.zeros(nu),
+        guard=np.zeros(_TERMS),
+        distance=np.zeros(_TERMS),
+        ends=np.zeros(64),
+        inputs=np.zeros((ORDERS, nu)),
+        input_sizes=np.zeros((ORDERS, nu)),
+        series=np.zeros((_TERMS + 1, n)),
+        sizes=np.zeros((ORDERS, n)),
+    )
+
+
+def knots(table: InputTable) -> Knots:
+    """The inputs as kernels take them."""
+    return Knots(*(getattr(table, name) for name in Knots._fields))
+
+
+def _record(sizes: Sizes, state: Matrix, samples: int) -> Record:
+    states = np.empty((samples, sizes.states))
+    states[:1] = state
+    squares, last = np.zeros((2, sizes.squares))
+    events = np.zeros(1024, EVENT)
+    return Record(states, np.zeros(samples, np.int64), squares, last, events)
+
+
+def _account(system: PiecewiseSystem, wanted: bool) -> Account:
+    through = np.zeros((0, len(system.mechanism.roads)))
+    if wanted and system.graph.branches:
+        through = np.array([b.roads for b in system.graph.branches])
+    return Account(wanted, through, *_GAUSS)
 
 
 def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[np.int64]:

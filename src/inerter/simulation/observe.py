@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.kernels.events import EVENTS, SEGMENT, evaluate
+from inerter.kernels.events import evaluate
 from inerter.simulation.energy import energy_of
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
@@ -22,14 +23,14 @@ _ROUNDING = 1e-14  # of a sum, relative to its terms
 def trajectory_of(integration: Integration, steady: Repetition | None, label: str) -> Trajectory:
     system, table, reached = integration.system, integration.table, integration.table.samples
     if not integration.status.ok:
-        reached = int(np.sum(table.slot[: integration.place[SEGMENT] + 1] >= 0))
-    rows = integration.record.events[: integration.place[EVENTS]]
+        reached = int(np.sum(table.slot[: integration.place.segment + 1] >= 0))
+    rows = integration.record.events[: integration.place.events]
     return Trajectory(
         time=table.sampled[:reached],
         status=integration.status if not integration.status.ok else integration.warning,
         outputs=system.outputs,
         states=_states(integration, rows),
-        energy=energy_of(integration) if integration.account else None,
+        energy=energy_of(integration) if integration.account.wanted else None,
         repetition=steady,
         final_state=integration.state,
         end=integration.now,
@@ -54,23 +55,23 @@ def _named(system: PiecewiseSystem) -> list[list[tuple[str, dict[int, str]]]]:
     return named
 
 
-def _states(integration: Integration, events: Matrix) -> dict[str, str]:
+def _states(integration: Integration, events: NDArray[Any]) -> dict[str, str]:
     """The state of every element at the start; what changes at once is an event, too."""
     found: dict[str, str] = {}
     first = integration.modes.state[integration.record.visited[0]]
     for e, elements in enumerate(_named(integration.system)):
-        own = events[events[:, 1] == e]
-        state = int(own[0, 2]) if own.size else int(first[e])
+        own = np.flatnonzero(events["element"] == e)[:1]
+        state = int(events["before"][own[0]] if own.size else first[e])
         found |= {label: names[state] for label, names in elements}
     return found
 
 
-def _listed(system: PiecewiseSystem, events: Matrix) -> tuple[Event, ...]:
+def _listed(system: PiecewiseSystem, events: NDArray[Any]) -> tuple[Event, ...]:
     named = _named(system)
     return tuple(
-        Event(time, label, names[int(before)], names[int(after)])
+        Event(time, label, names[before], names[after])
         for time, e, before, after in events.tolist()
-        for label, names in named[int(e)]
+        for label, names in named[e]
     )
 
 

@@ -7,7 +7,6 @@ from typing import Literal
 
 from inerter.checks import is_number
 from inerter.errors import SimulationError
-from inerter.kernels.events import SEGMENT
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven, stepped
 from inerter.simulation.inputs import MEMORY_LIMIT, assign, check_holds, tabulate, whole_steps
@@ -81,7 +80,7 @@ def simulate(
     for part in range(1, reports + 1):
         integration.advance(segments * part // reports)
         if progress is not None:
-            progress(integration.place[SEGMENT] / segments)
+            progress(integration.place.segment / segments)
     label = "; ".join(dict.fromkeys(s.label for s in signals if s is not None))
     return trajectory_of(integration, steady, label)
 

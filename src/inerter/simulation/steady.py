@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError, Status, StatusKind
-from inerter.kernels.events import EVENTS, SEGMENT, SETTLED, SPECIAL
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
@@ -67,7 +66,7 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
     first = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
     state = initial_state(system, table.value_before[first], "rest")
     run = event_driven.start(system, table, state, keep=False)
-    run.place[SEGMENT] = first
+    run.place.segment = first
     run.advance(last)
     mismatch = np.inf
     for _ in range(_RECORDED):
@@ -108,22 +107,20 @@ def mean_squares(
     integration, settled = _repeated(begun, repeating(table), repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _unsettled(settled)
-    return integration.record.sums[0] / (table.samples - 1), integration, settled.periods
+    return integration.record.squares / (table.samples - 1), integration, settled.periods
 
 
 def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:
     """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
-    record, last = integration.record, again.time.size - 1
+    place, last = integration.place, again.time.size - 1
     integration.advance(last)
-    integration.record = record._replace(
-        value_before=again.value_before, slope_before=again.slope_before, special=again.special
-    )
-    integration.place[SETTLED] = -1  # a jump at the start is one at the end of the period before
+    integration.knots = event_driven.knots(again)
+    place.settled = -1  # a jump at the start is one at the end of the period before
     mismatch, periods = np.inf, 1
     while integration.status.ok and periods < most and mismatch > repeats:
         begun = integration.state
-        integration.place[[SEGMENT, SPECIAL, EVENTS]] = 0
-        record.sums[0] = 0.0
+        place.segment = place.special = place.events = 0
+        integration.record.squares[:] = 0.0
         integration.advance(last)
         periods += 1
         mismatch = integration.mismatch(begun)

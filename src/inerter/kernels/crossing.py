@@ -1,0 +1,146 @@
+"""Where along a piece of the motion a guard is crossed: guards as polynomials, and their first roots."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels.arrays import FRICTION, NONE, Array, Run
+from inerter.kernels.declare import part
+from inerter.kernels.flow import first_root, polynomial, slope_at, value_at
+
+ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
+ROUNDING = 1e-13  # relative to the largest state so far
+MET = 1e-9  # the same where a guard has just been met
+
+
+@part(borrowing=True, inside=True)
+def first_crossing(run: Run, count: int, d: float, ends: bool) -> Any:
+    """When, in units of the piece (at most 1), the first guard is crossed, and that of which element, or -1.
+
+    The piece has the length d and `ends` with the segment or before.
+    """
+    mechanics, place, modes, room = run.mechanics, run.motion.place[0], run.modes, run.room
+    sizes, m = mechanics.sizes, place.mode
+    best = 2.0
+    who = NONE
+    ended = place.ended != 0
+    place.ended = 0
+    for e in range(sizes.elements):
+        watch = run.motion.watch[e]
+        if watch.touch < ORDERS:
+            row = modes.maps[m, mechanics.rows.guard + e]
+            slips = mechanics.kind[e] == FRICTION and modes.state[m, e] != 0 and mechanics.limit[e] > 0.0
+            if slips and ended and _lies_still(run, row, min(count, ORDERS), modes.reach[m] / d):
+                watch.crossed = modes.state[m, e]
+                best, who = 0.0, e
+                break
+            s = _crossing(run, row, e, count, ends)
+            if slips and ends and _comes_to_zero(room.guard, count):
+                place.ended = 1
+            if s < best:
+                best, who = s, e
+    return min(best, 1.0), who
+
+
+@part(borrowing=True, inside=True)
+def go_to(run: Run, count: int, s: float) -> bool:
+    """Go on to the part s of the piece; False if the motion has grown beyond all bounds."""
+    motion, sizes = run.motion, run.mechanics.sizes
+    for i in range(sizes.states):
+        total = polynomial(run.room.series, count, i, s)
+        if not (abs(total) < 1e150):
+            return False
+        motion.state[i] = total
+        motion.scale[i] = max(motion.scale[i], abs(total))
+    if s > 0.0:
+        for e in range(sizes.elements):
+            motion.watch[e].touch = 0
+    return True
+
+
+@part(borrowing=True, inside=True)
+def _crossing(run: Run, row: Array, e: int, count: int, ends: bool) -> float:
+    """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
+
+    Its `crossed` is then the limit, if it is crossed with a slope beyond all rounding, else 0. A limit that is just
+    reached where the segment `ends` is left to the next one: inputs may turn there.
+    """
+    limits, watch = run.modes.limits[run.motion.place[0].mode, e], run.motion.watch[e]
+    if limits[0] == -np.inf and limits[1] == np.inf:
+        return 2.0
+    c, g, swing = run.room.guard, run.room.distance, _swing(run, row, count)
+    best = 2.0
+    for at in range(2):
+        side, limit = 2 * at - 1, limits[at]
+        zeros = watch.touch if watch.side == side else 0
+        if abs(limit) == np.inf or (zeros == 0 and side * (limit - c[0]) > swing):
+            continue
+        for k in range(zeros, count):
+            g[k - zeros] = -side * c[k]
+        if zeros == 0:
+            g[0] += side * limit
+        root = first_root(g, count - zeros, run.room.ends)
+        if ends and root > 1.0 - MET:
+            size = swing + abs(c[0]) + abs(limit)
+            root = 2.0 if value_at(g, count - zeros, 1.0) > -ROUNDING * size else root
+        if root < best:
+            best = root
+            watch.crossed = side if slope_at(g, count - zeros, root) < -1e-6 * swing else 0
+    return best
+
+
+@part(borrowing=True, inside=True)
+def _swing(run: Run, row: Array, count: int) -> float:
+    """The polynomial of a guard along the piece goes to `room.guard`; how far it can be from its start."""
+    sizes, room, swing = run.mechanics.sizes, run.room, 0.0
+    n, c = sizes.states, room.guard
+    for k in range(count):
+        total = 0.0
+        for j in range(n):
+            total += row[j] * room.series[k, j]
+        if k < 4:
+            for j in range(sizes.inputs):
+                total += row[n + j] * room.inputs[k, j]
+        c[k] = total
+        swing += abs(total)
+    swing -= abs(c[0])
+    c[0] += row[n + sizes.inputs]
+    return float(swing)
+
+
+@part("boolean(float64[::1], int64)", borrowing=True)
+def _comes_to_zero(c: Array, count: int) -> bool:
+    """Whether a polynomial is zero at 1, and not before."""
+    total, size = 0.0, 0.0
+    for k in range(count):
+        total += c[k]
+        size += abs(c[k])
+    return abs(total) <= ROUNDING * size and abs(c[0]) > MET * size
+
+
+@part(borrowing=True, inside=True)
+def _lies_still(run: Run, row: Array, count: int, longer: float) -> bool:
+    """Whether a slip that has come to zero has ended for good: its velocity and the rates of it are rounding.
+
+    What the piece would add up to if it were so many times `longer` counts: in a short one a slip that begins is slow.
+    """
+    n, nu, room = run.mechanics.sizes.states, run.mechanics.sizes.inputs, run.room
+    value, size, scale = row[n + nu], abs(row[n + nu]), 1.0
+    change = 0.0
+    for k in range(count):
+        total = 0.0
+        for j in range(n):
+            total += row[j] * room.series[k, j]
+            size += abs(row[j] * room.series[0, j]) if k == 0 else 0.0
+        if k < 4:
+            for j in range(nu):
+                total += row[n + j] * room.inputs[k, j]
+                size += abs(row[n + j] * room.inputs[0, j]) if k == 0 else 0.0
+        if k == 0:
+            value += total
+        else:
+            scale *= longer
+            change += abs(total) * scale
+    return bool(abs(value) + change <= ROUNDING * size)

@@ -1,0 +1,157 @@
+"""From a mode's matrices to the steps that a march makes: exact for inputs that are cubics over the step."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from inerter.kernels.arrays import SHARP, Ints, Matrix, Rows, Sizes
+from inerter.kernels.declare import kernel, part
+from inerter.kernels.matrices import add, block, exponential, product
+
+
+class Channels(NamedTuple):
+    """Inputs that move."""
+
+    numbers: Ints  # of those of which a knot number is used, in order
+    used: Ints  # the used knot numbers, among theirs alone
+
+
+@part(typed=True, apart=True)
+def over_chains(maps: Matrix, first: int, n: int, nr: int, channels: Ints, h: float, out: Matrix) -> None:
+    """Rows of maps, from `first` on, over the state, the chains of integrators of some channels, and 1."""
+    for i in range(out.shape[0]):
+        row = maps[first + i]
+        for j in range(n):
+            out[i, j] = row[j]
+        for at in range(channels.shape[0]):
+            c = channels[at]
+            if c < nr:
+                out[i, n + 4 * at] = row[n + c]
+                out[i, n + 4 * at + 1] = row[n + nr + c] / h
+                out[i, n + 4 * at + 2] = row[n + 2 * nr + c] / (h * h)
+            else:
+                out[i, n + 4 * at] = row[n + 2 * nr + c]
+        out[i, out.shape[1] - 1] = row[maps.shape[1] - 1]
+
+
+@part(typed=True, apart=True)
+def moving_channels(used: Ints) -> Channels:
+    """Numbers of the channels of which a knot number is used, in order, and the used numbers among theirs alone."""
+    channels, among = np.zeros(used.shape[0], np.int64), np.zeros(used.shape[0], np.int64)
+    count = 0
+    for i in range(used.shape[0]):
+        if count == 0 or channels[count - 1] != used[i] // 4:
+            channels[count] = used[i] // 4
+            count += 1
+        among[i] = 4 * (count - 1) + used[i] % 4
+    return Channels(channels[:count].copy(), among)
+
+
+@part(typed=True, apart=True)
+def into_knots(rows: Matrix, n: int, used: Ints, out: Matrix, top: int) -> None:
+    """Rows over the chains at the start of a step, as columns over the numbers z0, z1 - z0, h z0', h z1' of cubics."""
+    size = rows.shape[1]
+    numbers = np.zeros(size - 1 - n)
+    for i in range(rows.shape[0]):
+        for c in range(0, size - 1 - n, 4):
+            y0, y1, y2, y3 = rows[i, n + c], rows[i, n + c + 1], rows[i, n + c + 2], rows[i, n + c + 3]
+            numbers[c] = y0
+            numbers[c + 1] = 6.0 * y2 - 12.0 * y3
+            numbers[c + 2] = y1 - 4.0 * y2 + 6.0 * y3
+            numbers[c + 3] = 6.0 * y3 - 2.0 * y2
+        for j in range(n):
+            out[j, top + i] = rows[i, j]
+        for j in range(used.shape[0]):
+            out[n + j, top + i] = numbers[used[j]]
+        out[n + used.shape[0], top + i] = rows[i, size - 1]
+
+
+@part(typed=True, apart=True)
+def _bound_sway(guards: Matrix, chain: Matrix, n: int, used: Ints, steps: Matrix, bends: int, top: int) -> None:
+    """One eighth of the largest second derivative of each guard over a step, as weights on absolute values.
+
+    Its first terms go to the rows from `bends` on as they are, if that is not negative.
+    """
+    k, columns = guards.shape[0], n + used.shape[0] + 1
+    term, power = np.zeros((columns, k)), guards
+    for j in range(columns):
+        for i in range(k):
+            steps[j, top + i] = 0.0
+    for order in range(1, 60):
+        power = product(power, chain)
+        largest = 0.0
+        for i in range(k):
+            for j in range(chain.shape[0]):
+                power[i, j] /= order
+                largest = max(largest, abs(power[i, j]))
+        if largest == 0.0:
+            break
+        into_knots(power, n, used, term, 0)
+        weight, first = order * (order - 1) / 8.0, bends + (order - 2) * k
+        for j in range(columns):
+            for i in range(k):
+                if bends >= 0 and 2 <= order < 2 + SHARP:
+                    steps[j, first + i] = weight * term[j, i]
+                else:
+                    steps[j, top + i] += weight * abs(term[j, i])
+
+
+@part(typed=True, apart=True)
+def growth(maps: Matrix, n: int) -> float:
+    """About the spectral radius of the state matrix, from above: the 32nd root of a norm of its 32nd power [1/s]."""
+    A = block(maps, 0, n, 0, n)
+    logarithm, power = 0.0, 1.0
+    for _ in range(6):
+        norm = 0.0
+        for i in range(n):
+            total = 0.0
+            for j in range(n):
+                total += abs(A[i, j])
+            norm = max(norm, total)
+        if norm == 0.0:
+            return 0.0
+        logarithm += power * np.log(norm)
+        for i in range(n):
+            for j in range(n):
+                A[i, j] /= norm
+        A = product(A, A)
+        power *= 0.5
+    return float(np.exp(logarithm))
+
+
+@kernel("steps of a mode", typed=True)
+def discretise(sizes: Sizes, first: Rows, used: Ints, maps: Matrix, steps: Matrix, h: float) -> float:
+    """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
+
+    The input over the step is a cubic: a chain of four integrators for every road and force that moves stands for it.
+    `first` rows are those of the parts of `maps`. Returns how far a Taylor series of the flow serves [s].
+    """
+    n, nr, k = sizes.states, sizes.roads, sizes.elements
+    moving = moving_channels(used)
+    size = n + 4 * moving.numbers.shape[0] + 1
+    rate, guards, outputs = np.zeros((n, size)), np.zeros((k, size)), np.zeros((sizes.squares, size))
+    over_chains(maps, 0, n, nr, moving.numbers, h, rate)
+    over_chains(maps, first.guard, n, nr, moving.numbers, h, guards)
+    over_chains(maps, first.output, n, nr, moving.numbers, h, outputs)
+    chain = np.zeros((size, size))
+    add(chain, 0, 0, rate, h)
+    for c in range(moving.numbers.shape[0]):
+        for j in range(3):
+            chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
+    exact = exponential(chain)
+    into_knots(block(exact, 0, n, 0, size), n, moving.used, steps, 0)
+    into_knots(product(guards, exact), n, moving.used, steps, n)
+    into_knots(guards, n, moving.used, steps, n + k)
+    into_knots(product(outputs, exact), n, moving.used, steps, n + 2 * k)
+    columns, rows = n + used.shape[0] + 1, n + 2 * k + sizes.squares
+    for c in range(min(nr, steps.shape[0] - columns)):  # roads that jump: positions follow; with a force nothing does
+        for i in range(n):
+            steps[columns + c, i] = maps[i, n + nr + c]
+    if steps.shape[0] > columns:
+        into_knots(outputs, n, moving.used, steps, rows)
+        rows += sizes.squares
+    sways = steps.shape[1] - -(-k // 4) * 4
+    _bound_sway(guards, chain, n, moving.used, steps, rows if sways >= rows + SHARP * k else -1, sways)
+    return 1.0 / max(growth(maps, n), 1e-9)

@@ -1,0 +1,121 @@
+"""What is locked in a mode, and what the locks leave to massless motions."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from inerter.kernels.arrays import FRICTION, Flags, Floats, Ints, Matrix, Sizes
+from inerter.kernels.declare import part
+from inerter.kernels.matrices import RANK_TOLERANCE, block, null_space, product, transposed
+
+
+class Rates(NamedTuple):
+    """Rates over (a, w, z')."""
+
+    positions: Matrix
+    locks: Matrix  # elongations of the elements that can be locked
+    dampers: Matrix  # elongations over w alone
+    springs: Matrix
+
+
+class Locks(NamedTuple):
+    """What is locked, without what follows from the rest."""
+
+    held: Ints  # numbers of the elements
+    still: Flags  # whether those hold each element
+    on_a: Matrix  # H of these elements
+    on_w: Matrix
+    on_z: Matrix
+
+
+class Bases(NamedTuple):
+    """Directions, as columns: of the locks' forces (L, at once), and of massless motions (Z, Y) and their balances."""
+
+    inertial: Matrix  # L
+    at_once: Matrix
+    sprung: Matrix  # Z
+    loose: Matrix  # Y
+    others: Matrix  # balances of motions that something damps or locks
+
+
+@part(typed=True, apart=True)
+def rates_of(sizes: Sizes, rates: Matrix) -> Rates:
+    """The parts of the table of rates."""
+    na, k, ng = sizes.inertial, sizes.elements, sizes.states - sizes.inertial
+    nv, width = na + sizes.massless, rates.shape[1]
+    return Rates(
+        block(rates, 0, ng, 0, width),
+        block(rates, ng, ng + k, 0, width),
+        block(rates, ng + k, ng + k + sizes.dampers, na, nv),
+        block(rates, ng + k + sizes.dampers, rates.shape[0], na, nv),
+    )
+
+
+@part(typed=True, apart=True)
+def locks_of(sizes: Sizes, kind: Ints, locks: Matrix, state: Ints) -> Locks:
+    """Locked elements whose rows are independent, and whether those hold each element.
+
+    An element that depends on independent locks does not move; if it is locked itself, it is so without force.
+    """
+    k, na, nv, width = sizes.elements, sizes.inertial, sizes.inertial + sizes.massless, locks.shape[1]
+    moving = block(locks, 0, k, 0, nv)
+    basis, rest = np.zeros((k, nv)), np.zeros(nv)
+    chosen, still = np.zeros(k, np.int64), np.zeros(k, np.bool_)
+    count = 0
+    for e in range(k):
+        if is_locked(kind[e], state[e]) and adds_to(moving[e], basis, count, rest):
+            for j in range(nv):
+                basis[count, j] = rest[j]
+            chosen[count] = e
+            count += 1
+    H = np.zeros((count, width))
+    for e in range(k):
+        still[e] = not adds_to(moving[e], basis, count, rest)
+    for i in range(count):
+        for j in range(width):
+            H[i, j] = locks[chosen[i], j]
+    H_a, H_w, H_z = block(H, 0, count, 0, na), block(H, 0, count, na, nv), block(H, 0, count, nv, width)
+    return Locks(chosen[:count].copy(), still, H_a, H_w, H_z)
+
+
+@part(typed=True, apart=True)
+def is_locked(kind: int, state: int) -> bool:
+    """Whether an element holds its elongation: friction that sticks, a gap that touches."""
+    return (state == 0) == (kind == FRICTION)
+
+
+@part(typed=True, apart=True)
+def adds_to(row: Floats, basis: Matrix, count: int, rest: Floats) -> bool:
+    """Whether a row is independent of the first `count` orthonormal ones; `rest` is then the unit vector it adds."""
+    size, left = 0.0, 0.0
+    for j in range(rest.shape[0]):
+        rest[j] = row[j]
+        size += row[j] ** 2
+    for _ in range(2):  # twice is enough for Gram-Schmidt
+        for i in range(count):
+            along = 0.0
+            for j in range(rest.shape[0]):
+                along += basis[i, j] * rest[j]
+            for j in range(rest.shape[0]):
+                rest[j] -= along * basis[i, j]
+    for j in range(rest.shape[0]):
+        left += rest[j] ** 2
+    if left <= RANK_TOLERANCE**2 * size:
+        return False
+    for j in range(rest.shape[0]):
+        rest[j] /= np.sqrt(left)
+    return True
+
+
+@part(typed=True, apart=True)
+def bases_of(rates: Rates, locks: Locks) -> Bases:
+    """What locks leave to massless motions, and how these divide into damped, sprung and loose ones."""
+    free = null_space(locks.on_w).null
+    forces = null_space(transposed(locks.on_w))
+    undamped = product(free, null_space(product(rates.dampers, free)).null)
+    parts = null_space(product(rates.springs, undamped))
+    sprung, loose = product(undamped, parts.complement), product(undamped, parts.null)
+    others = null_space(transposed(undamped)).null
+    return Bases(forces.null, forces.complement, sprung, loose, others)

@@ -1,0 +1,326 @@
+"""Which mode goes on where a guard was met or an input broke: modes are put on trial until one of them can."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels.arrays import FRICTION, NONE, Array, Floats, Matrix, Run
+from inerter.kernels.crossing import MET, ORDERS, ROUNDING
+from inerter.kernels.declare import part
+from inerter.kernels.flow import input_sizes, inputs_from, over_columns
+
+DONE, PAUSED, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(9)
+ACCEPTED, STRUCK, STRANDED = -1, -2, -3  # verdicts on a mode; another one is the element that must change its state
+VELOCITY, SPRINGS, LOOSE = range(3)  # groups of conditions on entry
+
+
+@part(borrowing=True)
+def switch(run: Run, events: Array, start: float, length: float, who: int) -> int:
+    """Find the mode that goes on from here, after the guard of element `who` (or nothing, -1) was met.
+
+    Starts from the present mode and lets one element after the other change its state, the first that violates its
+    guard first (Murty's least-index rule, finite for friction and contact without impacts); if that does not settle,
+    all states are tried.
+    """
+    place, watch, elements = run.motion.place[0], run.motion.watch, run.mechanics.sizes.elements
+    if place.events + elements > events.shape[0]:
+        return EVENTS_FULL
+    if place.mode >= 0:
+        _as_seen(run, length)
+    _first_trial(run, who)
+    verdict, m = 0, NONE
+    for _ in range(20 + 8 * elements):
+        m = _number_on_trial(run)
+        if m < 0:
+            return _unknown(run)
+        verdict = judge(run, m, length, who)
+        if verdict < 0:
+            break
+        watch[verdict].trial = place.wanted
+    code, struck = 0, False
+    while verdict != ACCEPTED and code < 3 ** min(elements, 6):
+        struck = struck or verdict == STRUCK
+        possible = _nth_trial(run, code)
+        code += 1
+        if possible:
+            m = _number_on_trial(run)
+            if m < 0:
+                return _unknown(run)
+            verdict = judge(run, m, length, who)
+    if verdict != ACCEPTED:
+        return IMPACT if struck else NO_MODE
+    _go_over(run, events, start, m)
+    return DONE
+
+
+@part(borrowing=True, inside=True)
+def _first_trial(run: Run, who: int) -> None:
+    """The present states, with that changed whose guard was crossed; before there is a mode, all at rest."""
+    before, watch = run.motion.place[0].mode, run.motion.watch
+    for e in range(run.mechanics.sizes.elements):
+        free = run.mechanics.limit[e] > 0.0
+        watch[e].trial = run.modes.state[before, e] if before >= 0 else (0 if free else 1)
+    if who >= 0 and watch[who].crossed != 0:
+        watch[who].trial = watch[who].crossed if watch[who].trial == 0 else 0
+
+
+@part(borrowing=True, inside=True)
+def _nth_trial(run: Run, code: int) -> bool:
+    """Put the states on trial that have this number; False if an element cannot have its state."""
+    possible = True
+    for e in range(run.mechanics.sizes.elements):
+        watch = run.motion.watch[e]
+        watch.trial = code % 3 - 1
+        code //= 3
+        possible = possible and (run.mechanics.limit[e] > 0.0 or watch.trial == 1)
+    return possible
+
+
+@part(borrowing=True, inside=True)
+def _number_on_trial(run: Run) -> int:
+    """Number of the mode on trial, or -1."""
+    code = 0
+    for e in range(run.mechanics.sizes.elements):
+        code = 3 * code + run.motion.watch[e].trial + 1
+    return int(run.modes.number[code])
+
+
+@part(borrowing=True, inside=True)
+def _unknown(run: Run) -> int:
+    """Leave to have a mode built; what has been found out about modes on trial must not stay."""
+    for e in range(run.mechanics.sizes.elements):
+        run.motion.watch[e].touch = 0
+    return MODE_UNKNOWN
+
+
+@part(borrowing=True, inside=True)
+def _go_over(run: Run, events: Array, start: float, m: int) -> None:
+    """Go over to mode m, and note what has changed."""
+    motion, place, before = run.motion, run.motion.place[0], run.motion.place[0].mode
+    for i in range(run.mechanics.sizes.states):
+        motion.state[i] = run.room.guess[i]
+    for e in range(run.mechanics.sizes.elements):
+        trial = motion.watch[e].trial
+        if before >= 0 and trial != run.modes.state[before, e]:
+            event = events[place.events]
+            event.time, event.element = start + place.clock, e
+            event.before, event.after = run.modes.state[before, e], trial
+            place.events += 1
+    place.mode = m
+
+
+@part(borrowing=True, inside=True)
+def _as_seen(run: Run, length: float) -> None:
+    """Make the state what its mode has seen of it: without the rounding that drifted off the mode's conditions.
+
+    A velocity of 1e-13 m/s that a long stick has left behind would otherwise choose the direction of the slip.
+    """
+    sizes, motion, room, seen = run.mechanics.sizes, run.motion, run.room, run.mechanics.rows.seen
+    m, n, nu = motion.place[0].mode, sizes.states, sizes.inputs
+    inputs_from(room.numbers, sizes.roads, nu, length, motion.place[0].clock, length, room.inputs)
+    for i in range(n):
+        room.guess[i] = over_columns(run.modes.maps[m, seen + i], motion.state, room.inputs[0], n, nu)
+    for i in range(n):
+        motion.state[i] = room.guess[i]
+        motion.scale[i] = max(motion.scale[i], abs(motion.state[i]))
+
+
+@part(borrowing=True)
+def judge(run: Run, m: int, length: float, who: int) -> int:
+    """Whether mode m can go on from here: ACCEPTED, STRUCK, STRANDED, or the element whose state must change.
+
+    First the conditions on entry, then each guard by the sign of its first derivative that is not zero.
+    """
+    sizes, room, clock = run.mechanics.sizes, run.room, run.motion.place[0].clock
+    run.motion.place[0].left -= 1
+    d = min(run.modes.reach[m], length)
+    inputs_from(room.numbers, sizes.roads, sizes.inputs, length, clock, d, room.inputs)
+    input_sizes(room.numbers, sizes.roads, sizes.inputs, length, clock, d, room.input_sizes)
+    distance = _guess(run)
+    for e in range(sizes.elements):
+        if _is_apart(run, e, distance):
+            run.motion.place[0].wanted = 0
+            return e
+    first: Any = np.int64(0)
+    for group in range(3):
+        last = first + run.modes.conditions[m, group]
+        if _is_broken(run, m, first, last):
+            verdict = _blame(run, m, first, last, group)
+            if verdict != ACCEPTED:
+                return verdict
+        for j in range(sizes.states):
+            room.guess[j] += _asked(run.modes.reaction[m], j, room.residual, first, last)
+        first = last
+    return _judge_guards(run, m, d, who)
+
+
+@part(borrowing=True, inside=True)
+def _guess(run: Run) -> float:
+    """Start from the state as it is, and from how exact it is; the size of positions.
+
+    What has not moved yet is no finer than what has.
+    """
+    sizes, motion, room = run.mechanics.sizes, run.motion, run.room
+    speed, length_scale = 0.0, 0.0
+    for i in range(sizes.states):
+        room.guess[i] = motion.state[i]
+        if i < sizes.inertial:
+            speed = max(speed, motion.scale[i])
+        else:
+            length_scale = max(length_scale, motion.scale[i])
+    for i in range(sizes.states):
+        room.sizes[0, i] = speed if i < sizes.inertial else length_scale
+    return length_scale
+
+
+@part(borrowing=True, inside=True)
+def _is_apart(run: Run, e: int, length_scale: float) -> bool:
+    """Whether a gap that is to touch is not at its limit; if it is, its elongation becomes the limit."""
+    mechanics, sizes, trial = run.mechanics, run.mechanics.sizes, run.motion.watch[e].trial
+    limit, own = mechanics.limit[e], mechanics.own_position[e]
+    if mechanics.kind[e] == FRICTION or trial == 0 or not limit > 0.0:
+        return False
+    beyond, size = -trial * limit, limit
+    for j in range(mechanics.lengths.shape[1]):
+        at = j + sizes.inertial
+        inside = at < sizes.states
+        term = mechanics.lengths[e, j] * (run.motion.state[at] if inside else run.room.inputs[0, at - sizes.states])
+        beyond += term
+        size += abs(term)
+    if abs(beyond) > MET * size + ROUNDING * length_scale:
+        return True
+    if own >= 0:
+        run.room.guess[sizes.inertial + own] = trial * limit
+    return False
+
+
+@part(borrowing=True, inside=True)
+def _is_broken(run: Run, m: int, first: int, last: int) -> bool:
+    """Whether conditions on entry do not hold; how far they are from that goes to `room.residual`."""
+    n, nu, room = run.mechanics.sizes.states, run.mechanics.sizes.inputs, run.room
+    broken, u = False, room.inputs[0]
+    for i in range(first, last):
+        row = run.modes.maps[m, run.mechanics.rows.entry + i]
+        room.residual[i] = over_columns(row, room.guess, u, n, nu)
+        size = _size(row, room.sizes[0], u, n, nu) + abs(row[n + nu])
+        broken = broken or abs(room.residual[i]) > 1e-10 * size
+    return broken
+
+
+@part(borrowing=True, inside=True)
+def _blame(run: Run, m: int, first: int, last: int, group: int) -> int:
+    """What follows from conditions that do not hold: the element that cannot bear what they ask of it, or a verdict."""
+    mechanics, place, n = run.mechanics, run.motion.place[0], run.mechanics.sizes.states
+    reaction, residual, largest = run.modes.reaction[m], run.room.residual, 0.0
+    for e in range(mechanics.sizes.elements):
+        largest = max(largest, abs(_asked(reaction, n + e, residual, first, last)))
+    for e in range(mechanics.sizes.elements):
+        trial = run.motion.watch[e].trial
+        s = _asked(reaction, n + e, residual, first, last)
+        if mechanics.limit[e] == 0.0 or abs(s) <= 1e-9 * largest:
+            continue
+        if trial == 0 and group == VELOCITY and mechanics.kind[e] == FRICTION:
+            place.wanted = 1 if s > 0.0 else -1
+            return e
+        if trial * s < 0.0:
+            place.wanted = 0
+            return e
+    if group == SPRINGS:
+        return ACCEPTED
+    return STRUCK if group == VELOCITY else STRANDED
+
+
+@part(typed=True, borrowing=True)
+def _asked(reaction: Matrix, row: int, residual: Floats, first: int, last: int) -> float:
+    """What conditions on entry ask of a part of the state, or of an element."""
+    total = 0.0
+    for i in range(first, last):
+        total += reaction[row, i] * residual[i]
+    return total
+
+
+@part(typed=True, borrowing=True)
+def _size(row: Floats, size: Floats, u: Floats, n: int, nu: int) -> float:
+    """Sum of the sizes of what a row adds up: its rounding is a small multiple of this."""
+    total = 0.0
+    for j in range(n):
+        total += abs(row[j]) * size[j]
+    for j in range(nu):
+        total += abs(row[n + j] * u[j])
+    return total
+
+
+@part(borrowing=True, inside=True)
+def _judge_guards(run: Run, m: int, d: float, who: int) -> int:
+    """The first element whose guard does not stay within its limits, or ACCEPTED."""
+    mechanics, place, before = run.mechanics, run.motion.place[0], run.motion.place[0].mode
+    place.known = -1
+    for e in range(mechanics.sizes.elements):
+        trial = run.motion.watch[e].trial
+        was = run.modes.state[max(before, 0), e]  # slip up and slip down have the same guard
+        slips = mechanics.kind[e] == FRICTION and trial * was != 0
+        side = _violated(run, m, e, d, before >= 0 and e == who and (trial == was or slips))
+        if side != 0:
+            place.wanted = side if trial == 0 else 0
+            return e
+    return ACCEPTED
+
+
+@part(borrowing=True, inside=True)
+def _violated(run: Run, m: int, e: int, d: float, met: bool) -> int:
+    """At which limit (-1, 1) the guard of element e is violated at once, else 0; notes how long it stays on a limit.
+
+    `met`: the guard has just been found to be at a limit.
+    """
+    place, watch, limits = run.motion.place[0], run.motion.watch[e], run.modes.entry_limits[m, e]
+    row, n, nu = run.modes.maps[m, run.mechanics.rows.guard + e], run.mechanics.sizes.states, run.mechanics.sizes.inputs
+    room = run.room
+    watch.touch = 0
+    for at in range(2):
+        side, limit = 2 * at - 1, limits[at]
+        if abs(limit) == np.inf:
+            continue
+        for order in range(ORDERS):
+            if order > place.known:
+                _coefficient(run, m, order, d)
+                place.known = order
+            size, total = 0.0, 0.0
+            for j in range(n):
+                total += row[j] * room.series[order, j]
+                size += abs(row[j]) * room.sizes[order, j]
+            for j in range(nu):
+                total += row[n + j] * room.inputs[order, j]
+                size += abs(row[n + j]) * room.input_sizes[order, j]
+            if order == 0:
+                total += row[n + nu] - limit
+                size += abs(limit)
+            if abs(total) <= (MET if order == 0 and met else ROUNDING) * size:
+                watch.touch, watch.side = order + 1, side
+            elif side * total > 0.0:
+                return side
+            else:
+                break
+    return 0
+
+
+@part(borrowing=True, inside=True)
+def _coefficient(run: Run, m: int, k: int, d: float) -> None:
+    """The k-th coefficient of the flow from the guess, and the sizes of what it was added up from."""
+    maps, room, n, nu = run.modes.maps[m], run.room, run.mechanics.sizes.states, run.mechanics.sizes.inputs
+    for i in range(n):
+        if k == 0:
+            room.series[0, i] = room.guess[i]
+            continue
+        row = maps[i]
+        total = row[n + nu] if k == 1 else 0.0
+        size = abs(total)
+        for j in range(n):
+            total += row[j] * room.series[k - 1, j]
+            size += abs(row[j]) * room.sizes[k - 1, j]
+        for j in range(nu):
+            total += row[n + j] * room.inputs[k - 1, j]
+            size += abs(row[n + j]) * room.input_sizes[k - 1, j]
+        room.series[k, i] = total * d / k
+        room.sizes[k, i] = size * d / k

@@ -1,0 +1,229 @@
+"""What rests on private parts of Numba: a cache that may fail, parts without a life of their own, calls by address.
+
+It is used where `declare.way` says so, and only there; `pyproject.toml` bounds the versions of Numba for its sake.
+"""
+
+from __future__ import annotations
+
+import errno
+import gc
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast, get_type_hints
+
+import numba
+import numpy as np
+from numba.core import cgutils, sigutils, typeinfer
+from numba.core.caching import FunctionCache
+from numba.core.codegen import JITCodeLibrary
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.experimental import function_type
+
+from inerter.kernels.cache import tell, tell_of_no_cache
+from inerter.kernels.compiler import FUSED
+from inerter.kernels.declare import Signature
+
+
+def tuned(
+    function: Callable[..., Any], signature: Signature, fused: bool, borrowing: bool, folder: Path | None
+) -> Callable[..., Any]:
+    """Compiled at once for a given signature, and kept in a cache that may fail."""
+    settings: Any = numba.config
+    empty = folder is not None and not any(folder.iterdir())
+    kept = _cache_in(folder, function)
+    if empty and kept:
+        tell()
+    options: dict[str, Any] = {"error_model": "numpy", "nogil": True}
+    if fused:  # a product and a sum in one instruction, with one rounding, and four of them side by side
+        options["fastmath"] = FUSED
+        settings.SLP_VECTORIZE = 1
+    if borrowing:  # no reference counts, which took half of the time
+        options["_nrt"] = False
+    result: Any = numba.njit(**options)(function)
+    if kept:
+        result._cache = kept
+    types = _types(signature)
+    if types is not None and not settings.DISABLE_JIT:
+        _compile(result, types)
+    return cast("Callable[..., Any]", result)
+
+
+def _types(signature: Signature) -> Any:
+    """A signature as the compiler takes it."""
+    return signature(numba.types) if callable(signature) else signature
+
+
+def signature_of(function: Callable[..., Any]) -> Any:
+    """The signature that a function's annotations tell."""
+    hints = get_type_hints(function, include_extras=True)
+    returned = _type_of(hints.pop("return"))
+    return returned(*(_type_of(hint) for hint in hints.values()))
+
+
+_NUMBERS: dict[Any, Any] = {int: numba.int64, float: numba.float64, bool: numba.boolean, type(None): numba.void}
+
+
+def _type_of(hint: Any) -> Any:
+    """A number, a `NamedTuple` of types, or what `Annotated` says: in words, a record, or (a record,) for arrays."""
+    if hint in _NUMBERS:
+        return _NUMBERS[hint]
+    if isinstance(hint, type) and issubclass(hint, tuple):
+        fields = [_type_of(field) for field in get_type_hints(hint, include_extras=True).values()]
+        alike = all(field == fields[0] for field in fields)
+        types: Any = numba.types
+        return types.NamedUniTuple(fields[0], len(fields), hint) if alike else types.NamedTuple(tuple(fields), hint)
+    (said,) = hint.__metadata__
+    if isinstance(said, np.dtype):
+        return numba.from_dtype(said)
+    return numba.from_dtype(said[0])[::1] if isinstance(said, tuple) else eval(said, {}, vars(numba.types))
+
+
+class _Cache(FunctionCache):
+    """The compiler's cache, which may fail: what cannot be read is compiled, and what cannot be kept is not."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+        except Exception:  # a file cut short may raise anything
+            self._forget()
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+        except OSError as error:
+            self._forget()
+            tell_of_no_cache(Path(self.cache_path).parents[1], error)
+
+    def _forget(self) -> None:
+        with suppress(OSError):
+            self.flush()  # type: ignore[no-untyped-call]
+
+
+def _cache_in(folder: Path | None, function: Callable[..., Any]) -> _Cache | None:
+    """The cache of a function in a folder; None if nothing can be written there."""
+    if folder is None:
+        return None
+    try:
+        found: Any = _Cache(function)  # type: ignore[no-untyped-call]
+    except RuntimeError:  # no place at all can be written
+        found = None
+    if found is not None and Path(found.cache_path).is_relative_to(folder):
+        return cast("_Cache", found)
+    tell_of_no_cache(folder.parent, OSError(errno.EACCES, os.strerror(errno.EACCES)))
+    return None
+
+
+def _compile(function: Any, signature: Any) -> None:
+    """Compile for one signature; it stays the only one if it has a type that is returned."""
+    collecting = gc.isenabled()
+    gc.disable()  # compiling makes millions of objects that stay: looking for garbage takes a sixth of the time
+    try:
+        with typeinfer.register_dispatcher(function):
+            function.compile(signature)
+    finally:
+        if collecting:
+            gc.enable()
+    if not isinstance(parsed(signature), tuple):
+        function.disable_compile()
+
+
+def parsed(signature: Any) -> Any:
+    """A signature as types; without one that is returned, only those of the arguments."""
+    arguments, returned = sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
+    return arguments if returned is None else returned(*arguments)
+
+
+def address_of(function: Any, signature: Signature) -> int:
+    """The address of a compiled function, for other compiled code that is handed it."""
+    wrapper_address: Any = function_type._get_wrapper_address
+    return int(wrapper_address(function, parsed(_types(signature))))
+
+
+def function_at_type(signature: Signature) -> Any:
+    """The compiler's type of what makes a function of an address."""
+    kind: Any = numba.types.FunctionType(parsed(_types(signature)))
+
+    def definition(typing: Any, address: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+            struct_of: Any = cgutils.create_struct_proxy
+            function = struct_of(kind)(context, builder)
+            function[0] = builder.inttoptr(given[0], cgutils.voidptr_t)
+            return function._getvalue()
+
+        return kind(numba.types.int64), generate
+
+    return instruction_type(definition)
+
+
+def instruction_type(definition: Callable[..., Any]) -> Any:
+    """The compiler's type of an instruction."""
+    made: Any = numba.extending.intrinsic(definition)
+    context = cpu_target.typing_context
+    context.refresh()
+    return context.resolve_value_type(made)
+
+
+class PartDispatcher(CPUDispatcher):
+    """What makes a part of compiled code: see `declare.part`."""
+
+    def __init__(
+        self, function: Callable[..., Any], signature: Signature, borrowing: bool, fused: bool, place: str
+    ) -> None:
+        self.library: Any = {"apart": _Apart, "inside": _Inside, "within": _Within}[place]
+        options: dict[str, Any] = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
+        options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        if fused:
+            options["fastmath"] = FUSED
+        super().__init__(function, targetoptions=options | ({"_nrt": False} if borrowing else {}))
+        self.wanted = _types(signature)
+
+    def get_call_template(self: Any, args: Any, kws: Any) -> Any:
+        codegen = cpu_target.target_context.codegen()  # the compiler's lock is held here
+        before, codegen._library_class = codegen._library_class, self.library
+        try:
+            if self.wanted is not None and self._can_compile:
+                self.compile(self.wanted)
+                self.disable_compile()
+            return super().get_call_template(args, kws)
+        finally:
+            codegen._library_class = before
+
+
+class _Within(JITCodeLibrary):
+    """Code that others contain: they optimise it, and it never becomes machine code by itself."""
+
+    codegen = SimpleNamespace(set_env=lambda name, environment: None)
+
+    def get_pointer_to_function(self: Any, name: str) -> int:
+        self._ensure_finalized()
+        return 0
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+
+
+class _Marked(_Within):
+    """Code whose functions carry an attribute that tells the optimiser what to do with calls of them."""
+
+    attribute: str
+
+    def add_llvm_module(self, module: Any) -> None:
+        for function in module.functions:
+            if not function.is_declaration:
+                function.add_function_attribute(self.attribute)
+        super().add_llvm_module(module)  # type: ignore[no-untyped-call]
+
+
+class _Inside(_Marked):
+    attribute = "alwaysinline"
+
+
+class _Apart(_Marked):
+    attribute = "noinline"

@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 from scipy.stats import binom, t
 
-from inerter.identification.intervals import optimum_of, profiles
+from inerter.identification.intervals import best_fit_of, profiles
 
 TIME = np.linspace(0.0, 1.0, 400)
 SIZE = 1e-3  # of the errors: so small that none is an outlier
@@ -42,7 +42,7 @@ class Explicit:
 
 
 def intervals(problem, start):
-    optimum = optimum_of(problem, np.asarray(start, dtype=float))
+    optimum = best_fit_of(problem, np.asarray(start, dtype=float))
     found = profiles(problem, optimum)
     assert all(side.told for p in found for side in (p.lower, p.upper))
     return optimum.point, np.array([(p.lower.end, p.upper.end) for p in found])

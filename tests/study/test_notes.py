@@ -9,8 +9,9 @@ from pathlib import Path
 
 from hypothesis import given
 from hypothesis import strategies as st
+from study_text import ELEMENTS, study_text
 
-from inerter.files.study.cases import Case, Outcome, cases
+from inerter.files.study.cases import Case, Outcome, cases, run_case
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
 from inerter.methods.note import Note, parts_of
@@ -36,6 +37,19 @@ def test_a_note_is_a_text_that_keeps_its_numbers() -> None:
     assert note == "a damper of 1234.57 N s/m"
     assert pickle.loads(pickle.dumps(note)).parts == note.parts
     assert parts_of("plain") == ("plain",)
+
+
+def test_a_note_of_a_method_and_of_its_design_is_one(tmp_path: Path) -> None:
+    """Linear analysis says what it leaves out, and so does the study for it, among several methods too."""
+    settings = 'indices = ["J1"]\nevaluate = ["norm", "statistical-linearisation"]'
+    file = tmp_path / "study.toml"
+    file.write_text(study_text(settings, elements=f'{ELEMENTS}\nf = "10 N"', layouts='S = "k | c | f"'))
+    study = load_study(file)
+    (case,) = cases(study)
+    data = dataset(study, {case: run_case(study, case)})
+    lines = data.attrs["notes"].splitlines()
+    assert "S: norm: friction 'f' in 'strut' left out" in lines
+    assert len(lines) == len(set(lines)) == 2
 
 
 def _outcome(case: Case, note: Note) -> Outcome:

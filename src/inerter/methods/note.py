@@ -29,6 +29,16 @@ def parts_of(note: str) -> Parts:
     return note.parts if isinstance(note, Note) else (note,)
 
 
+def after(prefix: str, note: str) -> Parts:
+    """The parts of a note with a word before it.
+
+    >>> after("norm: ", "friction left out"), after("c = ", Note(2.0, " N s/m"))
+    (('norm: friction left out',), ('c = ', 2.0, ' N s/m'))
+    """
+    first, *rest = parts_of(note)
+    return (f"{prefix}{first}", *rest) if isinstance(first, str) else (prefix, first, *rest)
+
+
 def text_of(parts: Parts) -> str:
     """The parts as text.
 

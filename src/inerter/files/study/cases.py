@@ -10,7 +10,7 @@ import numpy as np
 from inerter.errors import OK, InerterError, Status, StatusKind
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
-from inerter.methods.note import parts_of
+from inerter.methods.note import after, parts_of
 from inerter.methods.registry import is_blind
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
@@ -138,8 +138,8 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
     bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
     left_out = design_notes(study, vehicle.mechanism())
-    notes = [(_prefix(study, m), *parts_of(note)) for m, e in own.items() for note in e.notes]
-    notes += [("", *parts_of(note)) for note in left_out]
+    notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
+    notes += [parts_of(note) for note in left_out]
     return Outcome(
         case.layout,
         case.index,

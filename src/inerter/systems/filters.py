@@ -172,25 +172,37 @@ def _is_stable(descending: list[Fraction]) -> bool:
     return True
 
 
+@lru_cache(maxsize=64)  # an index is asked for its question again and again
 def _transfer_function(system: LinearSystem) -> tuple[list[Fraction], list[Fraction]]:
     """Numerator and denominator, the highest power first: from c A^k b, and from the traces of the powers of A."""
     n = system.order
-    A = [[Fraction(x) for x in row] for row in system.A.tolist()]
-    b, c = [Fraction(x) for x in system.B[:, 0].tolist()], [Fraction(x) for x in system.C[0].tolist()]
-    direct = Fraction(float(system.D[0, 0]))
-    column, bottom, powers = b, [Fraction(1)], A
+    A, size = _whole(system.A)
+    column, more = _whole(system.B)
+    (row,), most = _whole(system.C)
+    scale, powers, bottom = more * most, A, [Fraction(1)]
     traces, markov = list[Fraction](), list[Fraction]()
-    for _ in range(n):
-        traces.append(sum((powers[i][i] for i in range(n)), Fraction(0)))
-        markov.append(sum((x * y for x, y in zip(c, column, strict=True)), Fraction(0)))
-        column = [sum((x * y for x, y in zip(row, column, strict=True)), Fraction(0)) for row in A]
-        powers = [[sum((row[k] * A[k][j] for k in range(n)), Fraction(0)) for j in range(n)] for row in powers]
+    for k in range(n):
+        markov.append(Fraction(sum(c * b for c, (b,) in zip(row, column, strict=True)), scale * size**k))
+        traces.append(Fraction(sum(powers[i][i] for i in range(n)), size ** (k + 1)))
+        column, powers = _product(A, column), _product(powers, A)
     for k in range(1, n + 1):
         bottom.append(-sum((bottom[k - i] * traces[i - 1] for i in range(1, k + 1)), Fraction(0)) / k)
-    top = [direct * x for x in bottom]
+    top = [Fraction(float(system.D[0, 0])) * x for x in bottom]
     for k in range(1, n + 1):
         top[k] += sum((bottom[k - 1 - i] * markov[i] for i in range(k)), Fraction(0))
     return top, bottom
+
+
+def _whole(matrix: NDArray[np.float64]) -> tuple[list[list[int]], int]:
+    """A matrix as whole numbers over one."""
+    exact = [[Fraction(x) for x in row] for row in matrix.tolist()]
+    size = math.lcm(1, *(x.denominator for row in exact for x in row))
+    return [[int(x * size) for x in row] for row in exact], size
+
+
+def _product(left: list[list[int]], right: list[list[int]]) -> list[list[int]]:
+    columns = list(zip(*right, strict=True))
+    return [[sum(x * y for x, y in zip(row, column, strict=True)) for column in columns] for row in left]
 
 
 def _log2(number: int) -> float:

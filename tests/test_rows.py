@@ -12,7 +12,7 @@ import pytest
 from study_text import study_text
 
 import inerter as it
-from inerter.errors import MechanismError, RowError
+from inerter.errors import MechanismError, RowError, UnknownRowError
 from inerter.fields import fields_of, mounts_of
 from inerter.files.study.loading import load_study
 from inerter.files.study.study import write_resolved
@@ -41,6 +41,10 @@ def test_a_table_keeps_the_order_in_which_rows_came() -> None:
     assert [each.size for each in table.values()] == [1, 2, 3]
     assert repr(table) == "<thing: b, a, 0>"
     assert table.add(third) is third
+    assert table.get("c") is None
+    with pytest.raises(UnknownRowError) as caught:
+        table["third"]
+    assert str(caught.value) == "There is no thing 'third' (there are: b, a, 0)."
     table.remove(third)
     assert (list(table), "0" in table, len(table)) == (["b", "a"], False, 2)
 
@@ -83,6 +87,13 @@ def test_our_own_rows_cannot_be_replaced(name: str) -> None:
         with pytest.raises(RowError, match=rf"another {'kind of element' if name == 'element' else name} with the"):
             TABLES[name].add(copy)
         assert TABLES[name].add(known) is known
+
+
+@pytest.mark.parametrize("table", [*TABLES.values(), it.SIGNALS, it.PAPERS])
+def test_a_key_that_is_nearly_right_is_proposed(table: Rows[Any]) -> None:
+    for key in table:
+        with pytest.raises(it.InerterError, match=rf"no .* '{key}x' \(there are: .*{key}.*\)\. Did you mean '"):
+            table[f"{key}x"]
 
 
 # --- vehicles ---

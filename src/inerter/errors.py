@@ -64,6 +64,13 @@ class RowError(InerterError, ValueError):
     """A row that cannot stand in its table, or a distribution whose rows cannot be loaded."""
 
 
+class UnknownRowError(RowError, KeyError):
+    """A key that no row of a table has."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # a KeyError would put it in quotes
+
+
 class StudyError(InerterError, ValueError):
     """A study file, or a result folder, that cannot be used."""
 

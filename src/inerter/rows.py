@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from difflib import get_close_matches
 from functools import lru_cache, wraps
 from pathlib import Path
 from threading import RLock
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from inerter.errors import RowError
+from inerter.errors import RowError, UnknownRowError
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -62,7 +63,12 @@ class Rows(Mapping[str, Row], Generic[Row]):
 
     def __getitem__(self, key: str) -> Row:
         load()
-        return self._rows[key]
+        try:
+            return self._rows[key]
+        except KeyError:
+            close = get_close_matches(str(key), self._rows, n=1)
+            hint = f" Did you mean {close[0]!r}?" if close else ""
+            raise UnknownRowError(f"There is no {self._what} {key!r} (there are: {', '.join(self)}).{hint}") from None
 
     def __iter__(self) -> Iterator[str]:
         load()

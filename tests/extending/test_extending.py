@@ -236,6 +236,28 @@ def test_the_paper_is_reproduced(place: Path, tmp_path: Path, as_json: bool) -> 
     assert "--force" in again.stderr
 
 
+def test_the_value_of_the_element_is_swept(place: Path, tmp_path: Path) -> None:
+    """A flywheel of twice the moment in a screw of sqrt(2) times the pitch is the same device."""
+    values = {}
+    for pitch, moments in (
+        ("10 mm", '["1e-4 kg m^2", "4e-4 kg m^2"]'),
+        ("14.142135623730951 mm", '["2e-4 kg m^2", "8e-4 kg m^2"]'),
+    ):
+        text = BASE.replace("12 mm", pitch).replace('{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }', '"1e-4 kg m^2"')
+        text = text.replace('{ from = "500 N s/m", to = "20 kN s/m" }', '"3 kN s/m"').replace('optimise = "norm"\n', "")
+        text = (
+            text.replace('"quadrature", "statistical-linearisation"', '"quadrature"') + f"sweep = {{ J = {moments} }}\n"
+        )
+        (tmp_path / "swept.toml").write_text(text, encoding="utf-8")
+        inerter(place, "run", "swept.toml", "-o", pitch, cwd=tmp_path)
+        found = [row for row in rows(tmp_path / pitch) if row["layout"] == "S3"]
+        assert len({row["J [kg m^2]"] for row in found}) == 2
+        values[pitch] = [float(row["value"]) for row in found]
+    ours, theirs = values.values()
+    assert ours == pytest.approx(theirs, rel=1e-9)
+    assert len(ours) == len(set(ours)) == 12
+
+
 BAD = {
     "model": ('"seated-car"', '"seeted-car"', "vehicle.model", ['"seated-car"', 'Did you mean "seated-car"?']),
     "field": ('seat_stiffness = "15 kN/m"\n', "", "vehicle.seat_stiffness", ['seat_stiffness = "15 kN/m"']),

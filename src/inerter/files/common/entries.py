@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, NamedTuple
 
 from pydantic import PlainValidator
@@ -10,8 +10,8 @@ from pydantic import PlainValidator
 from inerter.files.common.problem import EntryError
 from inerter.files.common.suggest import nearest
 from inerter.files.common.told_kind import ToldKind, names_kind, told_kind
-from inerter.networks.elements import NAME
-from inerter.networks.elements.registry import kinds_by_unit, parse_element
+from inerter.networks.elements import NAME, Element
+from inerter.networks.elements.registry import kinds_by_unit, kinds_in_unit, parse_element
 from inerter.units import format_quantity, parse_quantity, shown
 
 MOST_POINTS = 10_000
@@ -81,9 +81,18 @@ def fixed_amount(text: Any) -> Amount | ToldKind:
 
 
 def amount(text: Any) -> Amount:
-    """The value of an element."""
-    unit, value = parse_element(text)
-    if value < 0.0 or (value == 0.0 and not kinds_by_unit()[unit].may_vanish):
+    """The value of an element whose kind its unit tells."""
+    return _amount(text, kinds_by_unit())
+
+
+def swept_amount(text: Any) -> Amount:
+    """The value of an element that is named elsewhere."""
+    return _amount(text, kinds_in_unit())
+
+
+def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
+    unit, value = parse_element(text, known)
+    if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
         hint = "To leave the element out, drop its branch from the layouts."
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}", hint=hint)
     return Amount(unit, value)
@@ -212,7 +221,7 @@ def sweep_list(values: Any) -> tuple[Amount, ...]:
         got = f"a list of {len(values)}" if isinstance(values, list) else shown(values)
         example = 'k = { from = "10 kN/m", to = "300 kN/m", points = 30 } or k = ["10 kN/m", "20 kN/m"]'
         raise EntryError(got=got, expected=f"2 to {MOST_POINTS} values, as in {example}")
-    amounts = tuple(amount(value) for value in values)
+    amounts = tuple(swept_amount(value) for value in values)
     if len({a.unit for a in amounts}) > 1:
         units = ", ".join(sorted({a.unit for a in amounts}))
         raise EntryError(got=f"values of unlike units, {units}", expected="one")

@@ -26,12 +26,12 @@ from inerter.files.common.entries import (
     some_names,
     some_of,
     sweep_list,
+    swept_amount,
     text,
     whole,
 )
 from inerter.files.common.shape import (
     ROAD,
-    AmountText,
     ElementEntry,
     ElementName,
     Range,
@@ -52,11 +52,14 @@ _MOST_ROADS = 100_000
 SPACINGS = ("linear", "log")
 
 
+SweptText = Annotated[Amount, PlainValidator(swept_amount)]
+
+
 class SweepRange(Shape):
     """Values of one element from one end to the other."""
 
-    lower: AmountText = Field(alias="from", examples=['from = "10 kN/m"'])
-    upper: AmountText = Field(alias="to", examples=['to = "300 kN/m"'])
+    lower: SweptText = Field(alias="from", examples=['from = "10 kN/m"'])
+    upper: SweptText = Field(alias="to", examples=['to = "300 kN/m"'])
     points: Annotated[int, whole(2, MOST_POINTS)] = Field(examples=["points = 30"])
     spacing: Annotated[str, PlainValidator(one_of("a spacing", SPACINGS))] = "linear"
 

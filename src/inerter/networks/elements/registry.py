@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from inerter.networks.elements.damper import Damper
 from inerter.networks.elements.element import Element
 from inerter.networks.elements.friction import Friction
@@ -26,13 +28,19 @@ def kinds_by_unit() -> dict[str, type[Element]]:
     return told
 
 
-def parse_element(text: str) -> tuple[str, float]:
-    """The SI unit that tells the kind of element (a key of `kinds_by_unit`), and the value in that unit.
+def kinds_in_unit() -> dict[str, type[Element]]:
+    """The first kind with a value in each unit."""
+    return {**{kind.unit: kind for kind in reversed(list(ELEMENTS.values()))}, **kinds_by_unit()}
+
+
+def parse_element(text: str, known: Mapping[str, type[Element]] | None = None) -> tuple[str, float]:
+    """The SI unit that tells the kind of element (a key of `known`, by default of `kinds_by_unit`), and the value in
+    that unit.
 
     Raises `UnitError` unless `text` is a finite number followed by a unit of one of the kinds.
 
     >>> parse_element("3.2 kN s/m")
     ('N s/m', 3200.0)
     """
-    told = kinds_by_unit()
+    told = kinds_by_unit() if known is None else known
     return parse_one_of(text, {unit: f"{kind.key}, such as {kind.example}" for unit, kind in told.items()}, Damper.unit)

@@ -44,7 +44,7 @@ class Explicit:
 def intervals(problem, start):
     optimum = best_fit_of(problem, np.asarray(start, dtype=float))
     found = profiles(problem, optimum)
-    assert all(side.told for p in found for side in (p.lower, p.upper))
+    assert all(side.known for p in found for side in (p.lower, p.upper))
     return optimum.point, np.array([(p.lower.end, p.upper.end) for p in found])
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import as_completed
 from dataclasses import dataclass
 from itertools import count as count_from
 from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from inerter.checks import is_number
 from inerter.errors import SimulationError, Status
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
-from inerter.simulation.inputs import InputTable, assign, check_holds, tabulate, whole_steps
+from inerter.simulation.inputs import DrivenMany, InputTable, assign, check_driven, check_holds, tabulate, whole_steps
 from inerter.simulation.start import Initial, ending_of, initial_state
 from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
@@ -63,20 +63,18 @@ def simulate_many(
     vehicles: Sequence[Vehicle],
     *,
     outputs: Sequence[str],
-    road: Sequence[Signal] | None = None,
-    forces: Sequence[Mapping[str, Signal]] | None = None,
-    displacement: Sequence[Signal] | None = None,
     duration: float,
     step: float = 2e-4,
     settled: float = 0.0,
     initial: Initial = "rest",
-    speed: float | None = None,
     jobs: int | None = None,
     progress: Callable[[float], None] | None = None,
+    **driven: Unpack[DrivenMany],
 ) -> Batch:
     """Simulate every vehicle on every signal, and keep the mean squares of `outputs` from `settled` [s] on.
 
-    Sequences of signals are gone through together: the j-th run of a vehicle takes the j-th of each. `jobs` threads
+    What drives them are the keywords of `simulate`, here sequences of signals, which are gone through together: the
+    j-th run of a vehicle takes the j-th of each. `jobs` threads
     (all cores by default) share the work; results do not depend on how many. Each calls `progress` with the part that
     is done, one at a time. See `simulate` for the rest.
 
@@ -88,7 +86,10 @@ def simulate_many(
         raise SimulationError(f"The number of threads is a whole number from 1 on, got jobs = {jobs!r}.")
     if not is_number(settled):
         raise SimulationError(f"The time from which on values count is a number of seconds, got {settled!r}.")
-    count = _count(road, forces, displacement)
+    check_driven("simulate_many", driven)
+    speed = driven.get("speed")
+    groups: dict[str, Any] = {name: group for name, group in driven.items() if name != "speed" and group is not None}
+    count = _count(groups.values())
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
     knots, skipped = whole_steps(duration, step), round(settled / step)
@@ -101,10 +102,10 @@ def simulate_many(
     preparing = Lock()  # much of it holds the interpreter: threads that pass that to and fro lose a quarter of the time
 
     def run(i: int, j: int) -> None:
-        moved, pushed, shaken = (None if g is None else g[j] for g in (road, forces, displacement))
+        own = {name: group[j] for name, group in groups.items()}
         with preparing:
             system = systems[i] = systems[i] or _system(cars[i], names)
-            signals, delays = assign(system.mechanism, moved, pushed, shaken, speed)
+            signals, delays = assign(system.mechanism, **own, speed=speed)
             check_holds(system, signals)
         table = tables[j].take(signals, delays, duration, step, begin, joined)
         with preparing:
@@ -172,9 +173,9 @@ def _listed(what: str, given: object) -> list[Any]:
     return list(given)
 
 
-def _count(*given: Sequence[object] | None) -> int:
+def _count(given: Collection[Any]) -> int:
     """The number of runs of each vehicle."""
-    lengths = {len(g) for g in given if g is not None}
+    lengths = {len(g) for g in given}
     if any(isinstance(g, Signal | Mapping) for g in given) or len(lengths) != 1:
         raise SimulationError(
             "simulate_many takes sequences of signals, all of one length: road=[multisine(...), ...] or forces=[{...}]."

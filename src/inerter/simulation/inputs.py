@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,10 +49,40 @@ class InputTable:
         return int(self.sampled.size)
 
 
+class Driven(TypedDict, total=False):
+    """What drives a run, as keywords of `simulate`."""
+
+    road: Signal | Mapping[str, Signal] | None
+    forces: Signal | Mapping[str, Signal] | None
+    displacement: Signal | None
+    speed: float | None
+
+
+class DrivenMany(TypedDict, total=False):
+    """What drives the runs of `simulate_many`, as keywords: the j-th of each sequence drives the j-th run."""
+
+    road: Sequence[Signal] | None
+    forces: Sequence[Mapping[str, Signal]] | None
+    displacement: Sequence[Signal] | None
+    speed: float | None
+
+
+def check_driven(caller: str, driven: Mapping[str, object]) -> None:
+    """Raises TypeError for a keyword that says nothing of what drives a run."""
+    unknown = [name for name in driven if name not in Driven.__annotations__]
+    if unknown:
+        known = ", ".join(Driven.__annotations__)
+        raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (what drives a run: {known}).")
+
+
 def assign(
-    mechanism: Mechanism, road: object, forces: object, displacement: object, speed: float | None
+    mechanism: Mechanism,
+    road: object = None,
+    forces: object = None,
+    displacement: object = None,
+    speed: float | None = None,
 ) -> tuple[list[Signal | None], list[float]]:
-    """The signal (None: nothing moves) and the delay [s] of every road and force, from the arguments of `simulate`.
+    """The signal (None: nothing moves) and the delay [s] of every road and force, from the keywords of `Driven`.
 
     Raises `SimulationError` for a signal that is missing, that nothing takes, or whose delay is not known.
     """

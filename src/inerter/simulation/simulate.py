@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Literal
+from collections.abc import Callable
+from typing import Literal, Unpack
 
 from inerter.checks import is_number
 from inerter.errors import SimulationError
-from inerter.signals.signal import Signal
 from inerter.simulation import event_driven, stepped
-from inerter.simulation.inputs import MEMORY_LIMIT, assign, check_holds, tabulate, whole_steps
+from inerter.simulation.inputs import MEMORY_LIMIT, Driven, assign, check_driven, check_holds, tabulate, whole_steps
 from inerter.simulation.observe import trajectory_of
 from inerter.simulation.start import Initial, ending_of, initial_state
 from inerter.simulation.steady import common_period, settle
@@ -23,28 +22,26 @@ _REPORTS = 100  # of progress
 def simulate(
     vehicle: Vehicle,
     *,
-    road: Signal | Mapping[str, Signal] | None = None,
-    forces: Signal | Mapping[str, Signal] | None = None,
-    displacement: Signal | None = None,
     duration: float | None = None,
     step: float = 2e-4,
     integrator: Literal["event-driven", "time-stepping"] = "event-driven",
     initial: Initial = "rest",
-    speed: float | None = None,
     every: int = 1,
     energy: bool = False,
     memory_limit: float = MEMORY_LIMIT,
     progress: Callable[[float], None] | None = None,
+    **driven: Unpack[Driven],
 ) -> Trajectory:
     """Simulate `vehicle` for `duration` [s] with true sticking and Nordin's backlash, sampled every `step` [s].
 
-    `road` moves all roads, each after its delay at `speed` [m/s] (by default the signal's own); given by name, each
-    road has its own signal and no further delay. `displacement` moves a rig; `forces` are external forces by name.
-    Roads may all stay at rest while forces act, and forces that get no signal are zero.
+    What drives it is said by the keywords of `Driven`. `road` moves all roads, each after its delay at `speed` [m/s] (by
+    default the signal's own); given by name, each road has its own signal and no further delay. `displacement` moves
+    a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and forces that get no
+    signal are zero.
 
     The event-driven integrator is exact between events for inputs that are cubics over a step (Hermite data, lines,
     holds), and finds events to near machine precision. `"time-stepping"` is independent of it, of first order in
-    `step`, and takes any number of elements. `every` keeps each so-manieth step only.
+    `step`, and takes any number of elements. `every = n` keeps every n-th step only.
 
     `initial`: `"rest"`, unstrained over the roads as they are at t = 0; `"preload"`, in static equilibrium under the
     forces as they are at t = 0; `"periodic"`, the steady state of a periodic input, repeated until the state repeats
@@ -55,8 +52,9 @@ def simulate(
     would need more than `memory_limit` [bytes]; `SignalError`, `MechanismError` and `DesignError` as signals and
     vehicles do. An integration that cannot go on ends in the trajectory's `status`.
     """
+    check_driven("simulate", driven)
     system = piecewise(vehicle)
-    signals, delays = assign(system.mechanism, road, forces, displacement, speed)
+    signals, delays = assign(system.mechanism, **driven)
     periodic = isinstance(initial, str) and initial == "periodic"
     length = _length(duration, common_period(signals) if periodic or duration is None else None, periodic)
     _check_every(every)

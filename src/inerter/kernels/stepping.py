@@ -14,7 +14,7 @@ cheap if the function has one loop nest only and no loop under a condition; othe
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from inerter.kernels.declare import kernel, part
 
@@ -27,6 +27,44 @@ DONE, STUCK, INFINITE = 0, 1, 2  # how a march ended: as it should, without reac
 LIMIT = 400  # solutions tried before a complementarity problem is given up
 PATIENCE = 8  # block changes without progress, before only one reaction is changed at a time
 ROUNDING = 1e-12  # part of the largest rate below which that of another one tells nothing
+
+
+class Step(NamedTuple):
+    """The constant matrices of a step.
+
+    What is known at its start: displacements (n), momenta (n), inputs, 1; then mean velocities (n), and reactions.
+    """
+
+    predict: Array  # rows over the first four of these for mean velocities, rates, aims and shared rates
+    G: Array
+    pull: Array  # (n, reactions): the mean velocity that a unit reaction takes away
+    Z: Array  # combinations of reactions whose rates, the last of `predict`, inertia carries
+    inertia: Array  # (n, n), and the next (n, inputs): twice the mean momenta of mean velocities and inputs
+    moved: Array
+    h: float
+    starts: Array  # what is observed at a sample, from the step after it ...
+    ends: Array  # ... and from the step before it; a sample is the mean of both
+
+
+class Scratch(NamedTuple):
+    """Room for one step."""
+
+    guess: Array  # what `predict` makes
+    force: Array  # reactions
+    LU: Array  # their equations
+    pivots: Array
+    weight: Array  # of the reactions in `combine`, and its equations
+    taken: Array
+    Q: Array
+    order: Array
+
+
+class Stretch(NamedTuple):
+    """Which steps are made: from `first` of `total`, of which every `every`-th instant is a sample."""
+
+    first: int
+    total: int
+    every: int
 
 
 @part()
@@ -256,34 +294,11 @@ def move(inertia: Array, moved: Array, h: float, known: Array, at: int) -> None:
 
 
 @kernel("time stepping")
-def march(
-    predict: Array,
-    G: Array,
-    pull: Array,
-    Z: Array,
-    inertia: Array,
-    moved: Array,
-    h: float,
-    starts: Array,
-    ends: Array,
-    inputs: Array,
-    first: int,
-    total: int,
-    every: int,
-    known: Array,
-    law: Array,
-    scratch: Array,
-    out: Array,
-) -> Any:
-    """Step through `inputs`, which begin at step `first` of `total`; `known` and `law` are kept for the next ones.
+def march(step: Step, inputs: Array, stretch: Stretch, known: Array, law: Array, scratch: Scratch, out: Array) -> Any:
+    """Step through `inputs`, a row each; `known` and `law` are kept for the next ones. Samples are added to `out`.
 
-    known: displacements (n), momenta (n), inputs, 1, mean velocities (n), reactions. predict: rows over the first four
-    for mean velocities, rates, aims and shared rates. pull (n, reactions): the mean velocity that a unit reaction takes
-    away. inertia (n, n), moved (n, inputs): twice the mean momenta of mean velocities and inputs. starts, ends: what is
-    observed at a sample, from the step after it and from the step before it; a sample is the mean of both.
-
-    Z: combinations of reactions whose rates, the last of `predict`, inertia carries. The aims of their frictions get
-    the vector a with Z a = rates of least sum a_i^2 / weight_i.
+    Where inertia carries a combination of rates, the aims of its frictions get the vector a with Z a = rates of least
+    sum a_i^2 / weight_i.
 
     Reactions: start from the sides of the step before; all misfits change at once while their number falls, then only
     the last one, which comes to an end for every P-matrix. Source: Judice and Pires (1994), block principal pivoting
@@ -291,8 +306,10 @@ def march(
 
     Returns how it ended and the step that it reached.
     """
-    n, count = pull.shape
+    predict, G, pull, Z, inertia, moved, h, starts, ends = step
+    first, total, every = stretch
     guess, force, LU, pivots, weight, taken, Q, order = scratch
+    n, count = pull.shape
     w = known.shape[0] - n - count
     sample, left = (first + every - 1) // every, -first % every  # the next one, and the steps until then
     for now in range(first, first + inputs.shape[0]):

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, SimulationError, Status, StatusKind
-from inerter.kernels.stepping import DONE, INFINITE, SIDE, SPEED, STUCK, march
+from inerter.kernels.stepping import DONE, INFINITE, SIDE, SPEED, STUCK, Scratch, Step, Stretch, march
 from inerter.simulation.parts import SAME, Parts, check_gaps, parts_of, range_and_null, unit_rows
 from inerter.simulation.scheme import Scheme, scheme_of
 from inerter.systems.graph import Graph
@@ -222,18 +222,16 @@ def _march(scheme: Scheme, table: StepTable, known: Matrix, law: Matrix, every: 
     """All samples, how the march ended, and the step that it reached; `known` and `law` are then those of the end."""
     steps, count, shared = table.time.size - 1, scheme.G.shape[0], sum(scheme.Z.shape)
     samples = np.zeros((steps // every + 1, scheme.starts.shape[0]))
-    scratch = (
+    scratch = Scratch(
         *(np.zeros(scheme.predict.shape[0]), np.zeros(count), np.zeros((count, count)), np.zeros(count, np.int64)),
         *(np.zeros(scheme.Z.shape[1]), np.zeros(shared), np.zeros((shared, shared)), np.zeros(shared, np.int64)),
     )
-    matrices = (scheme.predict, scheme.G, scheme.pull, scheme.Z, scheme.inertia, scheme.moved, scheme.h)
+    step = Step(*(getattr(scheme, name) for name in Step._fields))
     ended, reached = DONE, 0
     chunk = min(CHUNK, 1 << 10)
     while reached < steps and ended == DONE:
         begun, inputs = perf_counter(), _inputs(table, reached, min(reached + chunk, steps))
-        ended, reached = march(
-            *matrices, scheme.starts, scheme.ends, inputs, reached, steps, every, known, law, scratch, samples
-        )
+        ended, reached = march(step, inputs, Stretch(reached, steps, every), known, law, scratch, samples)
         spent = perf_counter() - begun
         chunk = max(1, chunk // 2) if spent > _PAUSE else min(CHUNK, 2 * chunk) if spent < 0.5 * _PAUSE else chunk
     return samples, ended, reached

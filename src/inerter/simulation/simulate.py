@@ -34,10 +34,10 @@ def simulate(
 ) -> Trajectory:
     """Simulate `vehicle` for `duration` [s] with true sticking and Nordin's backlash, sampled every `step` [s].
 
-    What drives it is said by the keywords of `Driven`. `road` moves all roads, each after its delay at `speed` [m/s] (by
-    default the signal's own); given by name, each road has its own signal and no further delay. `displacement` moves
-    a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and forces that get no
-    signal are zero.
+    What drives it is said by the keywords of `Driven`. `road` moves all roads, each after its delay at `speed` [m/s]
+    (by default the signal's own); given by name, each road has its own signal and no further delay. `displacement`
+    moves a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and forces that get
+    no signal are zero.
 
     The event-driven integrator is exact between events for inputs that are cubics over a step (Hermite data, lines,
     holds), and finds events to near machine precision. `"time-stepping"` is independent of it, of first order in

@@ -66,6 +66,5 @@ class Weighed:
 
 def some_filters(rng: np.random.Generator, question: Question) -> object:
     """One for all outputs, or for each its own or none."""
-    if rng.random() < 0.5:
-        return random_filter(rng)
-    return tuple(None if rng.random() < 0.3 else random_filter(rng) for _ in question.outputs)
+    found = tuple(None if rng.random() < 0.3 else random_filter(rng) for _ in question.outputs)
+    return found if any(found) and rng.random() < 0.6 else random_filter(rng)

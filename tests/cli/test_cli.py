@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import resource
+import runpy
 import shlex
 import subprocess
 import sys
@@ -154,6 +155,7 @@ def test_json_is_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert designs["S2"]["status"].startswith("marginal")
 
 
+@pytest.mark.campaign
 def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (EXAMPLES / "ball_screw.toml").read_text(encoding="utf-8")
     study, folder = tmp_path / "screw.toml", tmp_path / "out"
@@ -189,8 +191,9 @@ def test_examples_are_sound(name: str, capsys: pytest.CaptureFixture[str]) -> No
 
 
 @pytest.mark.parametrize("name", ["best_strut.py", "three_axles.py", "rattle.py"])
-def test_python_examples_run(name: str) -> None:
-    subprocess.run([sys.executable, str(EXAMPLES / name)], check=True, capture_output=True)
+def test_python_examples_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(EXAMPLES / name), run_name="__main__")
 
 
 def test_check_says_what_linear_analysis_leaves_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -112,7 +112,6 @@ BRIEF = [
     "inerter simulate my-car.toml --window 2:4",
     "inerter rig examples/rig_fit.toml -o fit.csv",
     "inerter rig examples/rig_friction.toml -o friction.csv",
-    "inerter identify bench.csv --config rig.toml --force",
 ]
 
 

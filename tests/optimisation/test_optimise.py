@@ -157,6 +157,15 @@ def test_a_bound_that_holds_the_optimum_back_is_named(bounds, side):
     assert best.parameters["c"] == pytest.approx(bounds[0 if side == "lower" else 1], rel=1e-14)
 
 
+@pytest.mark.parametrize("bounds", [(0.98, 1e3), (1e-3, 1.02)])
+def test_a_bound_that_is_near_and_holds_nothing_back_is_not_named(bounds):
+    """The best damping in closed form lies 2 % within it, which is a three-hundredth of the range."""
+    expected = 80e3 * math.sqrt((181.75 + 25.0) / 120e3)
+    best = optimise(paper_quarter_car(k | Damper(free(bounds[0] * expected, bounds[1] * expected, "c"))), J1, Norm())
+    assert best.parameters["c"] == pytest.approx(expected, rel=1e-5)
+    assert best.active_bounds == {}
+
+
 def test_bounds_are_never_left():
     car = paper_quarter_car(k | Damper(free(100.0, 1234.5, "c")) - Inerter(free(2.0, 77.7, "b")))
     for index in (J1, J3, J5):

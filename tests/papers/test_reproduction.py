@@ -85,7 +85,7 @@ def test_how_far_method_1_is_from_the_printed_table() -> None:
         alone = row.index == "J5" and "elastic" not in row.nonlinearity
         off.setdefault((row.index, alone), []).append(100.0 * found.difference)
     for said, index in ((comfort, "J1"), (load, "J3"), (both, "J5")):
-        assert f"{max(map(abs, off[index, False])):.1f}" == said
+        assert float(said) - 0.1 < max(map(abs, off[index, False])) <= float(said)
     assert [f"{value:.0f}" for value in off["J5", True]] == ["5", "11", "-5", "-13"]
     assert "5 and 11 % higher than printed for S2 (10 and 20 N), and 5 and 13 % lower for S3" in text
 

@@ -17,7 +17,7 @@ from typing import Any, cast
 import numba
 
 from inerter.kernels.cache import cache_folder
-from inerter.kernels.declare import PLAIN, Instruction, Kernel, Part, Signature, way
+from inerter.kernels.declare import PLAIN, Instruction, Kernel, Part, Signature, private, way
 
 FUSED = {"contract"}
 _ALONE = RLock()
@@ -38,9 +38,8 @@ def compiled(
         try:
             if way() == PLAIN:
                 return _plain(function, fused, folder)
-            from inerter.kernels.tuned import tuned  # noqa: PLC0415 - heavy
-
-            return tuned(function, signature, fused, borrowing, folder)
+            found: Callable[..., Any] = private().tuned(function, signature, fused, borrowing, folder)
+            return found
         finally:
             settings.CACHE_DIR, settings.SLP_VECTORIZE = before
 

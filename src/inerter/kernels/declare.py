@@ -10,6 +10,8 @@ from collections.abc import Callable
 from functools import cached_property, update_wrapper
 from typing import Any, TypeVar, cast
 
+import numpy as np
+
 from inerter.errors import InerterError
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -27,6 +29,13 @@ def way() -> str:
     if chosen not in (TUNED, PLAIN, NONE):
         raise InerterError(f'{SWITCH} is "{TUNED}", "{PLAIN}" or "{NONE}", got {chosen!r}.')
     return chosen
+
+
+def private() -> Any:
+    """All that rests on private parts of the compiler; asked for by code that is being compiled."""
+    from inerter.kernels import tuned  # noqa: PLC0415 - heavy
+
+    return tuned
 
 
 class Kernel:
@@ -75,8 +84,6 @@ class Kernel:
 
 def _quiet(function: Callable[..., Any]) -> Callable[..., Any]:
     """The function as Python, in which a quotient by zero is as quiet as in compiled code."""
-    import numpy as np  # noqa: PLC0415 - heavy
-
     return np.errstate(all="ignore")(function)
 
 
@@ -101,9 +108,7 @@ def _annotated(function: Callable[..., Any]) -> Signature:
     """The signature that a function's annotations tell: numbers, and what `kernels.arrays` names."""
 
     def signature(types: Any) -> Any:
-        from inerter.kernels.tuned import signature_of  # noqa: PLC0415 - heavy
-
-        return signature_of(function)
+        return private().signature_of(function)
 
     return signature
 
@@ -129,9 +134,7 @@ class Part:
 
     @cached_property
     def _dispatcher(self) -> Any:
-        from inerter.kernels.tuned import PartDispatcher  # noqa: PLC0415 - heavy
-
-        return PartDispatcher(self.function, self.signature, self.borrowing, self.fused, self.place)
+        return private().PartDispatcher(self.function, self.signature, self.borrowing, self.fused, self.place)
 
     @property
     def _numba_type_(self) -> Any:
@@ -178,9 +181,7 @@ class Instruction:
 
     @cached_property
     def _numba_type_(self) -> Any:
-        from inerter.kernels.tuned import instruction_type  # noqa: PLC0415 - heavy
-
-        return instruction_type(self.definition)
+        return private().instruction_type(self.definition)
 
 
 def instruction(plain: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
@@ -196,18 +197,15 @@ class FunctionAt:
 
     @cached_property
     def _numba_type_(self) -> Any:
-        from inerter.kernels.tuned import function_at_type  # noqa: PLC0415 - heavy
-
-        return function_at_type(self.signature)
+        return private().function_at_type(self.signature)
 
     def address_of(self, function: Any) -> int:
         """The address of a kernel of this type, compiled by now; 0 where none is needed."""
         if way() != TUNED:
             return 0
-        from inerter.kernels.tuned import address_of  # noqa: PLC0415 - heavy
-
         self._alive.append(function)  # its code goes with it
-        return address_of(function.ready(), self.signature)
+        address: int = private().address_of(function.ready(), self.signature)
+        return address
 
 
 def function_at(kind: Callable[..., Any]) -> Any:

@@ -11,7 +11,7 @@ from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import experiment_of
 from inerter.identification.intervals import best_fit_of
 from inerter.identification.noise import plain
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.search import basin_hopping, starts
 from inerter.identification.sensors import repeated, unavoidable
 from inerter.identification.space import space_of
@@ -30,10 +30,10 @@ def rattle(seed: int = 0) -> it.Record:
     )
 
 
-def problem_of(record: it.Record, model: it.Network) -> Problem:
+def problem_of(record: it.Record, model: it.Network) -> FitProblem:
     """The whole record with the errors that the virtual rig has."""
     rig, experiment = it.Rig(model), experiment_of(record)
-    return Problem(rig, space_of(rig), [experiment], [plain(experiment.kept, 0.12)])
+    return FitProblem(rig, space_of(rig), [experiment], [plain(experiment.kept, 0.12)])
 
 
 def test_the_right_valley_of_a_rattling_device() -> None:

@@ -21,7 +21,7 @@ from inerter.identification.explaining import hypotheses
 from inerter.identification.hypotheses import delay
 from inerter.identification.judging import mean_square
 from inerter.identification.laws import Chained, stepped
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.space import space_of
 
 STARTS = 8
@@ -194,7 +194,7 @@ def test_the_largest_hundredth_does_not_judge() -> None:
 
 def test_what_is_assumed_already_is_no_explanation() -> None:
     rig, assumed = it.Rig(model_of(RIGID)), (delay(0.01),)
-    problem = Problem(rig, space_of(rig, assumed), [experiment_of(record_of(RIGID, 5))], [], assumed=assumed)
+    problem = FitProblem(rig, space_of(rig, assumed), [experiment_of(record_of(RIGID, 5))], [], assumed=assumed)
     names = [h.name for h in hypotheses(problem)]
     assert "delay" not in names
     assert "filtered force" in names

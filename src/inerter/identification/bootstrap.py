@@ -23,7 +23,7 @@ from scipy.stats import t as student
 
 from inerter.identification.experiment import Experiment
 from inerter.identification.intervals import ROBUST, BestFit, steps_of
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.search import improve
 from inerter.identification.sensors import source_of
 
@@ -41,7 +41,7 @@ class Bootstrap:
     predicted: float  # part of the variance of the force that the errors of the encoder leave as it is
 
 
-def bootstrap(problem: Problem, optimum: BestFit, seed: int, draws: int = DRAWS) -> Bootstrap:
+def bootstrap(problem: FitProblem, optimum: BestFit, seed: int, draws: int = DRAWS) -> Bootstrap:
     """Draw records from the best fit, and fit them.
 
     Their scatter comes in place of what the curvature says of independent errors; how far residuals are autocorrelated

@@ -17,7 +17,7 @@ from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import BestFit, Profile
 from inerter.identification.kinds import FitFinding
 from inerter.identification.models import unmounted
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.solving import Solution
 from inerter.identification.space import Space
 from inerter.identification.verdicts import identifiability, suggestions
@@ -98,7 +98,9 @@ def _misfit(fit: Fit, best: Explanation | None) -> Finding:
     return Finding(FitFinding.MISFIT, "warning", numbers=numbers)
 
 
-def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequence[RecordFit]) -> Iterator[Finding]:
+def _of_offsets(
+    problem: FitProblem, values: Mapping[str, float], comparisons: Sequence[RecordFit]
+) -> Iterator[Finding]:
     """What an offset of the load cell may be instead."""
     kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
     friction = sum(v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is Linear.OPEN)
@@ -107,7 +109,7 @@ def _of_offsets(problem: Problem, values: Mapping[str, float], comparisons: Sequ
             yield Finding(FitFinding.OFFSET, "info", c.record.source, {"offset": c.offset})
 
 
-def _of_masses(problem: Problem) -> Iterator[Finding]:
+def _of_masses(problem: FitProblem) -> Iterator[Finding]:
     """What an inertance may be besides."""
     names = zip(problem.space.names, problem.space.kinds, strict=True)
     free = [name for name, kind in names if kind is not None and kind.linear is Linear.MASS]
@@ -188,7 +190,7 @@ def _name_of(element: Element) -> str:
     return str(element.value.name) if isinstance(element.value, Free) else element.label
 
 
-def _criterion(problem: Problem, optimum: BestFit) -> float:
+def _criterion(problem: FitProblem, optimum: BestFit) -> float:
     """Schwarz's criterion: -2 log likelihood of the whitened residuals, plus log(samples) for each unknown."""
     n = optimum.samples
     logs = sum(float(np.sum(np.log(w.weight[w.weight > 0.0]))) for w in problem.whitenings)

@@ -19,7 +19,7 @@ from inerter.identification.hypotheses import Hypothesis, Values, sensors
 from inerter.identification.intervals import BestFit, best_fit_of, steps_of
 from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
 from inerter.records.lost import losses, restored
@@ -37,11 +37,11 @@ class Trial:
     """The best fit of a hypothesis."""
 
     hypothesis: Hypothesis
-    problem: Problem
+    problem: FitProblem
     optimum: BestFit
 
 
-def explanations(problem: Problem, optimum: BestFit, by: Judge, before: Misfit) -> list[Explanation]:
+def explanations(problem: FitProblem, optimum: BestFit, by: Judge, before: Misfit) -> list[Explanation]:
     """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway."""
     found: dict[Suspect, Explanation] = {}
     lost = lost_samples(problem.experiments)
@@ -53,7 +53,7 @@ def explanations(problem: Problem, optimum: BestFit, by: Judge, before: Misfit) 
     return sorted(found.values(), key=lambda e: (-e.explained, len(e.values)))
 
 
-def hypotheses(problem: Problem) -> list[Hypothesis]:
+def hypotheses(problem: FitProblem) -> list[Hypothesis]:
     """All that are not assumed already, and that these records could show."""
     chain = chain_of(problem.rig.device)
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
@@ -90,7 +90,7 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
     return Hypothesis(Suspect.LOST_SAMPLES, moved=moved, read=read, details=lambda values: {"places": tuple(places)})
 
 
-def _tried(problem: Problem, optimum: BestFit, hypothesis: Hypothesis, by: Judge) -> Trial:
+def _tried(problem: FitProblem, optimum: BestFit, hypothesis: Hypothesis, by: Judge) -> Trial:
     """A hypothesis after some steps from the best fit."""
     assumed = (*problem.assumed, hypothesis)
     rig = problem.rig if hypothesis.device is None else Rig(hypothesis.device)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from inerter.identification.noise import OPTIMISM
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.search import improve
 
 Matrix = NDArray[np.float64]
@@ -46,7 +46,7 @@ class BestFit:
 
 
 def best_fit_of(
-    problem: Problem,
+    problem: FitProblem,
     start: Matrix,
     steps: Matrix | None = None,
     evaluations: int = 20,
@@ -104,7 +104,7 @@ class Profile:
         return Profile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
 
-def profiles(problem: Problem, optimum: BestFit) -> list[Profile]:
+def profiles(problem: FitProblem, optimum: BestFit) -> list[Profile]:
     """The profile of every coordinate."""
     tasks = [(i, sign) for i in range(optimum.point.size) for sign in (-1, 1)]
     found = list(problem.pool.map(lambda task: _walk(problem, optimum, *task), tasks))
@@ -117,7 +117,7 @@ def profiles(problem: Problem, optimum: BestFit) -> list[Profile]:
 
 
 def _walk(
-    problem: Problem, optimum: BestFit, i: int, sign: int
+    problem: FitProblem, optimum: BestFit, i: int, sign: int
 ) -> tuple[Side, list[tuple[float, float]], tuple[float, Matrix] | None]:
     """Walk away from the optimum until the rise of the cost meets its threshold."""
     bound = float(problem.space.bounds[1 if sign > 0 else 0][i])
@@ -158,7 +158,7 @@ def _stiffness(optimum: BestFit, i: int) -> float:
     return float(optimum.variance / max(optimum.covariance[i, i], 1e-300))
 
 
-def _follow(problem: Problem, optimum: BestFit, i: int, value: float) -> tuple[float, Matrix]:
+def _follow(problem: FitProblem, optimum: BestFit, i: int, value: float) -> tuple[float, Matrix]:
     """The least cost with coordinate i at `value`, by Gauss-Newton steps with the derivatives of the optimum."""
     lower, upper = problem.space.bounds
     others = np.array([j for j in range(optimum.point.size) if j != i], dtype=int)

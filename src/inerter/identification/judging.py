@@ -18,7 +18,7 @@ from inerter.identification.experiment import Experiment
 from inerter.identification.fit import Misfit
 from inerter.identification.intervals import ROBUST
 from inerter.identification.noise import Whitening, yardstick
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.sensors import sound
 
 Matrix = NDArray[np.float64]
@@ -36,7 +36,7 @@ class Judge:
     checked: Sequence[Whitening]
     draws: Sequence[Matrix]  # (draws, samples) [N] that sound sensors leave of each record
 
-    def misfit(self, problem: Problem, point: Matrix, slow: int | None = None) -> Misfit:
+    def misfit(self, problem: FitProblem, point: Matrix, slow: int | None = None) -> Misfit:
         """Of the problem's device at a point, but for a polynomial of degree `slow` over time in each part.
 
         Infinite where it cannot be simulated.
@@ -81,7 +81,7 @@ class Judge:
         return float(chi2.sf(portmanteau(_compared(w, _centred(residual, w))) * _LAGS / max(usual, _LAGS), _LAGS))
 
 
-def judge_of(problem: Problem, point: Matrix, checked: Sequence[Mask], seed: int) -> Judge | None:
+def judge_of(problem: FitProblem, point: Matrix, checked: Sequence[Mask], seed: int) -> Judge | None:
     """The judge of a device at a point, whose draws are of other errors than its whitening; None if it cannot move."""
     known, draws = sound(problem, point, (seed, 5)), sound(problem, point, (seed, 6))
     if known is None or draws is None:

@@ -29,7 +29,7 @@ FAILED = 1e3  # whitened residual of a simulation that cannot go on
 
 
 @dataclass(eq=False)
-class Problem:
+class FitProblem:
     """A rig with unknowns and the records that they should explain."""
 
     rig: Rig

@@ -15,7 +15,7 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 from inerter.identification.options import POINTS
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 
 Matrix = NDArray[np.float64]
 Stages = tuple[tuple[float, int, int], ...]  # horizon, candidates, and evaluations of each
@@ -29,7 +29,7 @@ _FARTHEST = 0.3  # in a coordinate
 
 
 def search(
-    problem: Problem,
+    problem: FitProblem,
     guess: Mapping[str, tuple[float, float]],
     seed: int,
     points: int = POINTS,
@@ -65,7 +65,7 @@ def _distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:
     return result
 
 
-def starts(problem: Problem, guess: Mapping[str, tuple[float, float]], seed: int, count: int) -> list[Matrix]:
+def starts(problem: FitProblem, guess: Mapping[str, tuple[float, float]], seed: int, count: int) -> list[Matrix]:
     """Points of a Sobol sequence: three quarters of them around the guess, if there is one, and some without backlash.
 
     A value that may be zero is drawn as the cube of an even one, for its order of magnitude is not known.
@@ -91,7 +91,7 @@ def starts(problem: Problem, guess: Mapping[str, tuple[float, float]], seed: int
     return result
 
 
-def basin_hopping(problem: Problem, start: Matrix, seed: int) -> Matrix:
+def basin_hopping(problem: FitProblem, start: Matrix, seed: int) -> Matrix:
     """The best fit that can be reached from `start` by hops to nearby points, each improved.
 
     Hops go as far as the linearised cost would rise by about itself: far along valleys, and far from bad fits.
@@ -121,7 +121,7 @@ def soft(residual: Matrix) -> float:
 
 
 def improve(
-    problem: Problem,
+    problem: FitProblem,
     start: Matrix,
     evaluations: int,
     steps: Matrix | None = None,

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, disturbed
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.records.periods import period_of
 from inerter.records.smoothing import resolution
 
@@ -40,7 +40,7 @@ class Source:
         return [shaken(e, motion, force, random) for e, motion, force in parts]
 
 
-def source_of(problem: Problem, point: Matrix) -> Source | None:
+def source_of(problem: FitProblem, point: Matrix) -> Source | None:
     """The device at `point` on the motions of the records; None if it cannot be moved so."""
     motions = [repeated(e) for e in problem.experiments]
     calm = [disturbed(e, m - e.record.displacement) for e, m in zip(problem.experiments, motions, strict=True)]
@@ -48,7 +48,7 @@ def source_of(problem: Problem, point: Matrix) -> Source | None:
     return Source(problem.experiments, motions, forces) if len(forces) == len(calm) else None
 
 
-def sound(problem: Problem, point: Matrix, seed: Sequence[int], draws: int = _DRAWS) -> list[Matrix] | None:
+def sound(problem: FitProblem, point: Matrix, seed: Sequence[int], draws: int = _DRAWS) -> list[Matrix] | None:
     """Residuals that sound sensors leave of each record (draws, samples) [N], were the device that at `point`."""
     source = source_of(problem, point)
     if source is None:
@@ -62,7 +62,7 @@ def sound(problem: Problem, point: Matrix, seed: Sequence[int], draws: int = _DR
     return [np.array(residuals) for residuals in found]
 
 
-def unavoidable(problem: Problem, point: Matrix, seed: int) -> float:
+def unavoidable(problem: FitProblem, point: Matrix, seed: int) -> float:
     """The whitened residual (its last tenth) that the errors of the sensors leave even at the right values."""
     random = np.random.default_rng([seed, 4])
     experiments = [shaken(e, repeated(e), e.record.force, random) for e in problem.experiments]

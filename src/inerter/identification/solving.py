@@ -19,7 +19,7 @@ from inerter.identification.intervals import BestFit, Profile, best_fit_of, prof
 from inerter.identification.judging import Judge, check_parts, judge_of
 from inerter.identification.noise import plain, whitening_of, yardstick
 from inerter.identification.options import FitOptions
-from inerter.identification.problem import Problem
+from inerter.identification.problem import FitProblem
 from inerter.identification.search import QUICK, THOROUGH, basin_hopping, search, soft
 from inerter.identification.sensors import sound, unavoidable
 from inerter.identification.space import space_of
@@ -40,7 +40,7 @@ _SAME = 1e-3  # relative difference of what two searches leave that have come to
 class Solution:
     """The best fit of a model, what is known about it, and the judge of what it leaves."""
 
-    problem: Problem
+    problem: FitProblem
     optimum: BestFit
     profiles: tuple[Profile, ...]
     checked: tuple[NDArray[np.bool_], ...]  # samples of each record that were kept for the check
@@ -66,7 +66,7 @@ def solve(
         turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead))
         whole.append(turned)
         findings += found_of_sign
-    problem = Problem(rig, space_of(rig, assumed), _for_fit(whole, asked.check), [], asked.offset, assumed)
+    problem = FitProblem(rig, space_of(rig, assumed), _for_fit(whole, asked.check), [], asked.offset, assumed)
     problem.whitenings = [
         plain(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
     ]
@@ -90,7 +90,7 @@ def solve(
     )  # fmt: skip
 
 
-def _lost(problem: Problem) -> IdentificationError:
+def _lost(problem: FitProblem) -> IdentificationError:
     sources = ", ".join(repr(e.record.source) for e in problem.experiments)
     return IdentificationError(f"The best fit to {sources} cannot be simulated.")
 
@@ -106,7 +106,7 @@ def _for_fit(experiments: Sequence[Experiment], check: float) -> list[Experiment
 
 
 def _searched(
-    problem: Problem,
+    problem: FitProblem,
     guess: Mapping[str, tuple[float, float]],
     seed: int,
     starts: int,
@@ -133,7 +133,7 @@ def _searched(
     return point, costs
 
 
-def _leads(problem: Problem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:
+def _leads(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:
     """Leave out as much of the start of records that begin in motion as the unknown start of the device matters."""
     result, leads = [], []
     for e in problem.experiments:
@@ -149,7 +149,7 @@ def _leads(problem: Problem, point: Matrix, lead: float | None) -> tuple[list[Ex
     return result, leads
 
 
-def _refined(problem: Problem, start: Matrix, seed: int) -> BestFit:
+def _refined(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
     """The best fit with the weights that the errors of the sensors ask for, and the steps that it asks for itself."""
     point, steps, optimum = start, None, None
     for _ in range(_ROUNDS):
@@ -167,7 +167,7 @@ def _refined(problem: Problem, start: Matrix, seed: int) -> BestFit:
     return optimum
 
 
-def _profiled(problem: Problem, optimum: BestFit) -> tuple[BestFit, list[Profile]]:
+def _profiled(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, list[Profile]]:
     """Profiles of all parameters; a better fit met on the way becomes the optimum, and all are walked once more."""
     found = profiles(problem, optimum)
     for _ in range(2):
@@ -181,7 +181,7 @@ def _profiled(problem: Problem, optimum: BestFit) -> tuple[BestFit, list[Profile
 
 
 def _unbiased(
-    problem: Problem, optimum: BestFit, found: Sequence[Profile], bias: Matrix
+    problem: FitProblem, optimum: BestFit, found: Sequence[Profile], bias: Matrix
 ) -> tuple[BestFit, list[Profile]]:
     """The best fit and its profiles without what the sensors' errors did to them.
 

@@ -88,18 +88,18 @@ class CompiledQuestion:
     @cached_property
     def serves(self) -> NDArray[np.bool_]:
         """Which outputs compiled code may value: those that are finite at a design beside the middle of the bounds."""
-        middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._variables.items()}
+        middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._free.items()}
         special = np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1))
         if self.is_peak:
             return np.array([self._exact(special).status.ok])
         return np.asarray(~np.isinf(self._norms(special)))
 
     @property
-    def _variables(self) -> dict[str, Any]:
-        return dict(self.problem.descriptor.variables)
+    def _free(self) -> dict[str, Any]:
+        return dict(self.problem.descriptor.free)
 
     def _closed(self, point: Array) -> LinearSystem:
-        return close(self.problem.descriptor, dict(zip(self._variables, point.tolist(), strict=True)))
+        return close(self.problem.descriptor, dict(zip(self._free, point.tolist(), strict=True)))
 
     def _exact(self, point: Array) -> Estimate:
         return self.problem.estimate(self._closed(point))
@@ -279,5 +279,5 @@ def _shared_filter(question: Question) -> Any:
 
 
 def _rows(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:
-    columns = [points[name] for name in descriptor.variables]
+    columns = [points[name] for name in descriptor.free]
     return np.ascontiguousarray(np.column_stack(columns)) if columns else np.empty((count, 0))

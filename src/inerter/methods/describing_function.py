@@ -62,8 +62,8 @@ class HarmonicBalance:
 
     @cached_property
     def places(self) -> NDArray[np.int64]:
-        """Where the dampers stand among the variables of the descriptor."""
-        names = list(self.descriptor.variables)
+        """Where the dampers stand among the free values of the descriptor."""
+        names = list(self.descriptor.free)
         return np.array([names.index(name) for name in self.parts.dampers], dtype=np.int64)
 
     def check_idle(self) -> None:

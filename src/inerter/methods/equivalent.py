@@ -37,7 +37,7 @@ class Equivalent:
     """A mechanism with a free damper in the place of each friction that can move, and what those frictions were."""
 
     mechanism: Mechanism
-    dampers: tuple[str, ...]  # names of the dampers, as variables and as elements
+    dampers: tuple[str, ...]  # names of the dampers, as free values and as elements
     numbers: tuple[int, ...]  # which of all frictions with a force each of them stands for
     frictions: tuple[str, ...]  # in words, for each damper
     locked: tuple[str, ...]  # in words, those replaced by a rigid link instead
@@ -60,13 +60,13 @@ class Equivalent:
         return tuple(-1 if name is None else self.design.index(name) for name in names)
 
     def order(self, descriptor: Descriptor) -> list[int]:
-        """For each variable of `descriptor`, where it stands in (values of the design, dampers)."""
+        """For each free value of `descriptor`, where it stands in (values of the design, dampers)."""
         known = (*self.design, *self.dampers)
-        return [known.index(name) for name in descriptor.variables]
+        return [known.index(name) for name in descriptor.free]
 
     def check_idle(self, descriptor: Descriptor) -> None:
         """Raises `DesignError` if a free value is neither in `descriptor` nor the force of a friction."""
-        seen = {*descriptor.variables, *(self.design[i] for i in self.places if i >= 0)}
+        seen = {*descriptor.free, *(self.design[i] for i in self.places if i >= 0)}
         idle = ", ".join(name for name in self.design if name not in seen)
         if idle:
             raise DesignError(
@@ -177,7 +177,7 @@ def slipping_freely(mechanism: Mechanism) -> frozenset[str]:
 
 def _reached_directly(descriptor: Descriptor) -> list[int]:
     """Numbers of the outputs that white noise passes straight to."""
-    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in descriptor.variables.items()}
+    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in descriptor.free.items()}
     return [int(i) for i in np.flatnonzero(np.any(close(descriptor, middle).D != 0.0, axis=1))]
 
 

@@ -123,7 +123,7 @@ class Pattern:
 
     @cached_property
     def columns(self) -> list[int]:
-        """For each variable of the descriptor, where it stands in (values of the design, dampers)."""
+        """For each free value of the descriptor, where it stands in (values of the design, dampers)."""
         return self.parts.order(self.index.problem.descriptor)
 
     @cached_property
@@ -150,9 +150,9 @@ class Pattern:
 
     def value_and_gradient(self, question: CompiledQuestion, row: Array) -> tuple[float, Array]:
         """A value and its gradient over (values of the design, dampers)."""
-        value, over_variables = question.value_and_gradient(row)
+        value, over_free = question.value_and_gradient(row)
         gradient = np.zeros(len(self.parts.design) + len(self.parts.dampers))
-        gradient[self.columns] = over_variables
+        gradient[self.columns] = over_free
         return value, gradient
 
 

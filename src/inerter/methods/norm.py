@@ -56,7 +56,7 @@ class Norm:
         """The index as a function of the free values, compiled, with its gradient."""
         mechanism = vehicle.mechanism()
         problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
-        idle = [name for name in vehicle.free_values() if name not in problem.descriptor.variables]
+        idle = [name for name in vehicle.free_values() if name not in problem.descriptor.free]
         if idle:
             raise DesignError(
                 f"The free value of {', '.join(idle)} has no effect in linear analysis, which leaves friction out, "

@@ -85,12 +85,12 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     positive whole number; and what `evaluate` raises.
     """
     check_request(vehicle, index, method)
-    variables = check_variables(vehicle)
-    starts = 8 * len(variables) if starts is None else starts
+    free = check_free(vehicle)
+    starts = 8 * len(free) if starts is None else starts
     if not isinstance(starts, Integral) or starts < 1 or not isinstance(seed, Integral) or seed < 0:
         raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
-    lower = np.array([free.lower for free in variables.values()])
-    upper = np.array([free.upper for free in variables.values()])
+    lower = np.array([value.lower for value in free.values()])
+    upper = np.array([value.upper for value in free.values()])
     objective = method.objective(vehicle, index)
     agreement = AGREEMENT if isinstance(objective, Differentiable) else COSTLY_AGREEMENT
     with one_blas_thread():
@@ -109,18 +109,18 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     same = [local.point for local in found if local.value <= best.value * (1.0 + agreement)] or [best.point]
     point = np.where(np.isclose(best.point, upper, rtol=1e-12, atol=0.0), upper, best.point)
     point = np.where(np.isclose(point, lower, rtol=1e-12, atol=0.0), lower, point)
-    parameters = dict(zip(variables, point.tolist(), strict=True))
+    parameters = dict(zip(free, point.tolist(), strict=True))
     design = vehicle.with_values(parameters)
     over_linear = None
     if linear is not None:
-        best_linear = vehicle.with_values(dict(zip(variables, linear.tolist(), strict=True)))
+        best_linear = vehicle.with_values(dict(zip(free, linear.tolist(), strict=True)))
         over_linear = compare(design, best_linear, index, method)
     return Optimum(
         estimate=over_linear.first if over_linear else _confirmed(method.estimate(design, index), best.value),
         parameters=parameters,
         design=design,
-        active_bounds=_active_bounds(variables, parameters),
-        ranges={name: (min(c), max(c)) for name, c in zip(variables, np.array(same).T.tolist(), strict=True)},
+        active_bounds=_active_bounds(free, parameters),
+        ranges={name: (min(c), max(c)) for name, c in zip(free, np.array(same).T.tolist(), strict=True)},
         starts=len(found),
         agreed=len(same) if found else 0,
         evaluations=evaluations,
@@ -193,17 +193,17 @@ def _searches(objective: Differentiable, first: list[Array], lower: Array, upper
     return ended
 
 
-def check_variables(vehicle: Vehicle) -> dict[str, Free]:
+def check_free(vehicle: Vehicle) -> dict[str, Free]:
     """The free values of `vehicle`; raises `DesignError` if there is none, or if one may be zero."""
-    variables = vehicle.free_values()
-    if not variables:
+    free = vehicle.free_values()
+    if not free:
         raise DesignError("Nothing to optimise: the design has no free value. Give one with free(lower, upper).")
-    for name, free in variables.items():
-        if free.lower == 0.0:
+    for name, value in free.items():
+        if value.lower == 0.0:
             raise DesignError(
                 f"The lower bound of {name!r} is 0; the search runs in logarithms and needs a positive bound."
             )
-    return variables
+    return free
 
 
 def _starting_points(
@@ -222,10 +222,10 @@ def _starting_points(
     return [points[i] for i in (minima + others)[:starts]], len(points)
 
 
-def _active_bounds(variables: dict[str, Free], parameters: dict[str, float]) -> dict[str, str]:
+def _active_bounds(free: dict[str, Free], parameters: dict[str, float]) -> dict[str, str]:
     active = {}
-    for name, free in variables.items():
-        place = np.log(parameters[name] / free.lower) / np.log(free.upper / free.lower)
+    for name, value in free.items():
+        place = np.log(parameters[name] / value.lower) / np.log(value.upper / value.lower)
         if place < _AT_BOUND:
             active[name] = "lower"
         elif place > 1.0 - _AT_BOUND:

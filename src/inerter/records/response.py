@@ -16,7 +16,7 @@ from inerter.norms.response import frequency_response as linear_response
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
 from inerter.records.result import Response, named, respond
-from inerter.records.spectra import Lines, Spectra, lines_of, welch
+from inerter.records.spectra import HarmonicLines, Spectra, lines_of, welch
 from inerter.systems.linear import LinearSystem
 
 Matrix = NDArray[np.float64]
@@ -169,7 +169,7 @@ def _products(omega: Matrix, x: Complex, force: Complex) -> Spectra:
     )
 
 
-def _distortion(lines: Lines, chosen: NDArray[np.bool_]) -> str:
+def _distortion(lines: HarmonicLines, chosen: NDArray[np.bool_]) -> str:
     """What a sine is besides its fundamental, in words."""
     words = []
     at = int(np.argmax(chosen))

@@ -53,7 +53,7 @@ class Spectra:
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class HarmonicLines:
     """Complex amplitudes of every period at every harmonic, for each record of one period."""
 
     omega: Matrix  # (harmonics,) [rad/s]
@@ -77,16 +77,16 @@ class Lines:
         strong = np.maximum(_FAINT**2 * velocity.max(), _BESIDE**2 * _largest(velocity))
         return np.asarray(self.significant() & (velocity >= strong))
 
-    def at(self, chosen: Chosen) -> Lines:
+    def at(self, chosen: Chosen) -> HarmonicLines:
         """Some of the harmonics."""
-        return Lines(
+        return HarmonicLines(
             self.omega[chosen],
             tuple(x[:, chosen] for x in self.displacement),
             tuple(force[:, chosen] for force in self.force),
             self.least,
         )
 
-    def settled(self) -> tuple[Lines, list[int]]:
+    def settled(self) -> tuple[HarmonicLines, list[int]]:
         """Without the periods at the start of each record in which the force has not settled, and how many these are.
 
         The force of a period is compared with what the last half of the periods makes of its displacement.
@@ -95,7 +95,7 @@ class Lines:
         x, force = (
             tuple(values[n:] for values, n in zip(of, first, strict=True)) for of in (self.displacement, self.force)
         )
-        return Lines(self.omega, x, force, self.least), first
+        return HarmonicLines(self.omega, x, force, self.least), first
 
     def significant(self) -> Chosen:
         """The harmonics that stand out of the scatter of the displacement and of the steps of its encoder.
@@ -122,7 +122,7 @@ class Lines:
         return np.asarray(power > least)
 
 
-def lines_of(parts: Sequence[Periods]) -> Lines:
+def lines_of(parts: Sequence[Periods]) -> HarmonicLines:
     """Amplitudes at the harmonics that all records have, below half the lowest rate."""
     period = float(np.mean([part.period for part in parts]))
     harmonics = min((part.displacement.shape[1] - 1) // 2 for part in parts)
@@ -135,7 +135,7 @@ def lines_of(parts: Sequence[Periods]) -> Lines:
         for name in ("displacement", "force")
     ]
     omega = 2.0 * np.pi / period * np.arange(1.0, harmonics + 1.0)
-    return Lines(omega, amplitudes[0], amplitudes[1], 4.0 / 12.0 * max(steps))
+    return HarmonicLines(omega, amplitudes[0], amplitudes[1], 4.0 / 12.0 * max(steps))
 
 
 def welch(records: Sequence[Record], segment: float | None) -> Spectra:

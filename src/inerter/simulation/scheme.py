@@ -33,7 +33,7 @@ CALM = 0.03  # how fast a node that springs alone hold returns to balance: 1 is 
 
 
 @dataclass(frozen=True)
-class Places:
+class StepPlaces:
     """Where the numbers of a step stand: first what it knows at its start, then what it finds."""
 
     d: slice  # displacements [m]
@@ -58,7 +58,7 @@ class Places:
 class Scheme:
     """The constant matrices of a step, as `kernels.stepping.march` takes them."""
 
-    at: Places
+    at: StepPlaces
     predict: Matrix
     G: Matrix
     pull: Matrix
@@ -119,14 +119,14 @@ def scheme_of(parts: Parts, road_hold: tuple[str, ...], offsets: Matrix, h: floa
     )
 
 
-def _places(parts: Parts, reactions: int) -> Places:
+def _places(parts: Parts, reactions: int) -> StepPlaces:
     n, roads, forces = parts.nodes, parts.roads, parts.ports.shape[1]
     ends = np.cumsum([0, n, n, roads, roads, forces, roads, roads, 1, n, reactions]).tolist()
     d, p, z, dz, force, rate0, rate1, one, w, x = (slice(a, b) for a, b in pairwise(ends))
-    return Places(d, p, z, dz, force, rate0, rate1, one, w, x, ends[-1])
+    return StepPlaces(d, p, z, dz, force, rate0, rate1, one, w, x, ends[-1])
 
 
-def _rows(parts: Parts, road_hold: tuple[str, ...], offsets: Matrix, at: Places, h: float) -> _Rows:
+def _rows(parts: Parts, road_hold: tuple[str, ...], offsets: Matrix, at: StepPlaces, h: float) -> _Rows:
     """The scheme itself, in the words of the module's first lines."""
     E, R, inertia = parts.E, parts.R, parts.inertia
     unit = np.eye(at.total)
@@ -183,7 +183,7 @@ def _reaction_matrix(parts: Parts, inverse: Matrix, loose: Matrix) -> Matrix:
     return G
 
 
-def _aims(parts: Parts, rows: _Rows, at: Places, h: float) -> tuple[Matrix, Matrix, Matrix]:
+def _aims(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, Matrix, Matrix]:
     """At which mean rate a friction sticks and a gap is in its middle; combinations Z of reactions, and theirs.
 
     A friction whose rate inertia carries sticks when the rate at the end of the step is zero: the mean is then half
@@ -211,7 +211,7 @@ def _aims(parts: Parts, rows: _Rows, at: Places, h: float) -> tuple[Matrix, Matr
     return aims, Z, Z @ half
 
 
-def _observed(parts: Parts, rows: _Rows, at: Places, h: float) -> tuple[Matrix, Matrix]:
+def _observed(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, Matrix]:
     """Displacements, velocities, accelerations and forces, from the step after an instant and from that before it.
 
     The mean of both is of second order in h: velocities of massless nodes and all forces are mean values of a step.

@@ -1,4 +1,4 @@
-"""The balance of forces of a frame, and the size of its terms, as stacks over the design variables."""
+"""The balance of forces of a frame, and the size of its terms, as stacks over the free values."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from inerter.systems.graph import Branch
 
 
 def balance(frame: Frame) -> tuple[Long, Long]:
-    """S, -R and -F of `systems.descriptor` beside each other (1 + variables, eta, eta + x + u), and the same in sizes.
+    """S, -R and -F of `systems.descriptor` beside each other (1 + values, eta, eta + x + u), and the same in sizes.
 
     Rows are the balances of forces on R, U, Y and Z, of momentum on U, and of how fast forces change on Z.
 
     Raises `LinearSystemError` for a force where only springs settle, if an output asks how fast.
     """
-    k, e = 1 + len(frame.variables), frame.unknowns
+    k, e = 1 + len(frame.free), frame.unknowns
     terms = np.zeros((k, e, e + frame.states + len(frame.inputs)), np.longdouble)
     sizes = np.zeros_like(terms)
     for element, on, to in _parts(frame):

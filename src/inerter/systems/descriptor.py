@@ -9,7 +9,7 @@ velocities of Z where an output asks for them:
     y        = Y_eta(p) eta + Y_x(p) x + Y_u(p) u
 
 Each element adds its value times products of its incidence rows, so every array is a constant plus a sum over the
-design variables p: an array (1 + m, ...) whose first slice is the constant. Road displacement never appears: the
+free values p: an array (1 + m, ...) whose first slice is the constant. Road displacement never appears: the
 tyre's elongation is a state and the road's velocity the input, which makes J1 and J3 plain H2 norms.
 """
 
@@ -43,7 +43,7 @@ _TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their s
 
 @dataclass(frozen=True, eq=False)
 class Descriptor:
-    """The arrays of the module's docstring, the names of everything, and the design variables with their bounds."""
+    """The arrays of the module's docstring, the names of everything, and the free values with their bounds."""
 
     S: Matrix
     R: Matrix
@@ -57,7 +57,7 @@ class Descriptor:
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    variables: dict[str, Free]
+    free: dict[str, Free]
     notes: tuple[str, ...]
     sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
     mechanism: Mechanism
@@ -66,16 +66,16 @@ class Descriptor:
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
-    """The linear system at the given values of the design variables.
+    """The linear system at numbers for the free values.
 
-    Raises `DesignError` if a variable has no value.
+    Raises `DesignError` if one of them has no value.
     """
-    missing = [name for name in descriptor.variables if name not in values]
+    missing = [name for name in descriptor.free if name not in values]
     if missing:
         raise DesignError(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
-    p = np.array([1.0, *(values[name] for name in descriptor.variables)], dtype=np.longdouble)
+    p = np.array([1.0, *(values[name] for name in descriptor.free)], dtype=np.longdouble)
     d = descriptor
     S, R, F, Y_eta, Y_x, Y_u = (_summed(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
     S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (_summed(p.astype(float), stack) for stack in d.sizes)
@@ -193,7 +193,7 @@ def _joined(
         states=_state_names(frame, extra),
         inputs=tuple(order),
         outputs=tuple(one.name for one in observed),
-        variables=frame.variables,
+        free=frame.free,
         notes=frame.graph.notes,
         sizes=tuple(size.astype(float) for size in sizes),
         mechanism=frame.mechanism,
@@ -225,7 +225,7 @@ def _output_stacks(
 ) -> list[Any]:
     """Stacks of the outputs, or of the sizes of their terms, over eta, over all states and over the inputs."""
     widths = (frame.unknowns, frame.states + extra, len(frame.inputs))
-    stacks = [np.zeros((1 + len(frame.variables), len(observed), width), np.longdouble) for width in widths]
+    stacks = [np.zeros((1 + len(frame.free), len(observed), width), np.longdouble) for width in widths]
     state = frame.states
     for i, one in enumerate(observed):
         for stack, row in zip(stacks, one.sizes if sizes else one.rows, strict=True):

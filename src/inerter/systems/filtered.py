@@ -2,7 +2,7 @@
 
 With a filter b(s)/a(s) on an output y, and z the solution of a(d/dt) z = y, the filtered output is b(d/dt) z. The
 states are z and its derivatives but the highest, which is an unknown of the equation. So the coefficients enter as they
-were given, and what an output owes to the design variables stays affine in them.
+were given, and what an output owes to the free values stays affine in them.
 """
 
 from __future__ import annotations

@@ -87,8 +87,8 @@ class Frame:
         return int(self.slots.g.stop)
 
     @cached_property
-    def variables(self) -> dict[str, Free]:
-        """The design variables by name."""
+    def free(self) -> dict[str, Free]:
+        """The free values by name."""
         elements = (branch.element for branch in self.graph.branches)
         return {str(e.value.name): e.value for e in elements if isinstance(e.value, Free)}
 
@@ -98,9 +98,9 @@ class Frame:
         return {id(branch): i for i, branch in enumerate(self.springs)}
 
     def slice_of(self, element: Element) -> tuple[int, float]:
-        """The slice of a stack over the design variables in which an element's value stands, and its factor there."""
+        """The slice of a stack over the free values in which an element's value stands, and its factor there."""
         if isinstance(element.value, Free):
-            return 1 + list(self.variables).index(str(element.value.name)), element.gain
+            return 1 + list(self.free).index(str(element.value.name)), element.gain
         return 0, element.coefficient
 
     def blank(self) -> Rows:

@@ -42,7 +42,7 @@ class Kinematics:
     inertia_roads: Matrix  # ... roads
     motions: tuple[Matrix, Matrix, Matrix]  # R, N, V
     rates: tuple[Matrix, Matrix, Matrix]
-    places: Places
+    places: Positions
     moving: Matrix
     lengths: Matrix
     elements: NDArray[np.int64]
@@ -179,7 +179,7 @@ def _inertia(mechanism: Mechanism, graph: Graph) -> _Inertia:
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class Positions:
     """Positions as rows over nodes and roads, and what follows from them, over positions g and roads z."""
 
     nodes: Matrix
@@ -189,7 +189,7 @@ class Places:
     own: tuple[int, ...]  # for each branch the position that is its own elongation, or -1
 
 
-def _places(mechanism: Mechanism, graph: Graph) -> Places:
+def _places(mechanism: Mechanism, graph: Graph) -> Positions:
     """The first independent ones among the elongations of gaps and springs and the displacements of coordinates."""
     branches = graph.branches
     nodes, roads = stacked(branches, graph)
@@ -207,7 +207,7 @@ def _places(mechanism: Mechanism, graph: Graph) -> Places:
     e_g[placed], e_z[placed] = over_g[: len(placed)], over_z[: len(placed)]
     number = {i: chosen.index(at) for at, i in enumerate(placed) if at in chosen}
     own = tuple(number.get(i, -1) for i in range(len(branches)))
-    return Places(P, P_road, (e_g, e_z), (over_g[len(placed) :], over_z[len(placed) :]), own)
+    return Positions(P, P_road, (e_g, e_z), (over_g[len(placed) :], over_z[len(placed) :]), own)
 
 
 def _locked_to(rates: tuple[Matrix, Matrix, Matrix], nonlinear: list[int]) -> NDArray[np.bool_]:

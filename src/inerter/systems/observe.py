@@ -57,7 +57,7 @@ def add(rows: Rows, more: Iterable[Matrix]) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Observed:
-    """An output as stacks over the design variables, and their sizes; with a state of its own if it is that."""
+    """An output as stacks over the free values, and their sizes; with a state of its own if it is that."""
 
     name: str
     rows: Stacks
@@ -113,14 +113,14 @@ def _displacement(frame: Frame, name: str, output: Output) -> Observed:
 
 def _stacked(frame: Frame, *rows: Any) -> Stacks:
     """Rows that no value changes."""
-    k = len(frame.variables)
+    k = len(frame.free)
     eta, x, u = (np.concatenate([row[None], np.zeros((k, row.size), row.dtype)]) for row in rows)
     return eta, x, u
 
 
 def _times_value(frame: Frame, element: Element, row: Matrix) -> Long:
     """A row times an element's value."""
-    stack = np.zeros((1 + len(frame.variables), row.size), np.longdouble)
+    stack = np.zeros((1 + len(frame.free), row.size), np.longdouble)
     place, factor = frame.slice_of(element)
     stack[place] = factor * row.astype(np.longdouble)
     return stack

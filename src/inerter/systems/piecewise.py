@@ -31,7 +31,7 @@ _LOST = 1e14  # ratio of inertias at which the smaller one is rounding of the la
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanics:
+class ConstantMatrices:
     """The constant matrices that `kernels.arrays.Mechanics` describes."""
 
     balance: Matrix
@@ -52,7 +52,7 @@ class PiecewiseSystem:
     mechanism: Mechanism
     kinematics: Kinematics
     graph: Graph
-    mechanics: Mechanics
+    mechanics: ConstantMatrices
     nonlinear: tuple[dict[int, float], ...]  # branches of friction or gaps that act as one; shares of its force
     outputs: dict[str, Output]
     rates: tuple[Matrix, Matrix, Matrix]  # of all branches, over a, w, z'
@@ -186,7 +186,7 @@ def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
 
 def _mechanics(
     known: Kinematics, resistance: Matrix, kinetic: Matrix, kinetic_road: Matrix, inertia: Matrix
-) -> Mechanics:
+) -> ConstantMatrices:
     """Left and right-hand sides of the balances of `kernels.modes`, and the rows of what can be locked."""
     R, N, _ = known.motions
     moving, na, nw = np.hstack(known.rates[:2]), R.shape[1], N.shape[1]
@@ -202,7 +202,7 @@ def _mechanics(
         (known.ports @ np.hstack([R, N])).T,
         np.zeros((na + nw, 1)),
     ]
-    return Mechanics(
+    return ConstantMatrices(
         balance=np.hstack([left, *right]),
         rates=known.moving,
         lengths=known.lengths,

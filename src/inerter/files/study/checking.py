@@ -15,7 +15,7 @@ from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Compiled
 from inerter.methods.registry import is_blind
 from inerter.networks.parser import names
-from inerter.optimisation.optimise import check_variables
+from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
 
@@ -47,7 +47,7 @@ def _check_design(study: Study, vehicle: Vehicle) -> None:
         free = vehicle.free_values().items()
         piecewise(vehicle.with_values({name: (value.lower * value.upper) ** 0.5 for name, value in free}))
     if study.optimise is not None and vehicle.free_values():
-        check_variables(vehicle)
+        check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
             method.objective(vehicle, study.index(name))

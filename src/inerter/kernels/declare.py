@@ -48,6 +48,8 @@ class Kernel:
         self.function, self.title, self.signature = function, title, signature
         self.fused, self.borrowing = fused, borrowing
         self._compiled: Callable[..., Any] | None = None
+        self._called: Callable[..., Any] | None = None
+        self.typed = False
 
     def __call__(self, *args: Any) -> Any:
         """Call it.
@@ -56,9 +58,9 @@ class Kernel:
         call goes on, returns, and Python raises SystemError ("returned a result with an exception set") whose cause is
         the KeyboardInterrupt, or another such error, and so on down to it.
         """
-        compiled = self._compiled or self.ready()
+        called = self._called or self._callable()
         try:
-            return compiled(*args)
+            return called(*args)
         except SystemError as error:
             cause: BaseException | None = error
             while isinstance(cause, SystemError):
@@ -66,6 +68,16 @@ class Kernel:
             if isinstance(cause, KeyboardInterrupt):
                 raise KeyboardInterrupt from None
             raise
+
+    def _callable(self) -> Callable[..., Any]:
+        """What is called: of a typed kernel the machine code itself, since to look at its structures takes longer."""
+        compiled = self.ready()
+        self._called = compiled
+        if self.typed and way() == TUNED:
+            from inerter.kernels.tuned import entry_of  # Numba is there by now
+
+            self._called = entry_of(compiled)
+        return self._called
 
     def ready(self) -> Any:
         """The compiled function: for a kernel with a signature, compiled or read from the cache by now."""
@@ -99,7 +111,9 @@ def kernel(
 
     def declared(function: F) -> F:
         given = _annotated(function) if typed else signature
-        return cast("F", Kernel(function, title, given, fused=fused, borrowing=borrowing))
+        made = Kernel(function, title, given, fused=fused, borrowing=borrowing)
+        made.typed = typed
+        return cast("F", made)
 
     return declared
 

@@ -137,6 +137,12 @@ def parsed(signature: Any) -> Any:
     return arguments if returned is None else returned(*arguments)
 
 
+def entry_of(function: Any) -> Any:
+    """The machine code of a function with one signature, for Python to call with arguments of just these types."""
+    overloads = getattr(function, "overloads", None)  # none if the compiler is off
+    return next(iter(overloads.values())).entry_point if overloads else function
+
+
 def address_of(function: Any, signature: Signature) -> int:
     """The address of a compiled function, for other compiled code that is handed it."""
     wrapper_address: Any = function_type._get_wrapper_address

@@ -12,6 +12,7 @@ import pytest
 from study_text import study_text
 
 import inerter as it
+from inerter import rows
 from inerter.errors import MechanismError, RowError, UnknownRowError
 from inerter.fields import fields_of, mounts_of
 from inerter.files.study.loading import load_study
@@ -49,6 +50,32 @@ def test_a_table_keeps_the_order_in_which_rows_came() -> None:
     assert (list(table), "0" in table, len(table)) == (["b", "a"], False, 2)
 
 
+def test_only_the_row_itself_is_forgotten() -> None:
+    own = row("A", key="a")
+    table: Rows[type] = Rows("thing", "key", (), (own,))
+    table.remove(row("Another", key="a"))
+    assert table["a"] is own
+
+
+def test_loading_that_is_interrupted_begins_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else every table would lack the rows of other distributions from then on."""
+    monkeypatch.setattr(rows, "_loading", False)
+    asked = []
+
+    def entries() -> tuple[()]:
+        asked.append(1)
+        if len(asked) == 1:
+            raise KeyboardInterrupt
+        return ()
+
+    monkeypatch.setattr(rows, "_entries", entries)
+    with pytest.raises(KeyboardInterrupt):
+        rows.load()
+    rows.load()
+    rows.load()
+    assert len(asked) == 2
+
+
 def test_what_is_made_of_rows_is_made_anew_when_they_change() -> None:
     table: Rows[type] = Rows("thing", "key")
     made = []
@@ -68,8 +95,8 @@ def test_what_is_made_of_rows_is_made_anew_when_they_change() -> None:
 def test_a_row_that_cannot_stand_in_its_table_is_told_what_it_lacks() -> None:
     table: Rows[type] = Rows("thing", "key", ("size", "words"), (row("A", key="a", size=2, words="w"),))
     bad = {
-        r"B is no thing: it does not say words": row("B", key="b", size=1),
-        r"B is no thing: it does not say key, size, words": row("B"),
+        r"B is no thing: it lacks words": row("B", key="b", size=1),
+        r"B is no thing: it lacks key, size, words": row("B"),
         r"its key is 3, and must be text": row("B", key=3, size=1, words=""),
         r"another thing with the key 'a'": row("B", key="a", size=1, words=""),
         r"no dataclass": type("B", (), {"key": "b", "size": 1, "words": ""}),
@@ -161,6 +188,29 @@ def test_a_setting_without_its_index_is_told(symbol: str, tmp_path: Path) -> Non
         path.write_text(study_text(f'indices = ["{other}"]\n{f.key} = "{f.example}"'), encoding="utf-8")
         with pytest.raises(it.InerterError, match=rf"study\.{f.key}: the {f.told} of {symbol}.*or no {f.key}\."):
             load_study(path)
+
+
+@pytest.fixture
+def seeded() -> Iterator[type]:
+    @dataclass(frozen=True)
+    class Seeded:
+        seed: float = field(default=1.0, metadata=it.quantity("m", "A length.", "1 m"))
+        symbol = "X2"
+        title = unit = response = "x"
+
+        def question(self, mechanism: it.Mechanism) -> it.Question:
+            raise NotImplementedError
+
+    yield it.INDICES.add(Seeded)
+    it.INDICES.remove(Seeded)
+
+
+@pytest.mark.usefixtures("seeded")
+def test_a_setting_takes_no_key_of_the_section(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(study_text('indices = ["J1"]\nseed = 3'), encoding="utf-8")
+    with pytest.raises(RowError, match=r"setting 'seed', a key that \[study\] has already"):
+        load_study(path)
 
 
 @pytest.fixture

@@ -44,7 +44,7 @@ class Rows(Mapping[str, Row], Generic[Row]):
         silent = [name for name in (self._key, *self._says) if not hasattr(row, name)]
         name = getattr(row, "__name__", None) or repr(row)
         if silent:
-            raise RowError(f"{name} is no {self._what}: it does not say {', '.join(silent)}.")
+            raise RowError(f"{name} is no {self._what}: it lacks {', '.join(silent)}.")
         key = getattr(row, self._key)
         if not isinstance(key, str) or not key.strip():
             raise RowError(f"{name} is no {self._what}: its {self._key} is {key!r}, and must be text.")
@@ -58,7 +58,9 @@ class Rows(Mapping[str, Row], Generic[Row]):
 
     def remove(self, row: Row) -> None:
         """Forget a row."""
-        self._rows.pop(getattr(row, self._key), None)
+        key = getattr(row, self._key)
+        if self._rows.get(key) is row:
+            del self._rows[key]
         _changed(row)
 
     def __getitem__(self, key: str) -> Row:
@@ -122,6 +124,9 @@ def load() -> None:
                     _import(entry)
             except RowError as error:
                 _failure = error
+            except BaseException:
+                _loading = False  # so that the next question begins anew
+                raise
     if _failure is not None:
         raise _failure
 

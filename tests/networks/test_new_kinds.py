@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import inerter as it
+from inerter.cli.main import call
 from inerter.errors import DesignError, NetworkError, PerformanceIndexError, RowError, StudyError
 from inerter.fields import Field
 from inerter.figures.networks import draw_networks, schematic
@@ -332,6 +334,17 @@ def test_a_simulation_file_names_them_too(known, tmp_path):
     assert request.elements["d"] == slopes()
     with pytest.raises(StudyError, match=r"elements\.J: .*moment; expected one value"):
         load_simulation(written(tmp_path, screw=RANGE, text=text))
+
+
+def test_the_whole_command_has_words_for_a_switch_of_its_own(known, tmp_path, capsys):
+    head = STUDY.partition("[study]")[0].replace("d = {D}", 'q = { kind = "clutch", torque = "50 N" }')
+    text = head.replace('S1 = "k | d"', 'S1 = "k | c | q"') + '[signal]\nkind = "sine"\namplitude = "10 mm"\n'
+    text += 'frequency = "1.3 Hz"\n[simulation]\nlayout = "S1"\nduration = "2 s"\n'
+    assert call(["simulate", str(written(tmp_path, text=text)), "-o", str(tmp_path / "out")]) == 0
+    shown = capsys.readouterr().out
+    assert re.search(r"clutch +q +\d+ +engaged \d.* %, pushed on", shown)
+    (drawing,) = (tmp_path / "out" / "figures").glob("*.svg")
+    assert "q is engaged" in drawing.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ EXAMPLES = """Examples:
   inerter simulate examples/stick_slip.toml
   inerter rig examples/rig_fit.toml -o fit.csv
   inerter identify fit.csv --model ball-screw
-  inerter reproduce    tells which papers there are
+  inerter reproduce    lists the papers
 
 Exit codes: 0 done, 1 the work failed, 2 the request was wrong, 130 interrupted by Ctrl-C."""
 

@@ -15,7 +15,7 @@ _EXAMPLES = [f"inerter reproduce {p.name} {options}" for p in PAPERS.values() fo
 app = App(
     name="reproduce",
     help_format="plaintext",
-    help_epilogue="\n  ".join(["Examples:", "inerter reproduce    tells which papers there are", *_EXAMPLES]),
+    help_epilogue="\n  ".join(["Examples:", "inerter reproduce    lists the papers", *_EXAMPLES]),
 )
 
 if TYPE_CHECKING:

@@ -18,6 +18,7 @@ from inerter.figures.curves import thinned
 from inerter.figures.labels import axis_label, capital, scale
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, styled
 from inerter.files.simulation.running import Nonlinear, SimulationResult
+from inerter.networks.elements.roles import Guard
 from inerter.systems.outputs import force_of
 
 Matrix = NDArray[np.float64]
@@ -27,10 +28,9 @@ NAME = "simulation"
 _HEIGHT = 1.35  # of a panel [inch], which its title must fit
 _LONGEST_TITLE = 20
 _MOST_SWINGS, _MOST_BANDS = 160, 60  # in a window that can be read
-_SHADED = {"friction": ("stick", "{} sticks"), "gap": ("open", "{} is open")}
-_SHADES: dict[str, Any] = {
-    "friction": {"facecolor": "#DCDCDC", "edgecolor": "none"},
-    "gap": {"facecolor": "#F8DCB8", "edgecolor": "none"},
+_SHADES: dict[Guard, Any] = {
+    Guard.FORCE: {"facecolor": "#DCDCDC", "edgecolor": "none"},
+    Guard.ELONGATION: {"facecolor": "#F8DCB8", "edgecolor": "none"},
 }
 _OVER_GAPS: Any = {"facecolor": "none", "edgecolor": "#8C8C8C", "hatch": "//////"}
 
@@ -98,7 +98,7 @@ def readable_window(result: SimulationResult) -> Window:
     end = float(run.time[-1])
     length = whole = end - float(run.time[0])
     swings = [_swings(run[curve.output], run.time) for panel in panels(result) for curve in panel.curves]
-    bands = [np.array(run.intervals(n.name, _SHADED[n.kind][0])).reshape(-1, 2)[:, 1] for n in result.nonlinear]
+    bands = [np.array(run.intervals(n.name, n.switch.middle)).reshape(-1, 2)[:, 1] for n in result.nonlinear]
     limits = [(times, _MOST_SWINGS) for times in swings] + [(times, _MOST_BANDS) for times in bands]
     for part in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000):
         length = whole / part
@@ -193,17 +193,18 @@ def _shade(result: SimulationResult, elements: Sequence[Nonlinear], window: Wind
 
     Where there are both, the friction is hatched, so that one shows through the other.
     """
-    shades = {**_SHADES, "friction": _OVER_GAPS} if any(n.kind == "gap" for n in result.nonlinear) else _SHADES
+    over_gaps = any(n.switch.guard is Guard.ELONGATION for n in result.nonlinear)
+    shades = {**_SHADES, Guard.FORCE: _OVER_GAPS} if over_gaps else _SHADES
     for element in elements:
-        state, words = _SHADED[element.kind]
-        alike = [other.name for other in elements if other.kind == element.kind]
+        guard = element.switch.guard
+        alike = [other.name for other in elements if other.switch.guard is guard]
         row = alike.index(element.name)
         low, high = 1.0 - (row + 1) / len(alike), 1.0 - row / len(alike)
         name = element.name.removeprefix(f"{element.strut}.")
-        label = words.format(name) + (f" (row {row + 1})" if len(alike) > 1 else "")
-        for begin, end in result.run.intervals(element.name, state):
+        label = element.switch.said(name) + (f" (row {row + 1})" if len(alike) > 1 else "")
+        for begin, end in result.run.intervals(element.name, element.switch.middle):
             if begin < window[1] and end > window[0]:
-                ax.axvspan(begin, end, low, high, linewidth=0.0, zorder=0.5, label=label, **shades[element.kind])
+                ax.axvspan(begin, end, low, high, linewidth=0.0, zorder=0.5, label=label, **shades[guard])
 
 
 def _swings(values: Matrix, time: Matrix) -> Matrix:

@@ -166,8 +166,14 @@ def _comparisons(solution: Solution) -> tuple[RecordFit, ...]:
         force, run = answer
         white = residuals[first : first + e.size][problem.whitenings[n].weight > 0.0]
         first += e.size
-        gaps = {_name_of(b) for b in problem.rig.device.elements() if b.switches_by(Guard.ELONGATION)}
-        openings = {g: sum(event.element == g and event.after == "open" for event in run.events) for g in gaps}
+        gaps = {
+            _name_of(b): b.switch.middle
+            for b in problem.rig.device.elements()
+            if b.switch is not None and b.switches_by(Guard.ELONGATION)
+        }
+        openings = {
+            g: sum(event.element == g and event.after == loose for event in run.events) for g, loose in gaps.items()
+        }
         result.append(
             RecordFit(
                 experiment=e,

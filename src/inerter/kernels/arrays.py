@@ -70,7 +70,7 @@ class Sizes(NamedTuple):
     squares: int  # outputs that are squared and added up
 
 
-class Rows(NamedTuple):
+class MapRows(NamedTuple):
     """First rows of the parts of `Modes.maps` that come after the rates of the state."""
 
     guard: int  # of each element
@@ -84,7 +84,7 @@ class Mechanics(NamedTuple):
     """A mechanism's constants. Columns of maps are the state (a, g), roads' z, z', z'', forces, and 1 (`width`)."""
 
     sizes: Sizes
-    rows: Rows
+    rows: MapRows
     balance: Matrix  # (na + nw, na + nw + width): M, C_aw; 0, C_ww; then right-hand sides without elements' forces
     rates: Matrix  # (ng + k + dampers + springs, na + nw + nr): of positions and elongations, over a, w, z'
     lengths: Matrix  # (k, ng + nr): elongation of the gaps from positions and roads
@@ -119,7 +119,7 @@ class Modes(NamedTuple):
     reach: Floats  # (capacity,) how far a Taylor series of the flow serves [s]
 
 
-class Motion(NamedTuple):
+class IntegrationState(NamedTuple):
     """Where an integration is; it can be taken up again at any point."""
 
     place: Annotated[Any, (PLACE,)]  # one
@@ -151,7 +151,7 @@ class Run(NamedTuple):
 
     mechanics: Mechanics
     modes: Modes
-    motion: Motion
+    motion: IntegrationState
     room: Room
 
 
@@ -167,7 +167,7 @@ class Knots(NamedTuple):
     slot: Ints  # (segments + 1,) number of the sample at each knot, or -1
 
 
-class Record(NamedTuple):
+class History(NamedTuple):
     """What is kept of a motion."""
 
     states: Matrix  # (samples or 0, n)
@@ -186,7 +186,7 @@ class Account(NamedTuple):
     weights: Floats
 
 
-class Shape(NamedTuple):
+class MarchShape(NamedTuple):
     """Sizes of a march, see `march.march_of`."""
 
     states: int
@@ -202,11 +202,11 @@ class March(NamedTuple):
     """Whole steps: compiled code for one shape at an address, or 0, and what it was compiled for."""
 
     address: int
-    shape: Shape
+    shape: MarchShape
     numbers: Ints  # which of `flow.knot_numbers` are used
 
 
-class Lines(NamedTuple):
+class MarchLines(NamedTuple):
     """What whole steps of one mode are made from."""
 
     steps: Matrix  # a line each column, then the jump of the state with each input

@@ -74,9 +74,7 @@ class Kernel:
         compiled = self.ready()
         self._called = compiled
         if self.typed and way() == TUNED:
-            from inerter.kernels.tuned import entry_of  # Numba is there by now
-
-            self._called = entry_of(compiled)
+            self._called = private().entry_of(compiled)
         return self._called
 
     def ready(self) -> Any:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from inerter.kernels.arrays import SHARP, Ints, Matrix, Rows, Sizes
+from inerter.kernels.arrays import SHARP, Ints, MapRows, Matrix, Sizes
 from inerter.kernels.declare import kernel, part
 from inerter.kernels.matrices import add, block, exponential, product
 
@@ -122,7 +122,7 @@ def growth(maps: Matrix, n: int) -> float:
 
 
 @kernel("steps of a mode", typed=True)
-def discretise(sizes: Sizes, first: Rows, used: Ints, maps: Matrix, steps: Matrix, h: float) -> float:
+def discretise(sizes: Sizes, first: MapRows, used: Ints, maps: Matrix, steps: Matrix, h: float) -> float:
     """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
 
     The input over the step is a cubic: a chain of four integrators for every road and force that moves stands for it.

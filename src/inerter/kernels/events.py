@@ -10,12 +10,12 @@ from inerter.kernels.arrays import (
     SMOOTH,
     Account,
     Floats,
+    History,
     Ints,
     Knots,
-    Lines,
     March,
+    MarchLines,
     Matrix,
-    Record,
     Run,
     Span,
 )
@@ -31,7 +31,7 @@ _SWITCHES = 20000  # switches within one segment
 
 
 @kernel("motion from event to event", typed=True, borrowing=True)
-def integrate(run: Run, knots: Knots, record: Record, account: Account, march: March, h: float, stop: int) -> int:
+def integrate(run: Run, knots: Knots, record: History, account: Account, march: March, h: float, stop: int) -> int:
     """Integrate up to knot `stop`, in whole steps of length h where there may be.
 
     Returns DONE, or why it stopped before: after PAUSED (no pieces are left), MODE_UNKNOWN (the states are on trial in
@@ -52,7 +52,7 @@ def integrate(run: Run, knots: Knots, record: Record, account: Account, march: M
             place.special += 1
         if not account.wanted and place.clock == 0.0 and place.jumped == BEFORE and place.ended == 0:
             m = place.mode
-            lines = Lines(run.modes.steps[m], run.modes.limits[m], run.motion.state, run.room.line)
+            lines = MarchLines(run.modes.steps[m], run.modes.limits[m], run.motion.state, run.room.line)
             span = Span(h, m, k, min(stop, knots.special[place.special]), place.settled)
             place.segment = whole_steps(march, lines, knots, record, span)
             if place.segment > k:
@@ -68,7 +68,7 @@ def integrate(run: Run, knots: Knots, record: Record, account: Account, march: M
 
 
 @part(borrowing=True, inside=True)
-def _begin(run: Run, knots: Knots, record: Record, length: float) -> int:
+def _begin(run: Run, knots: Knots, record: History, length: float) -> int:
     """Find the first mode: what jumps at the first knot jumps in a mode."""
     k = run.motion.place[0].segment
     before, slope_before = knots.value_before, knots.slope_before
@@ -80,7 +80,7 @@ def _begin(run: Run, knots: Knots, record: Record, length: float) -> int:
 
 
 @part(borrowing=True, inside=True)
-def _join(run: Run, knots: Knots, record: Record, account: Account, length: float) -> int:
+def _join(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
     """Go over a knot: where inputs jump or turn, another mode may go on, and what is kept is what comes after."""
     place, k = run.motion.place[0], run.motion.place[0].segment
     if place.jumped == BEFORE:
@@ -95,7 +95,7 @@ def _join(run: Run, knots: Knots, record: Record, account: Account, length: floa
 
 
 @part(borrowing=True, inside=True)
-def _through(run: Run, knots: Knots, record: Record, account: Account, length: float) -> int:
+def _through(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
     """Go to the end of one segment piece by piece, and through every event on the way.
 
     What changes at once at its start changes the mode of the sample there, if there is one.
@@ -132,7 +132,7 @@ def _through(run: Run, knots: Knots, record: Record, account: Account, length: f
 
 
 @part(borrowing=True, inside=True)
-def _close(run: Run, knots: Knots, record: Record, length: float) -> None:
+def _close(run: Run, knots: Knots, record: History, length: float) -> None:
     """Go over to the next segment, and keep what is to be kept at the knot."""
     place, sizes, rows, room = run.motion.place[0], run.mechanics.sizes, run.mechanics.rows, run.room
     k, m = place.segment, place.mode
@@ -148,7 +148,7 @@ def _close(run: Run, knots: Knots, record: Record, length: float) -> None:
 
 
 @part(borrowing=True, inside=True)
-def _sample(run: Run, record: Record, slot: int) -> None:
+def _sample(run: Run, record: History, slot: int) -> None:
     if slot >= 0 and slot < record.states.shape[0]:
         record.visited[slot] = run.motion.place[0].mode
         for i in range(run.mechanics.sizes.states):
@@ -187,7 +187,7 @@ def _jump(run: Run, knots: Knots, account: Account) -> bool:
 
 
 @part(borrowing=True, inside=True)
-def _renew(run: Run, knots: Knots, record: Record, length: float) -> None:
+def _renew(run: Run, knots: Knots, record: History, length: float) -> None:
     """The sample where an input breaks, and the squares where it jumps, are those from the right."""
     sizes, place, u, leaps = run.mechanics.sizes, run.motion.place[0], run.room.inputs, 0.0
     k, maps = place.segment, run.modes.maps[place.mode]

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from inerter.kernels.arrays import SHARP, Array, ConstantInts, Knots, Lines, March, Record, Shape, Span
+from inerter.kernels.arrays import SHARP, Array, ConstantInts, History, Knots, March, MarchLines, MarchShape, Span
 from inerter.kernels.declare import function_at, kernel, part
 
 
@@ -22,7 +22,7 @@ def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp
 
 
 @part(inside=True, borrowing=True, fused=True)
-def leap(lines: Lines, knots: Knots, k: int, shape: Shape, v: Array, before: Array) -> bool:
+def leap(lines: MarchLines, knots: Knots, k: int, shape: MarchShape, v: Array, before: Array) -> bool:
     """Have positions follow inputs that jump at knot k, and keep the state before; whether one jumps."""
     leaps, columns = False, shape.states + shape.inputs + 1
     for c in range(shape.jumps):
@@ -38,7 +38,7 @@ def leap(lines: Lines, knots: Knots, k: int, shape: Shape, v: Array, before: Arr
 
 
 @part(inside=True, borrowing=True, fused=True)
-def feed(knots: Knots, k: int, step: float, shape: Shape, numbers: Array, v: Array) -> None:
+def feed(knots: Knots, k: int, step: float, shape: MarchShape, numbers: Array, v: Array) -> None:
     """What the inputs do over the step after knot k, in those of `flow.knot_numbers` that are used."""
     for j in range(shape.inputs):
         c, number, at = numbers[j] // 4, numbers[j] % 4, shape.states + j
@@ -53,7 +53,7 @@ def feed(knots: Knots, k: int, step: float, shape: Shape, numbers: Array, v: Arr
 
 
 @part(inside=True, borrowing=True, fused=True)
-def follow(steps: Array, v: Array, shape: Shape, y: Array) -> None:
+def follow(steps: Array, v: Array, shape: MarchShape, y: Array) -> None:
     """All that follows from the state and the inputs, and last how far each guard may sway."""
     columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
     for i in range(0, shape.rows, 4):  # four rows at once, which one instruction does
@@ -76,7 +76,7 @@ def follow(steps: Array, v: Array, shape: Shape, y: Array) -> None:
 
 
 @part(inside=True, borrowing=True, fused=True)
-def is_safe(limits: Array, shape: Shape, y: Array) -> bool:
+def is_safe(limits: Array, shape: MarchShape, y: Array) -> bool:
     """Whether no guard can be crossed within the step."""
     safe, n = True, shape.states
     bends = n + 2 * shape.elements + shape.squares * (2 if shape.jumps else 1)  # rows of the sway's first terms
@@ -91,7 +91,7 @@ def is_safe(limits: Array, shape: Shape, y: Array) -> bool:
 
 
 @part(inside=True, borrowing=True, fused=True)
-def renew(record: Record, slot: int, counts: bool, shape: Shape, v: Array, y: Array) -> None:
+def renew(record: History, slot: int, counts: bool, shape: MarchShape, v: Array, y: Array) -> None:
     """The sample at a jump, and its squares if that `counts`, are those after it."""
     if slot < record.states.shape[0]:
         for i in range(shape.states):
@@ -103,7 +103,7 @@ def renew(record: Record, slot: int, counts: bool, shape: Shape, v: Array, y: Ar
 
 
 @part(inside=True, borrowing=True, fused=True)
-def keep(record: Record, slots: Array, k: int, span: Span, shape: Shape, v: Array, y: Array) -> None:
+def keep(record: History, slots: Array, k: int, span: Span, shape: MarchShape, v: Array, y: Array) -> None:
     """Go over to the end of the step, and keep what is to be kept of it."""
     if k >= span.settled and slots[k + 1] >= 0:
         for o in range(shape.squares):
@@ -119,7 +119,9 @@ def keep(record: Record, slots: Array, k: int, span: Span, shape: Shape, v: Arra
 
 
 @part(typed=True, borrowing=True, inside=True, fused=True)
-def go_on(lines: Lines, knots: Knots, record: Record, span: Span, shape: Shape, numbers: ConstantInts) -> int:
+def go_on(
+    lines: MarchLines, knots: Knots, record: History, span: Span, shape: MarchShape, numbers: ConstantInts
+) -> int:
     """Go on while no guard can be crossed within the step; the first segment that needs more care."""
     columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
     v, y = lines.work[:columns], lines.work[columns : columns + shape.rows + sways]
@@ -146,7 +148,7 @@ def go_on(lines: Lines, knots: Knots, record: Record, span: Span, shape: Shape, 
     return k
 
 
-def march_type(lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+def march_type(lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
     """The type of a march, which is called through its address."""
     raise NotImplementedError
 
@@ -155,13 +157,13 @@ march_at = function_at(march_type)
 
 
 @part(borrowing=True)
-def by_sizes(march: March, lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+def by_sizes(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
     """`go_on` with sizes that are read as it runs: the same numbers, at half the speed."""
     return go_on(lines, knots, record, span, march.shape, march.numbers)
 
 
 @part(borrowing=True, plain=by_sizes)
-def whole_steps(march: March, lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+def whole_steps(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
     """`go_on` by the code for this shape.
 
     Its address is handed over, not the function: that would run Python code within the call, which Ctrl-C can break.
@@ -178,11 +180,11 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
     terms of the guards' sway are values, not sums of sizes, which sees that large motions cancel in them.
     """
     _, rows, _ = lines_of(n, len(used), elements, outputs, jumps, sharp)
-    shape = Shape(n, len(used), elements, outputs, jumps, rows, sharp)
+    shape = MarchShape(n, len(used), elements, outputs, jumps, rows, sharp)
     numbers = np.array(used or (0,), np.int64)
 
     @kernel("march", typed=True, fused=True, borrowing=True)
-    def march(lines: Lines, knots: Knots, record: Record, span: Span) -> int:
+    def march(lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
         return go_on(lines, knots, record, span, shape, numbers)
 
     return March(march_at.address_of(march), shape, numbers)

@@ -95,7 +95,7 @@ def sizes_of(A: Matrix) -> Matrix:
 
 @part(typed=True, apart=True)
 def drop_rounding(A: Matrix, bound: Matrix) -> None:
-    """Set to zero what is rounding of sums of terms as large as `bound`: what cannot move must not creep."""
+    """Set to zero what is rounding of sums of terms as large as `bound`: what cannot move must not drift."""
     for i in range(A.shape[0]):
         for j in range(A.shape[1]):
             if abs(A[i, j]) < ROUNDING * bound[i, j]:

@@ -1,4 +1,4 @@
-"""Modes of a piecewise-linear mechanism: from what slips, sticks, touches and gapes to matrices.
+"""Modes of a piecewise-linear mechanism: from what slips, sticks, touches and opens to matrices.
 
 With the velocities a that inertia carries, the positions g, the velocities w of massless motions, the forces F of the
 nonlinear elements, and the roads' z, z', z'' and forces f of `Mechanics`:
@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from inerter.kernels.arrays import FRICTION, GAP, Flags, Ints, Matrix, Mechanics, Mode, Rows, Sizes
+from inerter.kernels.arrays import FRICTION, GAP, Flags, Ints, MapRows, Matrix, Mechanics, Mode, Sizes
 from inerter.kernels.declare import kernel, part
 from inerter.kernels.locking import Bases, Locks, Rates, bases_of, is_locked, locks_of, rates_of
 from inerter.kernels.matrices import (
@@ -236,7 +236,7 @@ def limit_guard(limits: Matrix, e: int, state: int, limit: float) -> None:
 
 
 @part(typed=True, apart=True)
-def fill_outputs(first: Rows, over: Matrix, maps: Matrix) -> None:
+def fill_outputs(first: MapRows, over: Matrix, maps: Matrix) -> None:
     """Outputs over the state and inputs, by what they are over these and (a', w, F)."""
     inputs = maps.shape[1] - 1
     add(maps, first.output, 0, block(over, 0, over.shape[0], 0, inputs), 1.0)
@@ -284,7 +284,7 @@ def fill_reaction(
 
 
 @part(typed=True, apart=True)
-def see_what_entry_leaves(sizes: Sizes, first: Rows, mode: Mode) -> None:
+def see_what_entry_leaves(sizes: Sizes, first: MapRows, mode: Mode) -> None:
     """Have all rows see the state as the conditions on entry leave it: drift off them then changes nothing."""
     n, entry, conditions = sizes.states, first.entry, mode.conditions[0] + mode.conditions[1]
     maps, width = mode.maps, mode.maps.shape[1]

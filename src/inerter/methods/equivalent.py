@@ -28,7 +28,9 @@ from inerter.vehicle.mechanism import Mechanism, Tyre
 
 Array = NDArray[np.float64]
 GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
-POORLY = "is poorly told by one damper: the value may be off by more than 3 %. Simulate it, as ExpectedValue() does"
+POORLY = (
+    "is poorly represented by one damper: the value may be off by more than 3 %. Simulate it, as ExpectedValue() does"
+)
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 
 
@@ -95,7 +97,7 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
     for name in names:
         if name in told:
             raise PerformanceIndexError(
-                f"Statistical linearisation does not tell {name!r}: it puts a damper in the place of the friction. "
+                f"Statistical linearisation does not give {name!r}: it puts a damper in the place of the friction. "
                 f"Use ExpectedValue() or ApproximateLinear(), which simulate it."
             )
 

@@ -8,6 +8,8 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, Protocol
 
+from inerter.errors import StudyError
+
 if TYPE_CHECKING:
     from inerter.files.study.running import StudyResult
 
@@ -47,6 +49,10 @@ class Paper:
 
         Raises `StudyError` as `run_study` does, or for an unknown part; `WorkError` as `run_study` does.
         """
+        unknown = [part for part in only if part not in self.parts]
+        if unknown:
+            known = ", ".join(self.parts)
+            raise StudyError(f"There is no part named {unknown[0]!r} of {self.name} (there are: {known}).")
         found: PaperResults = _loaded(self.recompute)(folder, only=only, finish=_loaded(self.write), **settings)
         return found
 

@@ -96,7 +96,7 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    for symbol in INDICES:
+    for symbol in study.indices:
         field = amplitude_of(symbol)
         if field is not None and field.key in study.settings:
             yield (

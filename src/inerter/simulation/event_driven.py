@@ -19,15 +19,15 @@ from inerter.kernels.arrays import (
     PLACE,
     WATCH,
     Account,
+    History,
+    IntegrationState,
     Knots,
+    MapRows,
     March,
     Mechanics,
     Mode,
     Modes,
-    Motion,
-    Record,
     Room,
-    Rows,
     Run,
     Sizes,
 )
@@ -63,10 +63,10 @@ class Integration:
     modes: Modes
     begun: Matrix  # the state at the start, before anything that jumps there
     used: NDArray[np.int64]
-    motion: Motion
+    motion: IntegrationState
     room: Room
     knots: Knots
-    record: Record
+    record: History
     account: Account
     count: int = 0
     status: Status = OK
@@ -253,7 +253,7 @@ def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]
     entry, output = eta + na + nw + k, eta + na + nw + k + nw + k
     return Mechanics(
         sizes=Sizes(na, nw, len(system.mechanism.roads), n, system.inputs, k, dampers, squares),
-        rows=Rows(n, eta, entry, output, output + len(rows)),
+        rows=MapRows(n, eta, entry, output, output + len(rows)),
         balance=constants.balance,
         rates=constants.rates,
         lengths=constants.lengths,
@@ -289,11 +289,11 @@ def aligned(*shape: int) -> Matrix:
     return room[first : first + size].reshape(shape)
 
 
-def _motion(system: PiecewiseSystem, state: Matrix, settled: int) -> Motion:
+def _motion(system: PiecewiseSystem, state: Matrix, settled: int) -> IntegrationState:
     place = np.zeros(1, PLACE)
     place[0].mode, place[0].settled = -1, settled
     ports = len(system.mechanism.roads) + len(system.mechanism.forces)
-    return Motion(
+    return IntegrationState(
         place=place,
         state=np.array(state, dtype=float),
         scale=np.abs(state),
@@ -325,12 +325,12 @@ def knots(table: InputTable) -> Knots:
     return Knots(*(getattr(table, name) for name in Knots._fields))
 
 
-def _record(sizes: Sizes, state: Matrix, samples: int) -> Record:
+def _record(sizes: Sizes, state: Matrix, samples: int) -> History:
     states = np.empty((samples, sizes.states))
     states[:1] = state
     squares, last = np.zeros((2, sizes.squares))
     events = np.zeros(1024, EVENT)
-    return Record(states, np.zeros(samples, np.int64), squares, last, events)
+    return History(states, np.zeros(samples, np.int64), squares, last, events)
 
 
 def _account(system: PiecewiseSystem, wanted: bool) -> Account:

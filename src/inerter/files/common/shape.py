@@ -19,6 +19,7 @@ from pydantic import (
     model_validator,
 )
 
+from inerter.errors import RowError
 from inerter.fields import Field as Quantity
 from inerter.fields import fields_of, mounts_of
 from inerter.files.common.entries import Amount, amount, check_order, element_name, expression, layout_name, positive
@@ -77,6 +78,8 @@ def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Sh
 
 def _vehicle_shape(model: str) -> type[Shape]:
     keys = of_quantities(fields_of(VEHICLES[model]))
+    if "model" in keys:
+        raise RowError(f"{model} has a quantity 'model', a key that [vehicle] has already. Choose another name.")
     return create_model(f"Vehicle {model}", __base__=Shape, **{**keys, "model": (Literal[model], ...)})
 
 

@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 from pydantic import PlainValidator
 
+from inerter.errors import RowError
 from inerter.files.common.entries import one_of, positive, quantity, text, whole, yes_or_no
-from inerter.rows import Rows
+from inerter.rows import Rows, made_of_rows
 from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
 from inerter.signals.records import held_noise, profile, recorded
 from inerter.signals.signal import Signal
@@ -142,4 +143,17 @@ SIGNALS: Rows[SignalKind] = Rows("kind of signal", "key", ("make", "keys"), _OWN
 
 def unit_of(name: object) -> str:
     """The unit of an input by its name."""
-    return {force: unit for kind in VEHICLES.values() for force, unit in kind.forces.items()}.get(str(name), "m")
+    return _force_units().get(str(name), "m")
+
+
+@made_of_rows
+def _force_units() -> dict[str, str]:
+    """Raises `RowError` if a force has two units, or one that no signal has."""
+    found: dict[str, str] = {}
+    for kind in VEHICLES.values():
+        for force, unit in kind.forces.items():
+            if unit not in UNITS:
+                raise RowError(f"{kind.__name__} has a force {force!r} in {unit}; a signal is in {', '.join(UNITS)}.")
+            if found.setdefault(force, unit) != unit:
+                raise RowError(f"{kind.__name__} has {force!r} in {unit}, and another vehicle in {found[force]}.")
+    return found

@@ -15,7 +15,7 @@ from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.simulation.request import SimulationRequest, write_simulation
 from inerter.networks.elements import Element
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import Linear, Switch
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.graph import full_graph, switching
 from inerter.systems.outputs import of_mount
@@ -33,6 +33,7 @@ class Nonlinear:
 
     name: str
     kind: str
+    switch: Switch
     strut: str
     events: int
     shares: dict[str, float]
@@ -96,7 +97,7 @@ class SimulationResult:
                     for state in (switch.middle, switch.upper, switch.lower)
                 }
                 events = sum(event.element == label for event in self.run.events)
-                found.append(Nonlinear(label, element.key, strut, events, shares))
+                found.append(Nonlinear(label, element.key, switch, strut, events, shares))
         return tuple(found)
 
     @property

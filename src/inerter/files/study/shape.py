@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from inerter.errors import RowError
 from inerter.files.common.entries import (
     MOST_POINTS,
     Amount,
@@ -138,7 +139,13 @@ class StudyFile(Shape):
 
 @made_of_rows
 def shapes() -> tuple[type[StudyFile], Shapes]:
-    """The shape of a study file, and all shapes in it by their place."""
+    """The shape of a study file, and all shapes in it by their place.
+
+    Raises `RowError` if an index has a setting whose key is one of the section's own.
+    """
+    taken = sorted(index_settings().keys() & Settings.model_fields.keys())
+    if taken:
+        raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
     keys: dict[str, Any] = {
         key: (
             Annotated[float | None, positive(field.unit)],

@@ -49,6 +49,11 @@ class Switch:
     lower: str
     middle: str
     upper: str
+    at_middle: str = ""  # what one does in its middle state, to go after its name; "is ..." if left out
+
+    def said(self, name: str) -> str:
+        """That an element of this name is in its middle state."""
+        return f"{name} {self.at_middle or f'is {self.middle}'}"
 
     def always_holds(self, value: float) -> bool:
         """Whether an element of this value holds its length whenever nothing forces it: with a gap, if it is closed."""

@@ -163,3 +163,30 @@ def test_kernels_that_are_missing_are_compiled_beforehand_and_each_is_told_once(
     assert lines[:3] == ["twice 1 3", "thrice 2 3", "half 3 3"]
     assert lines[3:] == ["ready", "2.0 3.0 0.5"]
     assert found[1].stdout.splitlines() == ["ready", "2.0 3.0 0.5"]
+
+
+PRESSED = """
+from numba.core.codegen import CodeLibrary, JITCodeLibrary
+
+def press(cls, module, data):
+    raise KeyboardInterrupt
+
+for library in (CodeLibrary, JITCodeLibrary, *JITCodeLibrary.__mro__):
+    if "_object_compiled_hook" in vars(library):
+        library._object_compiled_hook = classmethod(press)
+import small
+try:
+    small.doubled(21.0)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def test_ctrl_c_while_the_compiler_hands_over_its_code_is_an_interrupt(tmp_path: Path, temporary: Path) -> None:
+    """Python can only ignore it there, and the compiler then says that it has no code."""
+    (temporary.parent / "small.py").write_text(KERNEL, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(temporary.parent), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    found = subprocess.run(
+        [sys.executable, "-c", PRESSED], env=environment, capture_output=True, text=True, check=True, timeout=280
+    )
+    assert found.stdout == "interrupted\n"

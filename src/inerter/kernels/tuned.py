@@ -97,6 +97,8 @@ class _Cache(FunctionCache):
         except OSError as error:
             self._forget()
             tell_of_no_cache(Path(self.cache_path).parents[1], error)
+        except RuntimeError:  # no code: Ctrl-C came while LLVM handed it over to Python, which can only ignore it there
+            raise KeyboardInterrupt from None
 
     def _forget(self) -> None:
         with suppress(OSError):

@@ -1,7 +1,7 @@
 """Quantities of which something is made, stated where it is: name, SI unit, a sentence, an example.
 
-A frozen dataclass gives them to its own fields as `field(metadata=quantity(...))`. The keys of files, the tables of the
-docs, the rows of reports and the checks are made of them.
+A frozen dataclass gives them to its own fields as `field(metadata=quantity(...))`. The keys of files, the rows of
+reports and the checks are made of them; the tables of the docs are checked against them.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 There are two ways. The plain one, here, is `numba.njit` with options that its documentation tells. The tuned one, in
 `inerter.kernels.tuned`, compiles the same functions in half the time: it rests on private parts of Numba, which may
-change with any release. `declare.way` is the switch between them, and nothing else touches Numba.
+change with any release. `declare.way` is the switch between them. Beside these two only `twofold` touches Numba, for
+a product and a sum with one rounding.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""An index with a filter and a setting of its own: ride comfort without what passengers call motion sickness."""
+"""An index with a filter and a setting of its own: ride comfort without the frequencies of motion sickness."""
 
 from __future__ import annotations
 

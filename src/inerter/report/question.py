@@ -96,12 +96,10 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    for symbol in study.indices:
-        field = amplitude_of(symbol)
-        if field is not None and field.key in study.settings:
-            yield (
-                f"The sinusoidal force of {symbol} has an amplitude of {_given(study.settings[field.key], field.unit)}."
-            )
+    forced = {symbol: field for symbol in INDICES if (field := amplitude_of(symbol)) and field.key in study.settings}
+    for symbol in [asked for asked in forced if asked in study.indices] or forced:
+        amplitude = _given(study.settings[forced[symbol].key], forced[symbol].unit)
+        yield f"The sinusoidal force of {symbol} has an amplitude of {amplitude}."
 
 
 def _value(study: Study, name: str, element: Element) -> str:

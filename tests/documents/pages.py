@@ -77,14 +77,14 @@ def run(block: Block, page: str, namespace: dict[str, Any]) -> None:
     for statement in ast.parse(block.code).body:
         place, out = f"{page}:{block.line + statement.lineno - 1}", io.StringIO()
         expected = said.get(statement.end_lineno or 0, "")
-        code = "\n" * (block.line + statement.lineno - 2) + (ast.get_source_segment(block.code, statement) or "")
+        ast.increment_lineno(statement, block.line - 1)
         with redirect_stdout(out):
             if isinstance(statement, ast.Expr):
-                value = eval(compile(code.strip("\n"), place, "eval"), namespace)
+                value = eval(compile(ast.Expression(statement.value), place, "eval", dont_inherit=True), namespace)
                 figures = [*numbers_in(value), *map(float, NUMBER.findall(out.getvalue()))]
                 assert_figures(expected, figures, place)
             else:
-                exec(compile(code, place, "exec"), namespace)
+                exec(compile(ast.Module([statement], []), place, "exec", dont_inherit=True), namespace)
         if out.getvalue().count("\n") == 1 and expected and re.search("[a-z]{2}", out.getvalue()):
             assert expected.startswith(out.getvalue().strip()), place
         everything += out.getvalue()

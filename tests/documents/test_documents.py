@@ -145,7 +145,8 @@ def test_a_command_does_what_the_page_shows(command: str, folder: Path, capsys: 
 @pytest.mark.campaign
 def test_what_a_slow_record_tells(folder: Path) -> None:
     """The friction to so many per cent, of the inertance its order of magnitude only."""
-    said = re.search(r"tells f to ([\d.]+) %, but of b only the order of magnitude", text_of("identification.md"))
+    words = r"identifies\s+f to ([\d.]+) %, but of b only the order of magnitude"
+    said = re.search(words, text_of("identification.md"))
     assert said is not None
     a_friction_test(folder)
     assert call(shlex.split('identify friction.csv --model ball-screw --force-bandwidth "80 Hz"')) == 0

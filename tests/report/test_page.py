@@ -15,7 +15,8 @@ from synthetic import LONG, designs, judged, sweep, with_value
 from inerter.figures.study import draw_study
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.loading import load_study
-from inerter.report.page import report, write_report
+from inerter.report.page import environment, report, write_report
+from inerter.report.tables import Cell, Row, Table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 VOID = {"meta", "wbr", "br"}
@@ -132,6 +133,30 @@ def test_the_page_needs_no_other_file_and_names_each_thing_once(make, study, swe
     references += re.findall(r"url\(([^)]*)\)", source)
     assert references
     assert {reference.removeprefix("#") for reference in references} <= set(names)
+
+
+@pytest.mark.parametrize("make", sampled([designs, sweep], [designs]), ids=["designs", "sweep"])
+def test_what_may_be_wider_than_the_screen_says_so(make, study, sweep_study, tmp_path):
+    results = make(LONG)
+    draw_study(results, tmp_path)
+    source = report(results, study if "omega" in results else sweep_study, tmp_path)
+    assert source.count("<table") + source.count("<svg") == source.count(
+        " is wider than the screen: scroll it sideways."
+    )
+
+
+def test_words_in_a_table_may_go_over_several_lines_and_a_last_column_of_words_is_a_verdict():
+    cells = [[Cell("1 m"), Cell("as far as known", strong=strong, prose=True)] for strong in (True, False)]
+    table = Table("Verdicts", ["Case", "Value", "Verdict"], [Row("a", row, status="it is long") for row in cells])
+    source = environment().get_template("tables.html").module.grid(table)
+    assert '<table class="short judged">' in source
+    assert [source.count(f"<td{attributes}>") for attributes in (' class="own prose"', ' class="prose"', "")] == [
+        1,
+        1,
+        2,
+    ]
+    assert source.count("<span>a – it is long</span>") == 2
+    assert not replace(table, rows=[Row("a", [Cell("1 m"), Cell("2 m")])]).judged
 
 
 def test_figures_that_were_not_drawn_are_left_out(study, tmp_path):

@@ -37,11 +37,12 @@ _MOST_FAILURES = 20
 
 @dataclass(frozen=True)
 class Cell:
-    """A value, and a remark below it."""
+    """A value, and a remark below it; `prose` is words, which may go over several lines."""
 
     text: str
     remark: str = ""
     strong: bool = False
+    prose: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,11 @@ class Table:
     rows: list[Row]
     swept: bool = False
     failures: tuple[str, ...] = ()
+
+    @property
+    def judged(self) -> bool:
+        """Whether the last column is a verdict on the others: it stays in sight."""
+        return any(row.cells[-1].prose for row in self.rows if row.cells)
 
 
 def design_tables(results: xr.Dataset) -> list[Table]:

@@ -124,8 +124,8 @@ def _summary(found: Reproduction) -> list[str]:
     rows = list(found.rows.values())
     if rows:
         counts = {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
-        said = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
-        lines.append(f"Of {len(rows)} simulated rows of the tables: {said}.")
+        said = ", ".join(f"{verdict} {count}" for verdict, count in counts.items() if count)
+        lines.append(f"Simulated rows of the tables by verdict: {said}; {len(rows)} in all.")
     if found.claims:
         verdicts = dict.fromkeys(claim.verdict for claim in found.claims)
         said = "; ".join(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from inerter.figures.labels import printed, typeset
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.report.data import reason
@@ -11,10 +13,18 @@ from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK
 from inerter.report.tables import Cell, Row, Table
 
 
+_NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+
+
+def _unbroken(title: str) -> str:
+    """A title whose numbers stay on the line of their unit."""
+    return re.sub(r"(?<=\d) (?=N\b)", _NO_BREAK_SPACE, title)
+
+
 def compared_table(compared: list[ComparedRow], number: int) -> Table:
     rows = [
         Row(
-            f"{c.row.index} {c.row.title}",
+            f"{c.row.index} {_unbroken(c.row.title)}",
             [
                 Cell(typeset(c.row.printed)),
                 Cell(typeset(digits(c.paper2008))),
@@ -33,14 +43,13 @@ def compared_table(compared: list[ComparedRow], number: int) -> Table:
 def simulated_table(found: Reproduction, number: int) -> Table | None:
     rows = [
         Row(
-            f"{r.row.index} {r.row.title}",
+            f"{r.row.index} {_unbroken(r.row.title)}",
             [
                 Cell(typeset(r.row.printed)),
-                Cell(typeset(with_error(r.paper2008, r.paper2008_error))),
-                Cell(typeset(f"{signed(100.0 * r.difference)} %")),
+                Cell(typeset(with_error(r.paper2008, r.paper2008_error)), typeset(f"{signed(100.0 * r.difference)} %")),
                 Cell(typeset(with_error(r.exact, r.exact_error))),
-                *([] if r.improvement is None else [Cell(f"{r.improvement:.2f} %", f"printed {r.row.improvement}")]),
-                Cell(r.verdict, strong=r.verdict in (DIFFERS, OTHER_PEAK)),
+                *([] if r.improvement is None else [Cell(f"{r.improvement:.2f} %", f"printed {r.row.improvement} %")]),
+                Cell(r.verdict, strong=r.verdict in (DIFFERS, OTHER_PEAK), prose=True),
             ],
             status=reason(r),
         )
@@ -48,7 +57,7 @@ def simulated_table(found: Reproduction, number: int) -> Table | None:
         if r.row.table == number
     ]
     over = ["Improvement"] if number == 2 else []
-    header = ["Design", "Printed", "paper2008", "Difference", "Exact", *over, "Verdict"]
+    header = ["Design", "Printed", "paper2008, difference", "Exact", *over, "Verdict"]
     method = "approximated linear model (Method 1)" if number == 2 else "expected value (Method 2)"
     return Table(f"Table {number} anew, {method}: J1 in m/s², J3 in N, J5 in m/N", header, rows) if rows else None
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from inerter.errors import UnitError
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.units import format_quantity, parse_quantity, shown
+from inerter.units import format_quantity, format_with_interval, parse_quantity, shown
 
 UNITS = (*kinds_by_unit(), "kg m^2", "m/s", "m^3/cycle", "rad/s")
 
@@ -176,6 +176,24 @@ def test_any_text_is_a_number_or_a_unit_error(text, unit):
 )
 def test_format_chooses_prefix_and_digits(value, unit, text):
     assert format_quantity(value, unit) == text
+
+
+@given(
+    st.floats(1e-8, 1e8),
+    st.floats(1e-4, 0.9),
+    st.floats(0.0, 1.0),
+    st.sampled_from(["kg", "N", "N/m", "N s/m", "m"]),
+)
+def test_a_value_with_an_interval_has_the_digits_that_the_interval_bears(middle, half, place, unit):
+    low, high = middle * (1.0 - half), middle * (1.0 + half)
+    value = low + place * (high - low)
+    text, interval = format_with_interval(value, low, high, unit)
+    first, _, second = interval.partition(" to ")
+    name = second.partition(" ")[2]
+    printed = [parse_quantity(part, unit) for part in (f"{first} {name}", second, text)]
+    assert text.partition(" ")[2] == name
+    for shown_value, exact in zip(printed, (low, high, value), strict=True):
+        assert abs(shown_value - exact) <= 0.06 * middle * half  # half of the second digit of the half width, at most
 
 
 @pytest.mark.parametrize("value", ["x" * 500, 10**400, "a\nb\x7f\x85\u2028", '"' * 500])

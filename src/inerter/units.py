@@ -19,6 +19,8 @@ _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 # Pint evaluates what it is given, so only names, small exponents and separators reach it.
 _UNIT = re.compile(r"(?:[^\W\d_]++(?:(?:\^|\*\*)-?\d|[²³])?+|[()\s*/·.])+")
 _LONGEST = 100
+_FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
+_MOST_DIGITS = 6  # of a value with an interval
 
 _PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # from which size on, scale, unit
     "N/m": ((1e6, 1e6, "MN/m"), (1e3, 1e3, "kN/m"), (0.0, 1.0, "N/m")),
@@ -80,6 +82,66 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
     _, scale, name = next(choice for choice in choices if abs(rounded) >= choice[0])
     return f"{rounded / scale:.12g} {name}"
+
+
+def format_with_interval(value: float, low: float, high: float, unit: str) -> tuple[str, str]:
+    """`value` and its interval, given in `unit`, for people: one unit, and as many decimals as the interval bears.
+
+    An interval that goes through decades has a unit of its own at each end, and three digits.
+
+    >>> format_with_interval(113.0123, 112.9917, 113.0331, "kg")
+    ('113.012 kg', '112.992 to 113.033 kg')
+    >>> format_with_interval(9.9997, 9.9973, 10.002, "N")
+    ('9.9997 N', '9.9973 to 10.0020 N')
+    """
+    if low <= 0.0 or high > _FAR * low:
+        return format_handy(value, unit), f"{format_handy(low, unit)} to {format_handy(high, unit)}"
+    size, name = handy_unit(value or high, unit)
+    low, high = low / size, high / size
+    decimals = _decimals(low, high)
+    return f"{value / size:.{decimals}f} {name}".rstrip(), f"{low:.{decimals}f} to {high:.{decimals}f} {name}".rstrip()
+
+
+def format_handy(value: float, unit: str, digits: int = 3) -> str:
+    """A value alone, in its handy unit.
+
+    >>> format_handy(5000.0, "N"), format_handy(2e-3, "s")
+    ('5 kN', '2 ms')
+    """
+    size, name = handy_unit(value, unit)
+    return f"{format_number(value / size, digits)} {name}".rstrip()
+
+
+def format_number(number: float, digits: int) -> str:
+    """A number to so many digits, without a power of ten unless it is far from one.
+
+    >>> format_number(5000.0, 3), format_number(1.234e-7, 2)
+    ('5000', '1.2e-07')
+    """
+    return f"{float(f'{number:.{digits}g}'):.9g}"
+
+
+def handy_unit(value: float, unit: str) -> tuple[float, str]:
+    """The size and the name of the unit in which a value, given in `unit`, is a number of handy size; ms among them.
+
+    >>> handy_unit(12e3, "N/m"), handy_unit(0.0, "m")
+    ((1000.0, 'kN/m'), (1.0, 'm'))
+    """
+    if unit == "s":
+        return (1e-3, "ms") if abs(value) < 0.1 else (1.0, "s")
+    rounded = abs(float(f"{value:.4g}")) if math.isfinite(value) else 0.0
+    choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
+    _, size, name = next(choice for choice in choices if (rounded or 1.0) >= choice[0])
+    return size, name
+
+
+def _decimals(low: float, high: float) -> int:
+    """So many that half of the interval has two digits, within reason."""
+    half, size = 0.5 * (high - low), max(abs(low), abs(high))
+    if not half > 0.0 or not size > 0.0:
+        return 3
+    most = max(_MOST_DIGITS - 1 - math.floor(math.log10(size)), 0)
+    return min(max(1 - math.floor(math.log10(half)), 0), most)
 
 
 def shown(value: object) -> str:

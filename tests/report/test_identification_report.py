@@ -33,8 +33,9 @@ from inerter.report.identification import identification_page, write_fit, write_
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_figures import window
 from inerter.report.identification_text import identification_text, share
-from inerter.report.identified_values import elements_block, single, value_and_interval
+from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
+from inerter.units import format_handy
 
 VOID = {"meta", "wbr", "br"}
 SHAFT = it.Spring(1e6, name="ks") | it.Damper(3200.0, name="cs")
@@ -165,9 +166,9 @@ def test_digits_are_those_that_the_interval_bears(found: Identified) -> None:
 
 
 def test_single_values_and_shares() -> None:
-    assert single(9.5e-9, "m") == "0.0095 um"
-    assert single(0.0021, "s") == "2.1 ms"
-    assert single(5000.0, "kg") == "5000 kg"
+    assert format_handy(9.5e-9, "m") == "0.0095 um"
+    assert format_handy(0.0021, "s") == "2.1 ms"
+    assert format_handy(5000.0, "kg") == "5000 kg"
     assert share(0.5) == "50.0 %"
     assert share(1.0) == "100.0 %"
 

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from inerter.records.finding import Finding
 from inerter.records.remedy import Action, Remedy, Text
-from inerter.units import format_quantity
+from inerter.units import format_quantity, format_with_interval
 
 
 class FitFinding(StrEnum):
@@ -160,8 +160,8 @@ def _failed(f: Finding) -> Text:
 
 
 def _level(f: Finding) -> Text:
-    level, low, high = (format_quantity(f.numbers[name], "N") for name in ("level", "lower", "upper"))
-    return (f"Friction {level} ({low} to {high}) from the test without flywheel.",)
+    level, interval = format_with_interval(f.numbers["level"], f.numbers["lower"], f.numbers["upper"], "N")
+    return (f"Friction {level} ({interval}) from the test without flywheel.",)
 
 
 def _other_friction(f: Finding) -> Text:

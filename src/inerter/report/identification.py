@@ -27,13 +27,11 @@ from inerter.report.identified_values import (
     Known,
     elements_block,
     known,
-    plain,
-    scale_of,
-    single,
     value_and_interval,
 )
 from inerter.report.options import as_options
 from inerter.report.page import PageFigure, environment, inline
+from inerter.units import format_handy, format_number, handy_unit
 from inerter.work.origin import versions
 from inerter.writing import write_text
 
@@ -139,9 +137,9 @@ def _rows(found: Identified) -> Iterator[ParameterRow]:
     for name, p in found.fit.parameters.items():
         value, interval = value_and_interval(found, name)
         bounds = found.bounds(name)
-        sought = "" if bounds is None else f"{single(bounds[0], p.unit)} to {single(bounds[1], p.unit)}"
-        identified, own = bool(found.fit.identifiable[name]), scale_of(p.best, p.unit)
-        error = f"{plain(p.standard_error * own.factor, 2)} {own.unit}".rstrip() if identified else ""
+        sought = "" if bounds is None else f"{format_handy(bounds[0], p.unit)} to {format_handy(bounds[1], p.unit)}"
+        identified, (size, unit) = bool(found.fit.identifiable[name]), handy_unit(p.best, p.unit)
+        error = f"{format_number(p.standard_error / size, 2)} {unit}".rstrip() if identified else ""
         yield ParameterRow(name, value, interval, error, sought, identified)
 
 
@@ -165,9 +163,9 @@ def _goodness(found: Identified) -> Iterator[tuple[str, ...]]:
         for part, mask in (("fitted", c.fitted), ("check", c.checked)):
             if mask.any():
                 check = part == "check"
-                left = single(c.rms(check), "N"), single(c.sound(check), "N")
+                left = format_handy(c.rms(check), "N"), format_handy(c.sound(check), "N")
                 numbers = (str(int(mask.sum())), share(c.explained(check)), *left)
-                yield (c.record.source, part, *numbers, "" if check else single(c.offset, "N"))
+                yield (c.record.source, part, *numbers, "" if check else format_handy(c.offset, "N"))
 
 
 def _computation(found: Identified) -> str:

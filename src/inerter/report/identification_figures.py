@@ -21,7 +21,8 @@ from inerter.figures.identification import (
 )
 from inerter.files.identification.running import Identified, Responses
 from inerter.identification.fit import RecordFit
-from inerter.report.identified_values import Known, known, scale_of, value_and_interval
+from inerter.report.identified_values import Known, known, value_and_interval
+from inerter.units import handy_unit
 
 Matrix = NDArray[np.float64]
 _PERIODS = 4.0  # of the motion in a window that can be read
@@ -124,16 +125,16 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
         return None
     points = np.array(sorted(parameter.profile))
     ends = (points[0, 0], points[-1, 0])
-    own = scale_of(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
+    size, unit = handy_unit(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
     value, _ = value_and_interval(found, name)
     what = known(found, name)
     low, high = (parameter.best,) * 2 if what is Known.NOTHING else parameter.interval
     return ProfileCurve(
         label=name,
-        values=points[:, 0] * own.factor,
+        values=points[:, 0] / size,
         rises=points[:, 1],
-        interval=(low * own.factor, high * own.factor),
-        unit=own.unit,
+        interval=(low / size, high / size),
+        unit=unit,
         remark="" if what is Known.VALUE else value,
     )
 

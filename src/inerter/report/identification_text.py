@@ -10,9 +10,10 @@ from inerter.figures.labels import measured
 from inerter.files.identification.running import Identified, Reading, model_title
 from inerter.identification.choice import Candidate
 from inerter.identification.fit import RecordFit
-from inerter.report.identified_values import elements_block, single, value_and_interval
+from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
 from inerter.report.text import WIDTH
+from inerter.units import format_handy
 
 INDEPENDENT = 1e-3  # a p-value above is that of residuals without pattern
 LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
@@ -28,7 +29,7 @@ def identification_text(found: Identified) -> str:
         _records(found),
         _candidates(found),
         _estimates(found),
-        _not_identifiable(found),
+        _identified(found),
         _goodness(found),
         _next(found),
         iter(elements_block(found).splitlines()),
@@ -61,7 +62,7 @@ def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
     for e in likely[:MOST_EXPLANATIONS]:
         units = {name: p.unit for name, p in found.fit.parameters.items()}
         values = ", ".join(
-            f"{name} {single(value, units[name], 4)} +- {single(error, units[name], 2)}"
+            f"{name} {format_handy(value, units[name], 4)} +- {format_handy(error, units[name], 2)}"
             for name, (value, error) in e.estimates.items()
             if name in units and e.misfit.sound
         )
@@ -89,7 +90,7 @@ def done(found: Identified, reading: Reading, comparison: RecordFit) -> Iterator
     yield f"The displacement was smoothed to {motion.bandwidth:.4g} Hz; it shows motion up to {motion.highest:.4g} Hz."
     fitted, checked = int(comparison.fitted.sum()), int(comparison.checked.sum())
     left = reading.used.time.size - fitted - checked
-    lead = f", among them the first {single(comparison.lead, 's')}" if comparison.lead else ""
+    lead = f", among them the first {format_handy(comparison.lead, 's')}" if comparison.lead else ""
     unused = f"; {left} are left out{lead}" if left else ""
     yield f"Fitted were {fitted} samples, and {checked} kept to check the fit{unused}."
 
@@ -137,7 +138,9 @@ def _estimates(found: Identified) -> Iterator[str]:
         yield f"  {name:<{names}}  {value:<{values}}  {interval}".rstrip()
     for c in found.fit.comparisons:
         of = f" of {c.record.source}" if len(found.fit.comparisons) > 1 else ""
-        yield from wrap(f"  Offset of the load cell{of}: {single(c.offset, 'N')}", WIDTH, subsequent_indent="    ")
+        yield from wrap(
+            f"  Offset of the load cell{of}: {format_handy(c.offset, 'N')}", WIDTH, subsequent_indent="    "
+        )
     for remark in remarks(found):
         yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)
 
@@ -149,10 +152,10 @@ def remarks(found: Identified) -> Iterator[str]:
     yield from (as_options(finding.text) for finding in found.fit.findings)
 
 
-def _not_identifiable(found: Identified) -> Iterator[str]:
+def _identified(found: Identified) -> Iterator[str]:
     said = [verdict.sentence for verdict in found.fit.identifiable.values() if not verdict.plain]
     if said:
-        yield "what is not identifiable"
+        yield "what is identified, and what is not"
     for sentence in said:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="    ")
 
@@ -162,7 +165,7 @@ def _goodness(found: Identified) -> Iterator[str]:
     for c in found.fit.comparisons:
         yield f"  {c.record.source}"
         for part, check in (("fitted ", False), ("checked", True))[: 1 + c.checked.any()]:
-            left = f"{single(c.rms(check), 'N')} r.m.s. left, by the sensors {single(c.sound(check), 'N')}"
+            left = f"{format_handy(c.rms(check), 'N')} r.m.s. left, by the sensors {format_handy(c.sound(check), 'N')}"
             yield f"    {part}  {share(c.explained(check))} explained, {left}"
         yield from wrap(whiteness(c), WIDTH, initial_indent="    ", subsequent_indent="    ")
     yield from wrap(misfit(found), WIDTH, initial_indent="  ", subsequent_indent="  ")

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from enum import Enum, auto
-from math import floor, isnan, log10
+from math import isnan
 
-from inerter.figures.labels import Scale, scale
 from inerter.files.identification.running import Identified
 from inerter.networks.elements import Element, Free
 from inerter.networks.parser import written
-from inerter.units import format_quantity
+from inerter.units import format_handy, format_quantity, format_with_interval
 
-_FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
-_MOST_DIGITS = 6
-_SMALL: dict[str, Scale] = {"m": Scale(1e6, "um"), "s": Scale(1e3, "ms")}
+_MOST_DIGITS = 6  # of values that are to be read back
 
 
 class Known(Enum):
@@ -36,15 +33,6 @@ def known(found: Identified, name: str) -> Known:
     return Known.VALUE if found.explains and not isnan(parameter.value) else Known.BOUNDS
 
 
-def scale_of(value: float, unit: str) -> Scale:
-    """The unit in which a value is a number of handy size; micrometres and milliseconds among them."""
-    if not unit:
-        return Scale(1.0, "")
-    if (unit == "m" and 0.0 < abs(value) < 1e-5) or (unit == "s" and abs(value) < 0.1):
-        return _SMALL[unit]
-    return scale([value], unit)
-
-
 def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     """The value of a parameter, or that it is not identifiable, and its interval of 95 %, empty if there is none."""
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
@@ -52,48 +40,15 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     what = known(found, name)
     if what is Known.NOTHING or not found.explains:
         return _WORDS[what], ""
-    own = scale_of(parameter.best or high, parameter.unit)
-    decimals = _decimals(low * own.factor, high * own.factor)
     if what is Known.VALUE:
-        far = low <= 0.0 or high > _FAR * low
-        interval = (
-            f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
-            if far
-            else f"{low * own.factor:.{decimals}f} to {high * own.factor:.{decimals}f} {own.unit}".rstrip()
-        )
-        value = single(parameter.best, parameter.unit) if far else f"{parameter.best * own.factor:.{decimals}f}"
-        return value if far else f"{value} {own.unit}".rstrip(), interval
+        return format_with_interval(parameter.best, low, high, parameter.unit)
     below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
     above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
     if above and not below:
-        return _WORDS[what], f"below {single(high, parameter.unit)}"
+        return _WORDS[what], f"below {format_handy(high, parameter.unit)}"
     if below and not above:
-        return _WORDS[what], f"above {single(low, parameter.unit)}"
-    return _WORDS[what], f"{single(low, parameter.unit)} to {single(high, parameter.unit)}"
-
-
-def single(value: float, unit: str, digits: int = 3) -> str:
-    """A value alone, with its unit."""
-    own = scale_of(value, unit)
-    return f"{plain(value * own.factor, digits)} {own.unit}".rstrip()
-
-
-def plain(number: float, digits: int) -> str:
-    """A number to so many digits, without a power of ten unless it is far from one.
-
-    >>> plain(5000.0, 3), plain(1.234e-7, 2)
-    ('5000', '1.2e-07')
-    """
-    return f"{float(f'{number:.{digits}g}'):.9g}"
-
-
-def _decimals(low: float, high: float) -> int:
-    """So many that half of the interval has two digits, within reason."""
-    half, size = 0.5 * (high - low), max(abs(low), abs(high))
-    if not half > 0.0 or not size > 0.0:
-        return 3
-    most = max(_MOST_DIGITS - 1 - floor(log10(size)), 0)
-    return min(max(1 - floor(log10(half)), 0), most)
+        return _WORDS[what], f"above {format_handy(low, parameter.unit)}"
+    return _WORDS[what], f"{format_handy(low, parameter.unit)} to {format_handy(high, parameter.unit)}"
 
 
 def elements_block(found: Identified) -> str:

@@ -7,11 +7,10 @@ import re
 from inerter.figures.labels import printed, typeset
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.report.data import reason
-from inerter.papers.wang_su_2008.report.text import budget_value, digits, share, signed, with_error
+from inerter.papers.wang_su_2008.report.text import budget_value, digits, rig_value, share, signed, with_error
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK
 from inerter.report.tables import Cell, Row, Table
-
 
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 
@@ -123,13 +122,11 @@ def rig_table(found: Reproduction) -> Table | None:
             p.name,
             [
                 Cell(printed(p.printed, p.unit)),
-                Cell(printed(p.value, p.unit) if known else f"below {printed(p.interval[1], p.unit)}"),
-                Cell(f"{printed(p.interval[0], p.unit)} to {printed(p.interval[1], p.unit)}"),
-                Cell(typeset(f"{signed(100.0 * p.difference)} %") if known else ""),
+                *(Cell(typeset(text)) for text in rig_value(p)),
+                Cell(typeset(f"{signed(100.0 * p.difference)} %") if p.value == p.value else ""),
             ],
         )
         for p in found.rig.parameters
-        for known in (p.value == p.value,)
     ]
     header = ["Parameter", "Printed", "Identified", "95 % interval", "Difference"]
     return Table("Identified by the staged protocol from simulated records, beside the printed values", header, rows)

@@ -15,7 +15,7 @@ from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rig import SIMULATED, Found
 from inerter.papers.wang_su_2008.rows import VERDICTS, SimulatedRow
 from inerter.report.text import WIDTH
-from inerter.units import format_quantity
+from inerter.units import format_handy, format_quantity, format_with_interval
 
 _SIGNS = dict(zip(VERDICTS, "=~<^!", strict=True))
 
@@ -45,11 +45,19 @@ def reproduction_text(found: Reproduction) -> str:
     return "\n".join(lines).rstrip()
 
 
+def rig_value(p: Found) -> tuple[str, str]:
+    """What was identified of a parameter, and its interval."""
+    low, high = p.interval
+    if p.value == p.value:
+        return format_with_interval(p.value, low, high, p.unit)
+    ends = f"{format_handy(low, p.unit)} to" if low > 0.0 else "below"
+    return "not identifiable", f"{ends} {format_handy(high, p.unit)}"
+
+
 def _rig_line(p: Found) -> str:
-    low, high = (format_quantity(value, p.unit, digits=5) for value in p.interval)
-    known = p.value == p.value
-    value = f"identified {format_quantity(p.value, p.unit, digits=5)}" if known else "not identifiable"
-    return f"{p.name:5}printed {format_quantity(p.printed, p.unit):11}{value:25}{low} to {high}"
+    value, interval = rig_value(p)
+    known = f"identified {value}" if p.value == p.value else value
+    return f"{p.name:5}printed {format_quantity(p.printed, p.unit):11}{known:25}{interval}"
 
 
 def agreement_of(compared: list[ComparedRow]) -> str:

@@ -186,7 +186,7 @@ def test_a_setting_without_its_index_is_told(symbol: str, tmp_path: Path) -> Non
     for f in fields_of(it.INDICES[symbol]):
         path = tmp_path / "study.toml"
         path.write_text(study_text(f'indices = ["{other}"]\n{f.key} = "{f.example}"'), encoding="utf-8")
-        with pytest.raises(it.InerterError, match=rf"study\.{f.key}: the {f.told} of {symbol}.*or no {f.key}\."):
+        with pytest.raises(it.InerterError, match=rf"study\.{f.key}: the {f.in_words} of {symbol}.*or no {f.key}\."):
             load_study(path)
 
 

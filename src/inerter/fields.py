@@ -26,7 +26,7 @@ class Field:
     words: str = ""  # to go before "of ...", if that is not the name
 
     @property
-    def told(self) -> str:
+    def in_words(self) -> str:
         """What it is called in sentences."""
         return self.words or self.name.replace("_", " ")
 

@@ -13,10 +13,10 @@ from inerter.figures.labels import (
     flat_range,
     layouts,
     percent,
-    quantity,
     scale,
     swept_element,
     typeset,
+    with_unit,
 )
 from inerter.units import parse_quantity
 
@@ -53,8 +53,8 @@ def test_printed_numbers(plain, printed):
 
 
 def test_numbers_that_are_none():
-    assert quantity(math.inf, "N") == "inf"
-    assert quantity(math.nan, "N") == percent(math.nan) == "n/a"
+    assert with_unit(math.inf, "N") == "inf"
+    assert with_unit(math.nan, "N") == percent(math.nan) == "n/a"
     assert percent(-math.inf) == "-inf %"
     assert percent(-0.01) == percent(0.01) == "0.0 %"
 

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from inerter import Damper, Friction, Gap, Inerter, Spring, free
 from inerter.errors import NetworkError
 from inerter.figures.networks import draw_network, draw_networks, element_label, network_figure, schematic
-from inerter.figures.quarter_car import draw_quarter_car
 from inerter.figures.style import styled
 from inerter.figures.symbols import HALF_HEIGHT, HALF_WIDTH, LEADING, TO_LABEL, blank_figure, symbol
 from inerter.networks.catalogue import LAYOUTS
@@ -233,24 +232,6 @@ def test_networks_wider_than_a_page_make_it_wider_and_others_share_rows():
     assert one[1] == pytest.approx(two[1])
     assert 2.0 * one[1] < many[1]
     assert 1.5 * one[1] < wide[1]
-
-
-def test_quarter_car_names_its_parts_and_stays_where_it_is_put():
-    figure, axes = blank_figure(120.0, 160.0)
-    assert draw_quarter_car(axes, (50.0, 10.0)) is axes
-    figure.draw_without_rendering()
-    assert {text.get_text().replace(r"\mathrm", "") for text in axes.texts} == {
-        "strut",
-        "$m_{s}$",
-        "$m_{u}$",
-        "$k_{t}$",
-        "$z_{s}$",
-        "$z_{u}$",
-        "$z_{r}$",
-    }
-    boxes = [text.get_window_extent() for text in axes.texts]
-    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
-    assert all(figure.bbox.count_contains([b.min, b.max]) == 2 for b in boxes)
 
 
 def test_files_are_written_and_the_same_every_time(tmp_path):

@@ -10,9 +10,14 @@ from hypothesis import strategies as st
 
 from inerter.errors import StudyError
 from inerter.files.common.entries import one_of, positive_number, some_names
+from inerter.files.common.kinds import kind_with, kinds
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.toml import read_shape
+from inerter.files.identification.loading import load_identification
+from inerter.files.rig.loading import load_rig
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.study.loading import load_study
 from inerter.files.study.shape import shapes
 
 WORDS = st.text("abcdefgh", min_size=3, max_size=8)
@@ -67,3 +72,29 @@ def test_a_refusal_has_a_line_for_each() -> None:
         'a.toml: elements."k 1": odd.',
         "a.toml: a sentence.",
     ]
+
+
+@pytest.mark.parametrize("section", [section for kind in kinds() for section in kind.sections])
+def test_a_section_of_another_kind_of_file_says_which_and_is_one_of_its_own(section: str, tmp_path: Path) -> None:
+    owner = kind_with(section)
+    assert owner is not None
+    loads = {"run": load_study, "simulate": load_simulation, "rig": load_rig, "identify": load_identification}
+    assert {kind.command for kind in kinds()} == set(loads)
+    path = tmp_path / "file.toml"
+    path.write_text(f"[{section}]\n", encoding="utf-8")
+    hint = f"It is a section of {owner.plural}, for: inerter {owner.command}."
+    for command, load in loads.items():
+        try:
+            load(path)
+        except StudyError as error:
+            unknown = f"{section}: unknown key" in str(error)
+        else:
+            unknown = False
+        if command == owner.command:
+            assert not unknown
+        elif unknown:
+            with pytest.raises(StudyError) as refused:
+                load(path)
+            assert hint in str(refused.value)
+        else:
+            assert (command, section) == ("rig", "signal")  # what a table and a road may both be

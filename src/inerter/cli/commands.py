@@ -24,6 +24,7 @@ from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
+from inerter.report.json_data import json_data
 from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
 
@@ -126,8 +127,8 @@ def _judge(result: StudyResult) -> int:
 def _as_json(result: StudyResult) -> str:
     data = result.data
     rows: list[dict[str, Any]] = []
-    told = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
-    stacked = data[["value", "improvement", "status", *told]].stack(case=list(data.value.dims))
+    errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
+    stacked = data[["value", "improvement", "status", *errors]].stack(case=list(data.value.dims))
     for i, place in enumerate(stacked.case.values.tolist()):
         labels = dict(zip(data.value.dims, place, strict=True))
         design = data.sel({name: labels[name] for name in labels if name != "method"})
@@ -135,23 +136,16 @@ def _as_json(result: StudyResult) -> str:
         rows.append(
             {
                 **labels,
-                "value": _finite(stacked.value.values[i]),
+                "value": json_data(stacked.value.values[i]),
                 "unit": str(design.index_unit.item()),
-                "improvement_percent": _finite(stacked.improvement.values[i]),
-                **{_JSON.get(name, name): _finite(stacked[name].values[i].item()) for name in told},
+                "improvement_percent": json_data(stacked.improvement.values[i]),
+                **{_JSON.get(name, name): json_data(stacked[name].values[i].item()) for name in errors},
                 "status": str(stacked.status.values[i]),
                 "parameters": {name: value for name, value in values if np.isfinite(value)},
             }
         )
     budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
     return json.dumps({**data.attrs, "designs": rows, **budgets}, indent=2)
-
-
-def _finite(value: float) -> float | str | None:
-    """JSON has no infinity: it is the text "inf" or "-inf"; what there is not is null."""
-    if isinstance(value, int):
-        return value
-    return None if np.isnan(value) else float(value) if np.isfinite(value) else str(float(value))
 
 
 def _say(message: str) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from inerter.cli.interrupts import interruptible
 from inerter.errors import StudyError
 from inerter.files.common.folder import check_single, single
+from inerter.files.rig import KIND
 from inerter.files.rig.loading import load_rig
 from inerter.files.rig.running import record_of
 from inerter.records.writers import WRITERS, write_record
@@ -19,10 +20,10 @@ def rig(config: Path, output: Path, *, force: bool) -> int:
     request = load_rig(config)
     inputs = (config, *request.signal.inputs)
     _check_output(output)
-    check_single(output, inputs=inputs, force=force)
+    check_single(output, by=KIND.command, inputs=inputs, force=force)
     with interruptible():
         record = record_of(config, request)
-        with single(output, inputs=inputs, force=force) as draft:
+        with single(output, by=KIND.command, inputs=inputs, force=force) as draft:
             write_record(record, draft)
     print(rig_text(request, record))
     print(f"inerter: record: {output}", file=sys.stderr)

@@ -97,7 +97,7 @@ def flat_range(entry: xr.Dataset) -> str:
     """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
-    return f"{quantity(low, unit)} to {quantity(high, unit)}" if high > 1.01 * low else ""
+    return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > 1.01 * low else ""
 
 
 def capital(text: str) -> str:
@@ -105,26 +105,26 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def quantity(value: float, unit: str, error: float = np.nan) -> str:
+def with_unit(value: float, unit: str, error: float = np.nan) -> str:
     """A value for people: four digits and a prefix, "inf", or "n/a" where there is none.
 
     With a standard error, which then has two digits, the value has as many decimals.
 
-    >>> quantity(7544.2, "N s/m"), quantity(7544.2, "N s/m", 23.0)
+    >>> with_unit(7544.2, "N s/m"), with_unit(7544.2, "N s/m", 23.0)
     ('7.544 kN s/m', '7.544 +- 0.023 kN s/m')
     """
     if np.isnan(value):
         return "n/a"
     if np.isinf(value):
         return "inf"
-    if not is_told(value, error):
+    if not shows_error(value, error):
         return format_quantity(value, unit)
     own = scale([value], unit)
     return f"{measured(value * own.factor, error * own.factor)} {own.unit}"
 
 
-def is_told(value: float, error: float) -> bool:
-    """Whether a standard error is there and large enough to be told."""
+def shows_error(value: float, error: float) -> bool:
+    """Whether a standard error is there and large enough to be shown."""
     return bool(np.isfinite(value) and np.isfinite(error) and error > _LEAST_ERROR * abs(value))
 
 
@@ -139,7 +139,7 @@ def measured(value: float, error: float, sign: str = "") -> str:
 
 def printed(value: float, unit: str, error: float = np.nan) -> str:
     """A value as it is printed, on one line with its unit."""
-    return typeset(quantity(value, unit, error)).replace(" ", _NO_BREAK_SPACE)
+    return typeset(with_unit(value, unit, error)).replace(" ", _NO_BREAK_SPACE)
 
 
 def percent(value: float, error: float = np.nan) -> str:

@@ -20,7 +20,7 @@ from inerter.identification.kinds import FitFinding
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
-from inerter.identification.solving import Solution, part
+from inerter.identification.solving import SolvedFit, part
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.finding import Finding
@@ -109,7 +109,7 @@ def choose(
     if models is None:
         first = _chosen(ranking(selection.fits))
         pair = next(pair for pair in _PAIRS if first in pair)
-        selection.enter({name + VISCOUS: MODELS[name + VISCOUS] for name in pair})
+        selection.enter({VISCOUS[name]: MODELS[VISCOUS[name]] for name in pair})
     return selection.decided()
 
 
@@ -122,7 +122,7 @@ class _Selection:
     expected: int  # candidates
     progress: Callable[[float], None] | None
     models: dict[str, Network] = field(default_factory=dict)
-    solutions: dict[str, Solution] = field(default_factory=dict)
+    solutions: dict[str, SolvedFit] = field(default_factory=dict)
     fits: dict[str, Fit] = field(default_factory=dict)
     failed: list[Finding] = field(default_factory=list)
 
@@ -156,7 +156,7 @@ class _Selection:
             findings=(_reason(ranked, name), *stuck, *self.failed),
         )
 
-    def _solved(self, name: str, solution: Solution) -> None:
+    def _solved(self, name: str, solution: SolvedFit) -> None:
         fit = fit_of(solution, explain=False)
         self.solutions[name], self.fits[name] = solution, fit
 
@@ -209,7 +209,7 @@ def _chosen(ranked: Sequence[Candidate]) -> str:
 
 def _named(models: Mapping[str, Network] | Iterable[str] | None) -> dict[str, Network]:
     if models is None:
-        return {name: model for name, model in MODELS.items() if not name.endswith(VISCOUS)}
+        return {name: MODELS[name] for name in VISCOUS}
     if isinstance(models, Mapping):
         chosen = dict(models)
     else:

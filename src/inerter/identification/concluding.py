@@ -18,7 +18,7 @@ from inerter.identification.intervals import BestFit, Profile
 from inerter.identification.kinds import FitFinding
 from inerter.identification.models import unmounted
 from inerter.identification.problem import FitProblem
-from inerter.identification.solving import Solution
+from inerter.identification.solving import SolvedFit
 from inerter.identification.space import Space
 from inerter.identification.verdicts import identifiability, suggestions
 from inerter.networks.elements import Element, Free
@@ -35,7 +35,7 @@ _NOTICED = 0.05  # of the friction: an offset that may be one of the friction
 _MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
 
 
-def fit_of(solution: Solution, explain: bool = True) -> Fit:
+def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
     """What follows from a solution. Where it leaves more than the sensors would, hypotheses are tried if `explain`."""
     problem, optimum, found = solution.problem, solution.optimum, solution.profiles
     space = problem.space
@@ -156,7 +156,7 @@ def _parameter(space: Space, i: int, optimum: BestFit, profile: Profile, best: f
     )
 
 
-def _comparisons(solution: Solution) -> tuple[RecordFit, ...]:
+def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
     problem, optimum = solution.problem, solution.optimum
     result, first = [], 0
     residuals, offsets = problem.residual(optimum.point), problem.offsets(optimum.point)

@@ -14,7 +14,7 @@ from inerter.identification.fit import Fit
 from inerter.identification.given import checked_records, model_of
 from inerter.identification.models import mounted
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
-from inerter.identification.solving import Solution, part, solve
+from inerter.identification.solving import SolvedFit, part, solve
 from inerter.networks.elements import Network
 from inerter.networks.elements.roles import Linear
 from inerter.optimisation.threads import one_blas_thread
@@ -61,7 +61,7 @@ def identify(
 
 def solution_of(
     records: Record | Sequence[Record], model: Network, asked: FitOptions, progress: Callable[[float], None] | None
-) -> Solution:
+) -> SolvedFit:
     """What `identify` finds, before anything is said of it."""
     given, rig = _checked(records, model)
     sought = any(r.force_bandwidth is None for r in given) if asked.delay is None else asked.delay

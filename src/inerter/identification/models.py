@@ -25,7 +25,6 @@ from inerter.networks.parser import network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.rig import Rig
 
-VISCOUS = "-viscous"
 _ELEMENTS: dict[str, Network] = {
     "ks": Spring(free(1e4, 1e8, name="ks")),
     "cs": Damper(free(10.0, 2e5, name="cs")),
@@ -43,6 +42,8 @@ _ROWS = {
     "backlash": ("(ks | cs) - gap - ", "b"),
     "ball-screw": ("(ks | cs) - gap - ", "b | f"),
 }
+VISCOUS: Mapping[str, str] = MappingProxyType({name: f"{name}-viscous" for name in _ROWS})
+"""The names of models without a damper beside the inerter, and the name of each with one."""
 
 
 def _model(before: str, beside: str) -> Network:
@@ -56,9 +57,8 @@ def _names(text: str) -> list[str]:
 
 MODELS: Mapping[str, Network] = MappingProxyType(
     {
-        name + suffix: _model(before, beside + more)
-        for suffix, more in (("", ""), (VISCOUS, " | c"))
-        for name, (before, beside) in _ROWS.items()
+        **{name: _model(*parts) for name, parts in _ROWS.items()},
+        **{VISCOUS[name]: _model(before, f"{beside} | c") for name, (before, beside) in _ROWS.items()},
     }
 )
 """From the ideal inerter to the ball screw of Wang and Su (2008): shaft `ks` [N/m] beside `cs` [N s/m], backlash `gap`

@@ -37,7 +37,7 @@ _SAME = 1e-3  # relative difference of what two searches leave that have come to
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class SolvedFit:
     """The best fit of a model, what is known about it, and the judge of what it leaves."""
 
     problem: FitProblem
@@ -55,7 +55,7 @@ class Solution:
 
 def solve(
     records: Sequence[Record], rig: Rig, assumed: tuple[Hypothesis, ...], asked: FitOptions, progress: Progress | None
-) -> Solution:
+) -> SolvedFit:
     """The best fit of a rig's free values to records.
 
     Raises `IdentificationError` and `RecordError` for records that cannot be used, or that no best fit can follow.
@@ -84,7 +84,7 @@ def solve(
         raise _lost(problem)
     if progress is not None:
         progress(1.0)
-    return Solution(
+    return SolvedFit(
         problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(findings),
         drawn.predicted, judge, judge.misfit(problem, optimum.point), asked.seed,
     )  # fmt: skip

@@ -11,7 +11,7 @@ from inerter.records.accelerance import Lines, force_over_acceleration, lines
 from inerter.records.finding import Finding
 from inerter.records.kinds import CLEAR, SEEN, RecordFinding
 from inerter.records.record import Record
-from inerter.records.smoothing import Motion, smooth_displacement
+from inerter.records.smoothing import Motion
 
 Vector = NDArray[np.float64]
 STIFF = 0.3  # of the mass: more than that is elasticity near its resonance
@@ -51,12 +51,6 @@ def delay(record: Record, motion: Motion) -> list[Finding]:
     if found.omega.size < 6 or found.spread < WIDE:
         return [_unknown("force")]
     return [_reported(record, *_cautious(found), "force")]
-
-
-def estimate_delay(record: Record) -> tuple[float, float]:
-    """How much later the force was recorded than the motion, and its standard error [s]; nan if not identifiable."""
-    found = delay(record, smooth_displacement(record))[0].numbers
-    return found.get("delay", np.nan), found.get("standard_error", np.nan)
 
 
 def _inertial(found: Lines) -> Lines:

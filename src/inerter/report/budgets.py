@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from textwrap import wrap
 
-from inerter.figures.labels import printed, quantity
+from inerter.figures.labels import printed, with_unit
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.study import Study
 from inerter.report.tables import Cell, Row, Table
@@ -20,7 +20,7 @@ def budget_lines(budgets: Sequence[BudgetOutcome], study: Study, width: int) -> 
         longest = max(len(outcome.layout) for outcome in found)
         for outcome in found:
             begin = f"  {outcome.index}  {outcome.layout:<{longest}}  "
-            yield from wrap(begin + _answer(outcome, quantity), width, subsequent_indent=" " * min(len(begin), 20))
+            yield from wrap(begin + _answer(outcome, with_unit), width, subsequent_indent=" " * min(len(begin), 20))
 
 
 def budget_tables(budgets: Sequence[BudgetOutcome], study: Study) -> list[Table]:

@@ -17,15 +17,15 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     indices,
-    is_told,
     layouts,
     measured,
     methods,
     percent,
-    quantity,
     scale,
+    shows_error,
     swept_element,
     typeset,
+    with_unit,
 )
 from inerter.report.findings import extremes
 from inerter.report.tables import Cell, Row, Table
@@ -93,14 +93,14 @@ def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
     if element is None:
         value, error = float(row["value"]) * unit.factor, error_of(row) * unit.factor
         better = "" if layout == baseline or not baseline else _percent(row)
-        return _Entry(measured(value, error) if is_told(value, error) else _plain(value), better)
+        return _Entry(measured(value, error) if shows_error(value, error) else _plain(value), better)
     ends = extremes(row["improvement" if compared(results) else "value"], element)
     if ends is None:
         return _Entry("n/a")
     place = ends[1] if compared(results) else ends[0]
     here = row.sel({element: place[1]})
-    text = _percent(here) if compared(results) else quantity(place[0], index_unit(results, index), error_of(here))
-    return _Entry(text, f"at {quantity(place[1], results[element].attrs['units'])}")
+    text = _percent(here) if compared(results) else with_unit(place[0], index_unit(results, index), error_of(here))
+    return _Entry(text, f"at {with_unit(place[1], results[element].attrs['units'])}")
 
 
 def _percent(design: xr.Dataset) -> str:
@@ -108,7 +108,7 @@ def _percent(design: xr.Dataset) -> str:
 
 
 def _plain(value: float) -> str:
-    return f"{value:.4g}" if np.isfinite(value) else quantity(value, "")
+    return f"{value:.4g}" if np.isfinite(value) else with_unit(value, "")
 
 
 def _typeset(text: str) -> str:

@@ -20,8 +20,8 @@ from inerter.figures.labels import (
     methods,
     one_method,
     percent,
-    quantity,
     swept_element,
+    with_unit,
 )
 from inerter.methods.ties import equally_least
 
@@ -30,7 +30,7 @@ Writer = Callable[[float, str, float], str]
 _NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 
 
-def headlines(results: xr.Dataset, write: Writer = quantity) -> list[str]:
+def headlines(results: xr.Dataset, write: Writer = with_unit) -> list[str]:
     """One sentence for each index: which layout is best, how good it is, and how much better than the baseline.
 
     `write` turns a number and its unit into text.
@@ -97,7 +97,7 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     return found
 
 
-def crossing_sentences(results: xr.Dataset, write: Writer = quantity) -> list[tuple[str, str]]:
+def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
     """Each index, and where each layout crosses the baseline over a sweep. For a study with a sweep."""
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
     several = len(methods(results)) > 1

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +12,7 @@ from inerter.identification.fit import RecordFit
 from inerter.networks.parser import written
 from inerter.records.result import Response
 from inerter.report.identified_values import elements_block
+from inerter.report.json_data import json_data
 from inerter.work.origin import versions
 from inerter.writing import whole
 
@@ -63,7 +62,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "elements": elements_block(found),
         "versions": versions(),
     }
-    plain: dict[str, Any] = _plain(data)
+    plain: dict[str, Any] = json_data(data)
     return plain
 
 
@@ -71,7 +70,7 @@ def response_data(found: Responses) -> dict[str, Any]:
     """The frequency responses: measured, and of the model at the same frequencies."""
     curves = {"measured": found.measured, "model": found.model}
     data = {name: _response(curve) for name, curve in curves.items() if curve is not None}
-    plain: dict[str, Any] = _plain({**data, "notes": found.notes})
+    plain: dict[str, Any] = json_data({**data, "notes": found.notes})
     return plain
 
 
@@ -119,17 +118,3 @@ def _record(reading: Reading, comparison: RecordFit) -> dict[str, Any]:
 def _response(response: Response) -> dict[str, Any]:
     columns = {name: values.tolist() for name, values in response.columns().items()}
     return {"frequency": response.frequency.tolist(), **columns}
-
-
-def _plain(value: Any) -> Any:
-    """JSON has no infinity, which is text, and nothing that is no number, which is null."""
-    match value:
-        case Mapping():
-            return {key: _plain(item) for key, item in value.items()}
-        case list() | tuple():
-            return [_plain(item) for item in value]
-        case float():
-            return None if math.isnan(value) else float(value) if math.isfinite(value) else str(value)
-        case np.generic():
-            return _plain(value.item())
-    return value

@@ -37,12 +37,12 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    rows += [(capital(f.told), _given(study.vehicle[f.key], f.unit)) for f in fields_of(VEHICLES[study.model])]
+    rows += [(capital(f.in_words), _given(study.vehicle[f.key], f.unit)) for f in fields_of(VEHICLES[study.model])]
     rows += [("Speed", _given(study.road.speed, "m/s")), ("Road roughness", _given(study.road.roughness, "m^3/cycle"))]
     for symbol in study.indices:
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in study.settings and field != amplitude]
-        rows += [(f"{capital(f.told)} of {symbol}", _given(study.settings[f.key], f.unit)) for f in given]
+        rows += [(f"{capital(f.in_words)} of {symbol}", _given(study.settings[f.key], f.unit)) for f in given]
     return rows
 
 

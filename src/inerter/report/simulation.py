@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from textwrap import wrap
 from typing import Any
 
-from inerter.figures.labels import quantity
+from inerter.figures.labels import with_unit
 from inerter.figures.simulation import Window
 from inerter.files.simulation.running import SimulationResult
+from inerter.report.json_data import json_data
 from inerter.report.text import WIDTH
 from inerter.units import shown
 
@@ -38,20 +38,14 @@ def simulation_data(result: SimulationResult) -> dict[str, Any]:
         "energy": None if energy is None else {**vars(energy), "residual": energy.residual},
         "repetition": None if repetition is None else vars(repetition),
     }
-    return {key: _plain(value) for key, value in data.items()}
-
-
-def _plain(value: Any) -> Any:
-    """JSON has no infinity: what is not finite is text."""
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+    plain: dict[str, Any] = json_data(data)
+    return plain
 
 
 def _request(result: SimulationResult) -> Iterator[str]:
     request, run = result.request, result.run
     signal, units = request.signal, request.signal.units
-    keys = [f"{k} {quantity(v, units[k]) if units[k] else _word(v)}" for k, v in signal.values.items()]
+    keys = [f"{k} {with_unit(v, units[k]) if units[k] else _word(v)}" for k, v in signal.values.items()]
     yield from wrap(request.title, WIDTH)
     network = "; ".join(dict.fromkeys(request.layouts[request.layout].struts.values()))
     yield from wrap(f"{request.model}, {request.layout} = {network}", WIDTH, subsequent_indent="  ")
@@ -70,7 +64,7 @@ def _values(result: SimulationResult) -> Iterator[str]:
     width = max(map(len, result.main_outputs))
     yield "r.m.s. values"
     for name in result.main_outputs:
-        yield f"  {name.replace('_', ' '):<{width}}  {quantity(result.rms(name), run.unit(name))}"
+        yield f"  {name.replace('_', ' '):<{width}}  {with_unit(result.rms(name), run.unit(name))}"
 
 
 def _elements(result: SimulationResult) -> Iterator[str]:

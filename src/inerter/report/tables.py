@@ -17,17 +17,17 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     indices,
-    is_told,
     layouts,
     measured,
     methods,
     one_method,
     percent,
     printed,
-    quantity,
     scale,
+    shows_error,
     swept_element,
     typeset,
+    with_unit,
 )
 from inerter.report.findings import best_layout
 
@@ -182,10 +182,10 @@ def _some(size: int) -> list[int]:
 
 
 def _number(value: float, error: float) -> str:
-    if is_told(value, error):
+    if shows_error(value, error):
         return typeset(measured(value, error))
     if not np.isfinite(value):
-        return quantity(value, "").strip()
+        return with_unit(value, "").strip()
     return typeset(re.sub(r"\.(?=e|$)", "", f"{value:#.4g}"))
 
 

@@ -22,8 +22,8 @@ from inerter.figures.labels import (
     methods,
     one_method,
     percent,
-    quantity,
     swept_element,
+    with_unit,
 )
 from inerter.report.by_method import method_lines
 from inerter.report.findings import crossing_sentences, extremes
@@ -77,7 +77,10 @@ def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
     table = []
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
-        cells = [quantity(float(design["value"]), unit, error_of(design)), *([_improvement(design)] if versus else [])]
+        cells = [
+            with_unit(float(design["value"]), unit, error_of(design)),
+            *([_improvement(design)] if versus else []),
+        ]
         table.append(_Row(name, cells, _parameters(design), str(design["status"].item())))
     yield from _lines(["layout", "value", *(["improvement"] if versus else [])], "parameters", table)
 
@@ -97,7 +100,7 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     for name in compared(results) or layouts(results):
         ends = extremes(rows.sel(layout=name), element) or ((np.nan, np.nan),) * 2
         texts = [
-            f"{percent(value) if versus else quantity(value, index_unit(results, index))} at {quantity(at, unit)}"
+            f"{percent(value) if versus else with_unit(value, index_unit(results, index))} at {with_unit(at, unit)}"
             for value, at in ends
         ]
         texts = texts[::-1] if versus else texts
@@ -124,7 +127,7 @@ def _parameters(design: xr.Dataset) -> list[str]:
         entry = design.sel(parameter=parameter)
         value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
         if np.isfinite(value):
-            text = f"{parameter} = {quantity(value, str(entry['parameter_unit'].item()))}"
+            text = f"{parameter} = {with_unit(value, str(entry['parameter_unit'].item()))}"
             flat = flat_range(entry)
             remarks = [*([f"{bound} bound"] if bound else []), *([f"{flat} are as good"] if flat else [])]
             found.append(f"{text} ({', '.join(remarks)})" if remarks else text)

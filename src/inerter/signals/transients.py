@@ -32,7 +32,7 @@ class Chirp(Signal):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Step(Signal):
+class StepSignal(Signal):
     """Zero before `time` [s], `height` from it on."""
 
     height: float
@@ -81,14 +81,14 @@ def chirp(amplitude: float, lowest: float, highest: float, duration: float, spee
     )
 
 
-def step(height: float, time: float = 0.0, speed: float | None = None) -> Step:
+def step(height: float, time: float = 0.0, speed: float | None = None) -> StepSignal:
     """Zero before `time` [s], `height` from it on.
 
     Raises `SignalError` unless both are finite numbers.
     """
     size, begin = number("The height of a step", height, "its unit"), number("The time of a step", time, "s")
     label = f"step of {size:g} at {begin:g} s"
-    return Step(label=label, height=size, time=begin, hold="zero", speed=speed_or_none(speed))
+    return StepSignal(label=label, height=size, time=begin, hold="zero", speed=speed_or_none(speed))
 
 
 def bump(height: float, length: float, speed: float, start: float = 0.0) -> Bump:

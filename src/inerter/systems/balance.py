@@ -9,7 +9,7 @@ import numpy as np
 from inerter.errors import LinearSystemError
 from inerter.networks.elements import Element, Inerter
 from inerter.networks.elements.roles import Linear
-from inerter.systems.frame import Frame, Long, Matrix, Rows
+from inerter.systems.frame import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import Branch
 
 
@@ -35,7 +35,7 @@ def balance(frame: Frame) -> tuple[Long, Long]:
     return terms, sizes
 
 
-def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, Rows]]:
+def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, RowBlocks]]:
     """Each mass and element: how it acts on the rows of the balance, and what its value multiplies."""
     at = frame.slots
     masses = [

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.systems import rationals
-from inerter.systems.rationals import Rows
+from inerter.systems.rationals import FractionRows
 
 Matrix = NDArray[np.float64]
 _RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
@@ -47,7 +47,7 @@ class Coordinates:
     Z_e: Matrix
     P: Matrix
     rates: tuple[Matrix, Matrix, Matrix]
-    motions: Rows  # R, U, Y and Z in fractions, a column each
+    motions: FractionRows  # R, U, Y and Z in fractions, a column each
     known: dict[bytes, list[Matrix]] = field(default_factory=dict)  # what `rate` has found
 
     def rate(self, nodes: Matrix) -> list[Matrix]:
@@ -135,12 +135,12 @@ def _found(*matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
     )
 
 
-def _shares(rows: Rows, targets: Rows) -> Rows:
+def _shares(rows: FractionRows, targets: FractionRows) -> FractionRows:
     """`rationals.weights` of targets that lie in the span of the rows."""
     return [found for found in rationals.weights(rows, targets) if found is not None]
 
 
-def _off(columns: Rows, count: int) -> Rows:
+def _off(columns: FractionRows, count: int) -> FractionRows:
     """The projection that takes the span of so many independent columns out."""
     size = len(columns)
     turned = rationals.transposed(columns, count)
@@ -151,7 +151,7 @@ def _off(columns: Rows, count: int) -> Rows:
     return [[x - y for x, y in zip(one, other, strict=True)] for one, other in zip(eye, spanned, strict=True)]
 
 
-def _independent_elongations(attainable: Rows, off_Z: Rows, moved: int) -> Rows:
+def _independent_elongations(attainable: FractionRows, off_Z: FractionRows, moved: int) -> FractionRows:
     """Combinations of springs whose elongations are independent: first of those that motions stretch, then of what is
     left of the others when these are taken out, which only roads stretch.
     """

@@ -17,7 +17,7 @@ import numpy as np
 from inerter.systems.descriptor import Descriptor
 from inerter.systems.filters import Filter
 
-Stacks = tuple[Any, ...]  # S, R, F, Y_eta, Y_x, Y_u
+EquationStacks = tuple[Any, ...]  # S, R, F, Y_eta, Y_x, Y_u
 Filtered = list[tuple[int, Filter, slice]]  # output, filter, its states
 
 
@@ -55,7 +55,7 @@ def filtered(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descri
     )
 
 
-def _with_equations(stacks: Stacks, places: Filtered, states: int, sizes: bool = False) -> Stacks:
+def _with_equations(stacks: EquationStacks, places: Filtered, states: int, sizes: bool = False) -> EquationStacks:
     """The stacks with an equation for each filter, a(d/dt) z = y, and b(d/dt) z in the place of y; or their sizes."""
     S, R, F, Y_eta, Y_x, Y_u = stacks
     _, e, n = R.shape

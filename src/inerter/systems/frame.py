@@ -26,7 +26,7 @@ from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
 Long = NDArray[np.longdouble]
-Rows = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
+RowBlocks = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
 
 
 @dataclass(frozen=True)
@@ -103,11 +103,11 @@ class Frame:
             return 1 + list(self.free).index(str(element.value.name)), element.gain
         return 0, element.coefficient
 
-    def blank(self) -> Rows:
+    def blank(self) -> RowBlocks:
         """Rows of zeros."""
         return np.zeros(self.unknowns), np.zeros(self.states), np.zeros(len(self.inputs))
 
-    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
+    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> RowBlocks:
         """The velocity of a combination of nodes and roads."""
         (eta, x, u), at = self.blank(), self.slots
         x[at.a], eta[at.u0], eta[at.y], settling = self.split.rate(nodes)
@@ -117,19 +117,19 @@ class Frame:
             u[: self.roads] = roads[self.road_columns]
         return eta, x, u
 
-    def acceleration(self, nodes: Matrix) -> Rows:
+    def acceleration(self, nodes: Matrix) -> RowBlocks:
         """The acceleration of a combination of nodes that inertia carries."""
         eta, x, u = self.blank()
         eta[self.slots.a1], eta[self.slots.u1] = self.split.rate(nodes)[:2]
         return eta, x, u
 
-    def elongation(self, springs: Matrix) -> Rows:
+    def elongation(self, springs: Matrix) -> RowBlocks:
         """A combination of spring elongations."""
         eta, x, u = self.blank()
         x[self.slots.g], eta[self.slots.z] = springs @ self.split.G, springs @ self.split.Z_e
         return eta, x, u
 
-    def external(self, weights: Matrix) -> Rows:
+    def external(self, weights: Matrix) -> RowBlocks:
         """A combination of the external forces; those that are no inputs are zero."""
         eta, x, u = self.blank()
         for force, weight in zip(self.mechanism.forces, weights, strict=False):
@@ -137,7 +137,7 @@ class Frame:
                 u[self.inputs.index(force.name)] += weight
         return eta, x, u
 
-    def across(self, branch: Branch) -> Rows:
+    def across(self, branch: Branch) -> RowBlocks:
         """What the value of an element multiplies: its acceleration, velocity or elongation."""
         match branch.element.linear:
             case Linear.MASS:

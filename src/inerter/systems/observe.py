@@ -10,34 +10,34 @@ import numpy as np
 
 from inerter.errors import LinearSystemError
 from inerter.networks.elements import Element
-from inerter.systems.frame import Frame, Long, Matrix, Rows
+from inerter.systems.frame import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import Output, find, main_outputs, outputs
 
-Stacks = tuple[Any, Any, Any]  # on eta, x and u
+OutputStacks = tuple[Any, Any, Any]  # on eta, x and u
 
 
 class Moving(Protocol):
     """Coordinates in which motions of nodes and roads, and external forces, are rows."""
 
-    def blank(self) -> Rows:
+    def blank(self) -> RowBlocks:
         """Rows of zeros."""
         ...
 
-    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
+    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> RowBlocks:
         """The velocity of a combination of nodes and roads; no nodes are none that move."""
         ...
 
-    def acceleration(self, nodes: Matrix) -> Rows:
+    def acceleration(self, nodes: Matrix) -> RowBlocks:
         """The acceleration of a combination of nodes that inertia carries."""
         ...
 
-    def external(self, weights: Matrix) -> Rows:
+    def external(self, weights: Matrix) -> RowBlocks:
         """A combination of the external forces."""
         ...
 
 
-def motion(moving: Moving, output: Output, nodes: int) -> Rows:
+def motion(moving: Moving, output: Output, nodes: int) -> RowBlocks:
     """An output's velocities, accelerations and external forces."""
     rows = moving.blank()
     if output.velocity.size or output.road_velocity.size:
@@ -49,7 +49,7 @@ def motion(moving: Moving, output: Output, nodes: int) -> Rows:
     return rows
 
 
-def add(rows: Rows, more: Iterable[Matrix]) -> None:
+def add(rows: RowBlocks, more: Iterable[Matrix]) -> None:
     """Add rows to others in place."""
     for row, other in zip(rows, more, strict=True):
         row += other
@@ -60,9 +60,9 @@ class Observed:
     """An output as stacks over the free values, and their sizes; with a state of its own if it is that."""
 
     name: str
-    rows: Stacks
-    sizes: Stacks
-    state: Rows | None  # its rate
+    rows: OutputStacks
+    sizes: OutputStacks
+    state: RowBlocks | None  # its rate
 
 
 def observe(frame: Frame, name: str) -> Observed:
@@ -111,7 +111,7 @@ def _displacement(frame: Frame, name: str, output: Output) -> Observed:
     return Observed(name, rows, _absolute(rows), frame.velocity(nodes, roads) if weights is None else None)
 
 
-def _stacked(frame: Frame, *rows: Any) -> Stacks:
+def _stacked(frame: Frame, *rows: Any) -> OutputStacks:
     """Rows that no value changes."""
     k = len(frame.free)
     eta, x, u = (np.concatenate([row[None], np.zeros((k, row.size), row.dtype)]) for row in rows)
@@ -126,7 +126,7 @@ def _times_value(frame: Frame, element: Element, row: Matrix) -> Long:
     return stack
 
 
-def _absolute(rows: Stacks) -> Stacks:
+def _absolute(rows: OutputStacks) -> OutputStacks:
     eta, x, u = map(np.abs, rows)
     return eta, x, u
 

@@ -17,7 +17,7 @@ from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
-from inerter.systems.frame import Rows
+from inerter.systems.frame import RowBlocks
 from inerter.systems.graph import Graph, switching
 from inerter.systems.incidence import inertia_values
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements
@@ -238,35 +238,35 @@ class _Frame:
 
     system: PiecewiseSystem
 
-    def blank(self) -> Rows:
+    def blank(self) -> RowBlocks:
         """Rows of zeros."""
         R, N, _ = self.system.motions
         eta = R.shape[1] + N.shape[1] + len(self.system.nonlinear)
         return np.zeros(eta), np.zeros(self.system.order), np.zeros(self.system.inputs)
 
-    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> Rows:
+    def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> RowBlocks:
         """The velocity of a combination of nodes and roads."""
         R, N, V = self.system.motions
         return self._moving((nodes @ R, nodes @ N, nodes @ V if roads is None or not roads.size else nodes @ V + roads))
 
-    def acceleration(self, nodes: Matrix) -> Rows:
+    def acceleration(self, nodes: Matrix) -> RowBlocks:
         """The acceleration of a combination of nodes that inertia carries."""
         R, _, V = self.system.motions
         return self._accelerating(nodes @ R, nodes @ V)
 
-    def external(self, weights: Matrix) -> Rows:
+    def external(self, weights: Matrix) -> RowBlocks:
         """A combination of the external forces."""
         eta, x, u = self.blank()
         u[3 * len(self.system.mechanism.roads) :] = weights
         return eta, x, u
 
-    def displacement(self, over_g: Matrix, over_z: Matrix) -> Rows:
+    def displacement(self, over_g: Matrix, over_z: Matrix) -> RowBlocks:
         """What positions and heights of roads make up."""
         eta, x, u = self.blank()
         x[self.system.motions[0].shape[1] :], u[self._roads(0)] = over_g, over_z
         return eta, x, u
 
-    def force(self, i: int) -> Rows:
+    def force(self, i: int) -> RowBlocks:
         """The force of a branch."""
         element, rates = self.system.graph.branches[i].element, [rows[i] for rows in self.system.rates]
         value = element.coefficient
@@ -281,13 +281,13 @@ class _Frame:
         eta[eta.size - len(self.system.nonlinear) :] = [group.get(i, 0.0) for group in self.system.nonlinear]
         return eta, x, u
 
-    def _moving(self, rates: tuple[Matrix, Matrix, Matrix]) -> Rows:
+    def _moving(self, rates: tuple[Matrix, Matrix, Matrix]) -> RowBlocks:
         eta, x, u = self.blank()
         na = rates[0].size
         x[:na], eta[na : na + rates[1].size], u[self._roads(1)] = rates
         return eta, x, u
 
-    def _accelerating(self, over_a: Matrix, over_z: Matrix) -> Rows:
+    def _accelerating(self, over_a: Matrix, over_z: Matrix) -> RowBlocks:
         eta, x, u = self.blank()
         eta[: over_a.size], u[self._roads(2)] = over_a, over_z
         return eta, x, u

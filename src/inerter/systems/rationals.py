@@ -12,26 +12,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 Row = list[Fraction]
-Rows = list[Row]
+FractionRows = list[Row]
 
 
-def exact(matrix: NDArray[np.float64]) -> Rows:
+def exact(matrix: NDArray[np.float64]) -> FractionRows:
     """The rows of a matrix of doubles, which are fractions."""
     known: dict[float, Fraction] = {}
     return [[known.setdefault(x, Fraction(x)) for x in row] for row in matrix.tolist()]
 
 
-def rounded(rows: Rows, columns: int) -> NDArray[np.float64]:
+def rounded(rows: FractionRows, columns: int) -> NDArray[np.float64]:
     """Rows of fractions as a matrix of so many columns."""
     return np.array([[float(x) for x in row] for row in rows]).reshape(len(rows), columns)
 
 
-def transposed(rows: Rows, columns: int) -> Rows:
+def transposed(rows: FractionRows, columns: int) -> FractionRows:
     """The transpose of rows of so many columns."""
     return [[row[j] for row in rows] for j in range(columns)]
 
 
-def product(left: Rows, right: Rows, columns: int) -> Rows:
+def product(left: FractionRows, right: FractionRows, columns: int) -> FractionRows:
     """Left @ right, where right has so many columns."""
     zero = Fraction(0)
     result = []
@@ -44,14 +44,14 @@ def product(left: Rows, right: Rows, columns: int) -> Rows:
     return result
 
 
-class Span:
+class Basis:
     """Rows that are independent, reduced as they come, each with what it is made of."""
 
     def __init__(self) -> None:
         self.reduced: list[tuple[int, Row]] = []  # the place of the leading one, and the row
 
     def rest(self, row: Sequence[Fraction]) -> Row:
-        """What is left of `row` when the span is taken out: zero if it lies in the span."""
+        """What is left of `row` when what the basis spans is taken out: zero if that is all."""
         rest = list(row)
         for place, known in self.reduced:
             factor = rest[place]
@@ -60,7 +60,7 @@ class Span:
         return rest
 
     def add(self, row: Sequence[Fraction]) -> bool:
-        """Add a row; False if it lies in the span already."""
+        """Add a row; False if the basis spans it already."""
         rest = self.rest(row)
         place = next((i for i, x in enumerate(rest) if x), None)
         if place is None:
@@ -69,21 +69,21 @@ class Span:
         return True
 
 
-def independent(rows: Rows, before: Rows | None = None) -> list[int]:
+def independent(rows: FractionRows, before: FractionRows | None = None) -> list[int]:
     """Numbers of the first rows that, with those `before`, are independent and span all rows."""
-    span = Span()
+    basis = Basis()
     for row in before or []:
-        span.add(row)
-    return [i for i, row in enumerate(rows) if span.add(row)]
+        basis.add(row)
+    return [i for i, row in enumerate(rows) if basis.add(row)]
 
 
-def null_space(rows: Rows, columns: int) -> Rows:
+def null_space(rows: FractionRows, columns: int) -> FractionRows:
     """A basis (as rows) of the vectors that every row annihilates, with an identity block in it."""
-    span = Span()
+    spanned = Basis()
     for row in rows:
-        span.add(row)
+        spanned.add(row)
     solved: list[tuple[int, Row]] = []
-    for place, row in reversed(span.reduced):
+    for place, row in reversed(spanned.reduced):
         for other, known in solved:
             if row[other]:
                 factor = row[other]
@@ -100,14 +100,14 @@ def null_space(rows: Rows, columns: int) -> Rows:
     return basis
 
 
-def weights(rows: Rows, targets: Rows) -> list[Row | None]:
+def weights(rows: FractionRows, targets: FractionRows) -> list[Row | None]:
     """For each target the numbers with which the rows add up to it; None where they cannot."""
     count, zero = len(rows), Fraction(0)
-    span = Span()
+    basis = Basis()
     for i, row in enumerate(rows):
-        span.add([*row, *(Fraction(int(i == j)) for j in range(count))])
+        basis.add([*row, *(Fraction(int(i == j)) for j in range(count))])
     found: list[Row | None] = []
     for target in targets:
-        rest = span.rest([*target, *([zero] * count)])
+        rest = basis.rest([*target, *([zero] * count)])
         found.append(None if any(rest[: len(target)]) else [-x for x in rest[len(target) :]])
     return found

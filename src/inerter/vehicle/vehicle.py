@@ -52,7 +52,7 @@ class VehicleModel:
 
     def __post_init__(self) -> None:
         for field in fields_of(type(self)):
-            what = f"The {field.told} of the {self.key.replace('-', ' ')}"
+            what = f"The {field.in_words} of the {self.key.replace('-', ' ')}"
             check_positive(MechanismError, what, getattr(self, field.name), field.unit)
         mounted = {name: check_network(getattr(self, name)) for name in mounts_of(type(self))}
         for name, network in name_free_values(mounted).items():

@@ -51,7 +51,7 @@ class Journal:
         if header != wanted:
             raise StudyError(
                 f"{self.path.parent}: holds the results of another study or version "
-                f"({_differences(header, wanted)}). Start anew with --force, or choose another folder with -o."
+                f"({_differences(header, wanted)}). Start again with --force, or choose another folder with -o."
             )
         return entries
 

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 from pydantic import PlainValidator
 
+from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
 from inerter.files.common.suggest import nearest
-from inerter.files.common.told_kind import ToldKind, names_kind, told_kind
 from inerter.networks.elements import NAME, Element
 from inerter.networks.elements.registry import kinds_by_unit, kinds_in_unit, parse_element
 from inerter.units import format_quantity, parse_quantity, shown
@@ -39,7 +39,7 @@ def positive(unit: str) -> PlainValidator:
     return PlainValidator(check)
 
 
-def quantity(unit: str) -> PlainValidator:
+def any_quantity(unit: str) -> PlainValidator:
     """A quantity of `unit` of either sign."""
     return PlainValidator(lambda text: parse_quantity(text, unit))
 
@@ -70,10 +70,10 @@ def yes_or_no(value: Any) -> bool:
     return value
 
 
-def fixed_amount(text: Any) -> Amount | ToldKind:
+def fixed_amount(text: Any) -> Amount | KindEntry:
     """An element where there is nothing to optimise."""
     if names_kind(text):
-        return told_kind(text, free=False)
+        return kind_entry(text, free=False)
     if isinstance(text, dict):
         hint = 'Write one, such as "3 kN s/m", perhaps the best that inerter run found (summary.csv).'
         raise EntryError(got="a range", fault="a simulation needs one value", hint=hint)

@@ -20,7 +20,6 @@ from inerter.writing import is_unforeseen, scratch, settle, undisturbed
 
 _LOCK, _NEW, _WHOLE = f"{MARK}/lock", f"{MARK}/new", f"{MARK}/whole"
 FIGURES, REPORT = "figures", "report.html"  # in folders of results of any command
-SINGLE = "rig"  # the command that writes single files, which make no folder of results
 _ELSEWHERE = "choose another folder with -o"
 _SHOWN = 3  # names in a message
 
@@ -89,7 +88,7 @@ def claimed(intent: Intent) -> Iterator[Results]:
     `WorkError` if the disk is full, or a file of the user's has come in the way meanwhile.
     """
     _check(intent)
-    with _told(intent), _locked(intent.folder, wait=0.0):
+    with _full_disk_reported(intent), _locked(intent.folder, wait=0.0):
         _check(intent)
         _clean(intent.folder)
         with undisturbed():
@@ -127,27 +126,27 @@ def _seal(folder: Path) -> None:
 
 
 @contextmanager
-def single(path: Path, *, inputs: tuple[Path, ...], force: bool) -> Iterator[Path]:
+def single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) -> Iterator[Path]:
     """Where to write one file that is to be at `path`, in a folder that may hold anything else.
 
     Raises as `check_single` does, and `WorkError` if the disk is full.
     """
-    check_single(path, inputs=inputs, force=force)
+    check_single(path, by=by, inputs=inputs, force=force)
     folder = path.parent
-    with _told(None, path), _locked(folder, wait=10.0):
-        check_single(path, inputs=inputs, force=force)
+    with _full_disk_reported(None, path), _locked(folder, wait=10.0):
+        check_single(path, by=by, inputs=inputs, force=force)
         with scratch(folder / MARK) as draft:
             yield draft / path.name
-            _move(draft, folder, {path.name: Entry(SINGLE, (digest(draft / path.name),))}, inputs)
+            _move(draft, folder, {path.name: Entry(by, (digest(draft / path.name),), single=True)}, inputs)
 
 
-def check_single(path: Path, *, inputs: tuple[Path, ...], force: bool) -> None:
+def check_single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) -> None:
     """Raises `StudyError` unless there is no file at `path`, or one of our own that `force` may replace."""
     if not _is_mark(path.parent):
         raise StudyError(f"{path.parent / MARK}: is in the way. Move it away, or choose another folder with -o.")
     if not os.path.lexists(path):
         return
-    if not _may_replace(path.parent, path.name, listing(path.parent) or Listing(), SINGLE, inputs):
+    if not _may_replace(path.parent, path.name, listing(path.parent) or Listing(), by, inputs):
         raise StudyError(
             f"{path}: exists, and is not a file that this command wrote and nobody changed, so it stays. "
             "Choose another name with -o."
@@ -167,7 +166,7 @@ def _check(intent: Intent) -> None:
         if _is_empty(folder):
             return
         known = (listing(folder) if _is_mark(folder) else None) or Listing()
-        commands = {entry.by for entry in known.files.values()} - {SINGLE}
+        commands = {entry.by for entry in known.files.values() if not entry.single}
         if intent.by not in commands:
             raise StudyError(_not_ours(intent, commands))
         if not intent.resume and not intent.force:
@@ -364,8 +363,8 @@ def _clean(folder: Path) -> None:
 
 
 @contextmanager
-def _told(intent: Intent | None, path: Path | None = None) -> Iterator[None]:
-    """A full disk is told in a sentence, with what is kept."""
+def _full_disk_reported(intent: Intent | None, path: Path | None = None) -> Iterator[None]:
+    """A full disk is reported in a sentence, with what is kept."""
     try:
         yield
     except (OSError, WorkError) as error:

@@ -9,10 +9,10 @@ from typing import Any
 from inerter.errors import NetworkError
 from inerter.fields import Field, fields_of, mounts_of
 from inerter.files.common.entries import Amount
+from inerter.files.common.kind_entry import KindEntry
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.shape import Range, Shape
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.told_kind import ToldKind
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.registry import kinds_by_unit
 from inerter.networks.parser import names, network
@@ -43,9 +43,9 @@ def struts_of(model: str, entry: Shape | str) -> dict[str, str]:
     return entry.model_dump() if isinstance(entry, Shape) else dict.fromkeys(mounts_of(VEHICLES[model]), entry)
 
 
-def element_of(name: str, entry: Range | Amount | ToldKind) -> Element:
+def element_of(name: str, entry: Range | Amount | KindEntry) -> Element:
     """The element that its entry, or else the unit of its value, tells."""
-    if isinstance(entry, ToldKind):
+    if isinstance(entry, KindEntry):
         return entry.element(name)
     if isinstance(entry, Range):
         return kinds_by_unit()[entry.lower.unit].of(Free(entry.lower.value, entry.upper.value, name), name)

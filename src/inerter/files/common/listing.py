@@ -15,6 +15,7 @@ from inerter.writing import write_text
 
 MARK = ".inerter"  # the folder of the list, of the lock, and of what is under way
 _NAME = f"{MARK}/files.json"
+_WHAT = ("journal", "single")  # what a file may be beside one of several results
 _ABOUT = (
     "What inerter wrote in this folder, with the SHA-256 of each file. --force replaces these files and no others, and "
     "of these only such as nobody has changed since. The lines of a journal that grows tell whether it was changed."
@@ -23,11 +24,15 @@ _ABOUT = (
 
 @dataclass(frozen=True)
 class Entry:
-    """A file that was written: by which command, and the hashes that it may have; none for a journal that grows."""
+    """A file that was written: by which command, and the hashes that it may have; none for a journal that grows.
+
+    A `single` one was asked for by its name, and makes no folder of results.
+    """
 
     by: str
     digests: tuple[str, ...] = ()
     journal: bool = False
+    single: bool = False
 
 
 @dataclass(frozen=True)
@@ -48,7 +53,7 @@ class Listing:
     def write(self, folder: Path) -> None:
         """Write the list into its folder."""
         files: dict[str, dict[str, Any]] = {
-            name: {"by": entry.by, "sha256": entry.digests, **({"journal": True} if entry.journal else {})}
+            name: {"by": entry.by, "sha256": entry.digests, **{what: True for what in _WHAT if getattr(entry, what)}}
             for name, entry in sorted(self.files.items())
         }
         write_text(folder / _NAME, json.dumps({"about": _ABOUT, "files": files}, indent=1) + "\n")
@@ -59,7 +64,9 @@ def listing(folder: Path) -> Listing | None:
     try:
         files = json.loads((folder / _NAME).read_bytes())["files"]
         found = {
-            name: Entry(str(entry["by"]), tuple(map(str, entry["sha256"])), bool(entry.get("journal")))
+            name: Entry(
+                str(entry["by"]), tuple(map(str, entry["sha256"])), **{what: bool(entry.get(what)) for what in _WHAT}
+            )
             for name, entry in files.items()
         }
     except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inerter.errors import StudyError
+from inerter.files.common.kinds import kind_with
 from inerter.files.common.problem import EntryError, Problem
 from inerter.files.common.shape import Shape, Shapes
 from inerter.files.common.suggest import nearest
@@ -19,15 +20,6 @@ if TYPE_CHECKING:
 
 _MOST, _LONGEST = 20, 600  # problems, and characters of each
 _TELLING = {"vehicle": "model", "signal": "kind"}  # the key that decides which others a section has
-_OTHERS = {
-    "study": "It is a section of study files, for: inerter run.",
-    "rig": "It is a section of rig files, for: inerter rig.",
-    "record": "It is a section of configurations, for: inerter identify.",
-    "model": "It is a section of configurations, for: inerter identify.",
-    "fit": "It is a section of configurations, for: inerter identify.",
-    "signal": "It is a section of simulation files, for: inerter simulate.",
-    "simulation": "It is a section of simulation files, for: inerter simulate.",
-}
 
 
 def refusal(path: Path, problems: Iterable[Problem]) -> StudyError:
@@ -69,8 +61,9 @@ def _found(detail: ErrorDetails, place: tuple[str, ...], shapes: Shapes) -> Prob
 
 def _where(place: tuple[str, ...], key: str, shapes: Shapes) -> str:
     """Where an unknown key may belong, or the known one that it may be."""
-    if len(place) == 1 and key in _OTHERS:
-        return _OTHERS[key]
+    other = kind_with(key) if len(place) == 1 else None
+    if other is not None:
+        return f"It is a section of {other.plural}, for: inerter {other.command}."
     elsewhere = [path for path, shape in shapes.items() if path != () and "*" not in path and key in _keys(shape)]
     for path in elsewhere:
         if path[0] == place[0] in _TELLING:

@@ -23,7 +23,7 @@ from inerter.errors import RowError
 from inerter.fields import Field as Quantity
 from inerter.fields import fields_of, mounts_of
 from inerter.files.common.entries import Amount, amount, check_order, element_name, expression, layout_name, positive
-from inerter.files.common.told_kind import ToldKind, names_kind, told_kind
+from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.rows import made_of_rows
 from inerter.vehicle.registry import VEHICLES
 
@@ -91,7 +91,7 @@ def one_of_shapes(shapes: Mapping[str, Any], tag: Callable[[Any], str]) -> Any:
 ElementEntry = Annotated[
     Annotated[Range, Tag("<range>")]
     | Annotated[Amount, PlainValidator(amount), Tag("<fixed>")]
-    | Annotated[ToldKind, PlainValidator(told_kind), Tag("<kind>")],
+    | Annotated[KindEntry, PlainValidator(kind_entry), Tag("<kind>")],
     Discriminator(lambda value: "<kind>" if names_kind(value) else "<range>" if isinstance(value, dict) else "<fixed>"),
 ]
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from pydantic import PlainValidator
 
 from inerter.errors import RowError
-from inerter.files.common.entries import one_of, positive, quantity, text, whole, yes_or_no
+from inerter.files.common.entries import any_quantity, one_of, positive, text, whole, yes_or_no
 from inerter.rows import Rows, made_of_rows
 from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
 from inerter.signals.records import held_noise, profile, recorded
@@ -43,7 +43,7 @@ def _plain(check: Callable[[Any], Any]) -> Callable[[str], PlainValidator]:
 
 
 def _size(name: str) -> SignalKey:
-    return SignalKey("{unit}", f'{name} = "{{size}}"', check=quantity)
+    return SignalKey("{unit}", f'{name} = "{{size}}"', check=any_quantity)
 
 
 def _frequency(name: str, value: str, default: Any = NEEDED) -> SignalKey:
@@ -55,7 +55,7 @@ _FILE = SignalKey("", 'file = "road.csv"', check=_plain(text))
 _WAVE = {
     "amplitude": _size("amplitude"),
     "frequency": _frequency("frequency", "3"),
-    "phase": SignalKey("rad", 'phase = "90 deg"', 0.0, check=quantity),
+    "phase": SignalKey("rad", 'phase = "90 deg"', 0.0, check=any_quantity),
 }
 
 
@@ -102,14 +102,16 @@ _OWN = (
             "duration": SignalKey("s", 'duration = "10 s"'),
         },
     ),
-    SignalKind("step", step, {"height": _size("height"), "time": SignalKey("s", 'time = "1 s"', 0.0, check=quantity)}),
+    SignalKind(
+        "step", step, {"height": _size("height"), "time": SignalKey("s", 'time = "1 s"', 0.0, check=any_quantity)}
+    ),
     SignalKind(
         "bump",
         bump,
         {
             "height": _size("height"),
             "length": SignalKey("m", 'length = "1 m"'),
-            "start": SignalKey("s", 'start = "0.5 s"', 0.0, check=quantity),
+            "start": SignalKey("s", 'start = "0.5 s"', 0.0, check=any_quantity),
         },
         needs=("speed",),
         of_roads=True,

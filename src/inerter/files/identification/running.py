@@ -135,7 +135,7 @@ def _chosen(
     progress: Progress | None,
 ) -> Identified:
     models = request.models()
-    given = {name: model for name, model in models.items() if not name.endswith(VISCOUS)} if request.elements else None
+    given = {name: models[name] for name in VISCOUS} if request.elements else None
     choice = choose([r.used for r in readings], given, FitOptions(**settings), progress=progress)
     named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
     return Identified(

@@ -8,18 +8,18 @@ from pydantic import Field, PlainValidator, create_model
 
 from inerter.files.common.entries import (
     Amount,
+    any_quantity,
     fixed_amount,
     not_negative,
     positive,
     positive_number,
-    quantity,
     text,
     whole,
     yes_or_no,
 )
+from inerter.files.common.kind_entry import KindEntry
 from inerter.files.common.shape import ElementName, Shape, Shapes, layouts
 from inerter.files.common.signals import signal_shapes
-from inerter.files.common.told_kind import ToldKind
 from inerter.rows import made_of_rows
 
 
@@ -38,7 +38,7 @@ class RigSettings(Shape):
     force_resolution: Annotated[float | None, not_negative("N")] = None
     force_noise: Annotated[float | None, not_negative("N")] = None
     force_bandwidth: Annotated[float | None, positive("Hz")] = None
-    force_offset: Annotated[float | None, quantity("N")] = None
+    force_offset: Annotated[float | None, any_quantity("N")] = None
     force_gain: Annotated[float | None, PlainValidator(positive_number)] = None
     force_delay: Annotated[float | None, not_negative("s")] = None
     reversed: Annotated[bool, PlainValidator(yes_or_no)] = False
@@ -48,7 +48,7 @@ class RigFile(Shape):
     """The whole file, but for what rows make of its layouts and signal."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
-    elements: dict[ElementName, Annotated[Amount | ToldKind, PlainValidator(fixed_amount)]] = Field(
+    elements: dict[ElementName, Annotated[Amount | KindEntry, PlainValidator(fixed_amount)]] = Field(
         min_length=1, examples=['a section [elements] with lines such as b = "113 kg"']
     )
     layouts: Any

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from inerter.files.common.kind_entry import entry_of
 from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
 from inerter.files.common.shape import ROAD
 from inerter.files.common.signals import SignalRequest
-from inerter.files.common.told_kind import entry_of
 from inerter.files.common.toml import as_toml
 from inerter.networks.elements import Element
 from inerter.signals.signal import Signal

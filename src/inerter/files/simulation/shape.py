@@ -7,9 +7,9 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field, PlainValidator, create_model
 
 from inerter.files.common.entries import Amount, fixed_amount, one_of, positive, text, whole, yes_or_no
+from inerter.files.common.kind_entry import KindEntry
 from inerter.files.common.shape import ElementName, Shape, Shapes, layouts, vehicle_shapes
 from inerter.files.common.signals import signal_shapes
-from inerter.files.common.told_kind import ToldKind
 from inerter.rows import made_of_rows
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
@@ -54,7 +54,7 @@ class SimulationFile(Shape):
     road: PassedRoad | None = Field(
         default=None, examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"']
     )
-    elements: dict[ElementName, Annotated[Amount | ToldKind, PlainValidator(fixed_amount)]] = Field(
+    elements: dict[ElementName, Annotated[Amount | KindEntry, PlainValidator(fixed_amount)]] = Field(
         min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
     )
     layouts: Any

@@ -1,1 +1,5 @@
 """Study files: vehicles, layouts, indices, methods and swept values, read from TOML and checked."""
+
+from inerter.files.common.kinds import FileKind
+
+KIND = FileKind("study files", "run", ("study",))

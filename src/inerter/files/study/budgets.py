@@ -74,7 +74,7 @@ def run_budget(study: Study, case: BudgetCase, outcomes: Mapping[Case, Outcome],
     element, method = study.elements[case.parameter], budget_method(study)
     at_most = element.may_vanish
 
-    def told(found: Budget | None, status: str, message: str) -> BudgetOutcome:
+    def outcome(found: Budget | None, status: str, message: str) -> BudgetOutcome:
         known = found is not None and bool(np.isfinite(found.value))
         return BudgetOutcome(
             *(case.layout, case.index, case.parameter, element.unit, method, at_most),
@@ -97,8 +97,8 @@ def run_budget(study: Study, case: BudgetCase, outcomes: Mapping[Case, Outcome],
             bounds = None if at_most else (present / _DOWN, present * _UP)
             found = budget(design, baseline, index, parameter=case.parameter, method=how, bounds=bounds)
     except FAILURES as error:
-        return told(None, StatusKind.FAILED.value, str(error))
-    return told(found, found.status.kind.value, found.status.message)
+        return outcome(None, StatusKind.FAILED.value, str(error))
+    return outcome(found, found.status.kind.value, found.status.message)
 
 
 def design_value(study: Study, outcome: Outcome, element: str) -> float:

@@ -52,7 +52,7 @@ def _index_problems(study: Study) -> Iterator[Problem]:
     for key in study.settings:
         field, owners = index_settings()[key], [symbol for symbol in INDICES if key in _keys(symbol)]
         asked = set(owners) & set(study.indices)
-        what, there = f"the {field.told} of {_either(owners, str)}", _either(owners)
+        what, there = f"the {field.in_words} of {_either(owners, str)}", _either(owners)
         if key in amplitudes and not (asked and any(map(needs_amplitude, study.methods))):
             yield at(
                 ("study", key),

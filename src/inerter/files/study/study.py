@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
+from inerter.files.common.kind_entry import entry_of
 from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
 from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
-from inerter.files.common.told_kind import entry_of
 from inerter.files.common.toml import as_toml
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index

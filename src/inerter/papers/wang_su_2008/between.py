@@ -34,7 +34,7 @@ def compute(name: str) -> dict[str, float]:
     """The stiffness [N/m] of a crossing, or how much worse the first layout is at the place, relative.
 
     Worse means by more than a hundredth of a per cent: where the static compliance decides J5, layouts are equally
-    good. A crossing is found by optimising both anew.
+    good. A crossing is found by optimising both again.
     """
     index, one, other, point = name.split()
     source = study("figure11")

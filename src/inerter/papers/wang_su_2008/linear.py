@@ -1,4 +1,4 @@
-"""The linear part: norms of the printed designs, designs found anew, and the elastic effect of Figure 11."""
+"""The linear part: norms of the printed designs, designs found from scratch, and the elastic effect of Figure 11."""
 
 from __future__ import annotations
 

@@ -49,31 +49,31 @@ CLAIMS = {
 }
 FIGURES = {
     FIGURE_8: (
-        "Figure 8 anew, on a virtual rig: friction without the flywheel, a cosine of 0.1 Hz and 1 mm. The force is a "
-        "square wave of 10 N, rounded where the shaft winds up."
+        "Figure 8 recomputed, on a virtual rig: friction without the flywheel, a cosine of 0.1 Hz and 1 mm. The force "
+        "is a square wave of 10 N, rounded where the shaft winds up."
     ),
     FIGURE_9: (
-        "Figure 9 anew, on a virtual rig: a cosine of 3 Hz and 1 mm, and the force of the identified model; the third "
-        "of five seconds."
+        "Figure 9 recomputed, on a virtual rig: a cosine of 3 Hz and 1 mm, and the force of the identified model; the "
+        "third of five seconds."
     ),
     FIGURE_10: (
-        "Figure 10 anew, on a virtual rig: from displacement to force, by a multisine of 0.1 mm r.m.s. from 0.5 to "
-        "20 Hz that nothing was fitted to. The identified model on the same displacement, its linear part, and its "
+        "Figure 10 recomputed, on a virtual rig: from displacement to force, by a multisine of 0.1 mm r.m.s. from 0.5 "
+        "to 20 Hz that nothing was fitted to. The identified model on the same displacement, its linear part, and its "
         "inertance alone, all as the load cell reads them."
     ),
     FIGURE_11: (
-        "Figure 11 anew: optimal indices of the quarter car over the static stiffness, and their improvement over S1, "
-        "with an ideal inerter and with an elastic one in its hard (2000 kN/m, 6400 N s/m) and soft setting "
+        "Figure 11 recomputed: optimal indices of the quarter car over the static stiffness, and their improvement "
+        "over S1, with an ideal inerter and with an elastic one in its hard (2000 kN/m, 6400 N s/m) and soft setting "
         "(1000 kN/m, 3200 N s/m)."
     ),
-    FIGURE_12: "Figure 12 anew: one period of a road of eq. (17), seed 0.",
+    FIGURE_12: "Figure 12 recomputed: one period of a road of eq. (17), seed 0.",
     FIGURE_13: (
-        "Figure 13 anew: the optimal linear designs with friction in the inerter, by the approximated linear model "
-        "(Method 1). Bands: two standard errors."
+        "Figure 13 recomputed: the optimal linear designs with friction in the inerter, by the approximated linear "
+        "model (Method 1). Bands: two standard errors."
     ),
     FIGURE_14: (
-        "Figure 14 anew: ideal inerter, the soft elastic one, friction of 10 N, and both, by the approximated linear "
-        "model (Method 1). Bands: two standard errors."
+        "Figure 14 recomputed: ideal inerter, the soft elastic one, friction of 10 N, and both, by the approximated "
+        "linear model (Method 1). Bands: two standard errors."
     ),
     METHODS: (
         "Increase of J1 and J3 by friction, printed designs of Table 1, by three methods; bars: two standard errors. "

@@ -17,7 +17,7 @@ ROAD = it.Road(roughness=5e-7, speed=25.0)
 
 @dataclass(frozen=True)
 class Found:
-    """The table anew: damping and value."""
+    """The table recomputed: damping and value."""
 
     table: dict[float, float]
     studies: dict[str, Any] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""The figures of the paper anew."""
+"""The figures of the paper, recomputed."""
 
 from __future__ import annotations
 

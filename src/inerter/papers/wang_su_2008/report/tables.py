@@ -58,7 +58,7 @@ def simulated_table(found: Reproduction, number: int) -> Table | None:
     over = ["Improvement"] if number == 2 else []
     header = ["Design", "Printed", "paper2008, difference", "Exact", *over, "Verdict"]
     method = "approximated linear model (Method 1)" if number == 2 else "expected value (Method 2)"
-    return Table(f"Table {number} anew, {method}: J1 in m/s², J3 in N, J5 in m/N", header, rows) if rows else None
+    return Table(f"Table {number} recomputed, {method}: J1 in m/s², J3 in N, J5 in m/N", header, rows) if rows else None
 
 
 def designs_table(found: list[FoundDesign], number: int) -> Table:

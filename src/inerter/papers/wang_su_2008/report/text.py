@@ -71,7 +71,7 @@ def agreement_of(compared: list[ComparedRow]) -> str:
 
 def _linear_text(compared: list[ComparedRow]) -> list[str]:
     return [
-        "Linear designs as printed, computed anew under both conventions; off:",
+        "Linear designs as printed, recomputed under both conventions; off:",
         "paper2008 less printed, in units of the last printed digit; differs: exact",
         "against printed.",
         "",

@@ -15,7 +15,7 @@ from inerter.units import parse_quantity, shown
 KIND = "kind"
 
 
-class ToldKind(NamedTuple):
+class KindEntry(NamedTuple):
     """A kind of element by its key, its value or the two bounds of it, and its other numbers, all in SI units."""
 
     kind: str
@@ -33,30 +33,30 @@ def names_kind(entry: Any) -> bool:
     return isinstance(entry, dict) and KIND in entry
 
 
-def told_kind(entry: dict[str, Any], *, free: bool = True) -> ToldKind:
+def kind_entry(entry: dict[str, Any], *, free: bool = True) -> KindEntry:
     """What such an entry says, whose value may be a range if it may be `free`.
 
     Raises ValueError for what is wrong with it.
     """
-    told = entry[KIND]
-    if not isinstance(told, str) or told not in ELEMENTS:
+    named = entry[KIND]
+    if not isinstance(named, str) or named not in ELEMENTS:
         listed = ", ".join(map(shown, ELEMENTS))
-        raise EntryError(got=f"kind = {shown(told)}", fault="not a kind of element", expected=f"one of {listed}")
-    kind = ELEMENTS[told]
+        raise EntryError(got=f"kind = {shown(named)}", fault="not a kind of element", expected=f"one of {listed}")
+    kind = ELEMENTS[named]
     fields = {field.name: field for field in kind.fields()}
     for key in entry:
         if key not in (KIND, *fields):
             hint = nearest(key, fields)
-            raise EntryError(got=shown(key), fault=f"not a key of a {told}", expected=", ".join(fields), hint=hint)
+            raise EntryError(got=shown(key), fault=f"not a key of a {named}", expected=", ".join(fields), hint=hint)
     for name, field in fields.items():
         if name not in entry:
             example = f'{name} = "1 {field.unit}"'
-            raise EntryError(got=f"no {name} of the {told}", expected=example, hint=field.sentence)
+            raise EntryError(got=f"no {name} of the {named}", expected=example, hint=field.sentence)
     value, *more = fields.values()
     amounts = {field.name: _amount(field, entry[field.name], False) for field in more}
     given = entry[value.name]
     if not isinstance(given, dict):
-        return ToldKind(told, _amount(value, given, kind.may_vanish), amounts)
+        return KindEntry(named, _amount(value, given, kind.may_vanish), amounts)
     if not free or set(given) != {"from", "to"}:
         expected = f'a range {{ from = "1 {value.unit}", to = "2 {value.unit}" }}' if free else "one value"
         raise EntryError(got=f"a table for {value.name}", expected=expected)
@@ -64,7 +64,7 @@ def told_kind(entry: dict[str, Any], *, free: bool = True) -> ToldKind:
     if not lower < upper:
         ends = f"equal or reversed ends of {value.name}"
         raise EntryError(got=ends, expected="from less than to", hint="Swap them.")
-    return ToldKind(told, (lower, upper), amounts)
+    return KindEntry(named, (lower, upper), amounts)
 
 
 def _amount(field: Field, text: Any, may_vanish: bool) -> float:

@@ -24,6 +24,7 @@ from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
 from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
 from inerter.networks.parser import network
 from inerter.systems.graph import full_graph, linear_graph
+from inerter.systems.outputs import outputs
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 COMFORT = it.RideComfort(ROAD)
@@ -237,6 +238,57 @@ def test_its_parts_are_named_after_it():
     mechanism = car(k | slopes()).mechanism()
     assert [b.label for b in full_graph(mechanism).branches][:4] == ["k", "d_c", "d_lost", "d_f"]
     assert [b.label for b in linear_graph(mechanism).branches][:2] == ["k", "d"]
+
+
+def in_others_words(monkeypatch, words):
+    """The damper with two slopes, written otherwise: parts named as it is itself, or two parts to linear analysis."""
+
+    def parts(device, label=None):
+        lost = device.coefficient - device.beyond
+        return it.Damper(device.beyond, label) | it.Damper(lost, label) - it.Friction(lost * device.knee)
+
+    if words == "its own label":
+        monkeypatch.setattr(TwoSlopes, "as_piecewise", lambda device: parts(device, device.label))
+    if words == "two linear parts":
+
+        def at_rest(device):
+            return it.Damper(0.25 * device.coefficient) | it.Damper(0.75 * device.coefficient)
+
+        monkeypatch.setattr(TwoSlopes, "as_linear", at_rest)
+
+
+@pytest.mark.parametrize("words", ["as written", "its own label", "two linear parts"])
+@pytest.mark.parametrize("name", ["d", "c", None])
+def test_the_force_of_a_composite_is_that_of_the_whole_to_all(monkeypatch, name, words):
+    """While nothing slips, what linear analysis and simulation have by one name is one thing; all names are known."""
+    in_others_words(monkeypatch, words)
+    label, design = name or "d", car(k | TwoSlopes(3000.0, 800.0, 10.0, name))
+    mechanism = design.mechanism()
+    linear, full = (outputs(mechanism, graph(mechanism)) for graph in (linear_graph, full_graph))
+    assert {f"{label}_force", f"{label}_velocity"} <= linear.keys() <= full.keys()
+    run = it.simulate(design, road=it.multisine(ROAD, seed=0), duration=0.5, step=5e-4)
+    known = it.simulate(car(k | it.Damper(3000.0, "x")), road=it.multisine(ROAD, seed=0), duration=0.5, step=5e-4)
+    system = it.assemble(design, outputs=[f"{label}_force", f"{label}_velocity"])
+    expected = it.assemble(car(k | it.Damper(3000.0, "x")), outputs=["x_force", "x_velocity"])
+    omega = np.array([1.0, 30.0])
+    assert it.frequency_response(system, omega) == pytest.approx(it.frequency_response(expected, omega), rel=1e-9)
+    for what in ("force", "velocity"):
+        size = np.abs(known[f"x_{what}"]).max()
+        assert run[f"{label}_{what}"] == pytest.approx(known[f"x_{what}"], abs=1e-9 * size)
+    for output in linear.keys() & {o for o in full if o.endswith("_force")}:  # the parts that both have are the same
+        branch = output.removesuffix("_force")
+        found = [{b.label: b.element for b in graph(mechanism).branches} for graph in (linear_graph, full_graph)]
+        assert branch == label or all(branch not in one for one in found) or found[0][branch] == found[1][branch]
+
+
+@pytest.mark.parametrize("amplitude", [2e-3, 2e-2])
+def test_the_force_of_a_composite_is_that_of_its_law(amplitude):
+    moved = it.cosine(amplitude=amplitude, frequency=10.0 / (2.0 * math.pi))
+    run = it.simulate(it.Rig(slopes() - it.Spring(1e5, "shaft")), displacement=moved, duration=1.0, step=1e-4)
+    v = run["d_velocity"]
+    law = np.where(np.abs(v) < 0.05, 3000.0 * v, 800.0 * v + 2200.0 * 0.05 * np.sign(v))
+    assert np.abs(run["d_force"] - law).max() < 1e-6 * np.abs(law).max()
+    assert run["d_force"] == pytest.approx(run["shaft_force"], abs=1e-9 * np.abs(law).max())
 
 
 def test_a_clutch_is_a_friction_with_words_of_its_own():

@@ -14,10 +14,8 @@ from inerter.networks.elements.roles import Linear
 def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
     """The same network with each element replaced by what `change` makes of it."""
     match network:
-        case Parallel(parts):
-            return Parallel(tuple(map_elements(part, change) for part in parts))
-        case Series(parts):
-            return Series(tuple(map_elements(part, change) for part in parts))
+        case Parallel(parts) | Series(parts):
+            return replace(network, parts=tuple(map_elements(part, change) for part in parts))
         case Element():
             return change(network)
     raise TypeError(f"not a network: {network!r}")
@@ -26,16 +24,19 @@ def map_elements(network: Network, change: Callable[[Element], Network]) -> Netw
 def unfolded(network: Network, view: Callable[[Element], Network]) -> Network:
     """The network with each element replaced by what it is in a `view`, such as `to_simulation`.
 
-    A single part without a name takes the label of the element that it stands for, parts of several the label before
-    their own. Elements that are themselves stay the same objects.
+    A single part without a name takes the label of the element that it stands for. Of several, the network takes it,
+    and parts have it before their own; none of them has it alone. Elements that are themselves stay the same objects.
     """
 
     def change(element: Element) -> Network:
         seen = view(element)
         if seen is element:
             return element
-        alone = isinstance(seen, Element)
-        return unfolded(map_elements(seen, lambda part: _named_after(element.label, part, alone)), view)
+        if isinstance(seen, Element):
+            return unfolded(seen if seen.name is not None else _renamed(seen, element.label), view)
+        named = map_elements(seen, lambda part: _named_after(element.label, part))
+        assert isinstance(named, Parallel | Series)
+        return unfolded(replace(named, name=element.label), view)
 
     return map_elements(network, change)
 
@@ -50,10 +51,12 @@ def to_simulation(element: Element) -> Network:
     return element.as_piecewise()
 
 
-def _named_after(label: str, part: Element, alone: bool) -> Element:
-    if part.name is not None:
-        return part
-    return replace(part, name=label if alone else f"{label}_{part.symbol}")  # type: ignore[type-var]
+def _named_after(label: str, part: Element) -> Element:
+    return _renamed(part, f"{label}_{part.symbol}") if part.name in (None, label) else part
+
+
+def _renamed(part: Element, name: str) -> Element:
+    return replace(part, name=name)  # type: ignore[type-var]
 
 
 def with_values(network: Network, values: Mapping[str, float]) -> Network:
@@ -152,4 +155,5 @@ def _linear(network: Network) -> tuple[Network | None, bool]:
         return None, in_parallel
     if not kept_parts:
         return None, not in_parallel
-    return (kept_parts[0] if len(kept_parts) == 1 else type(network)(kept_parts)), False
+    alone = len(kept_parts) == 1 and network.name is None
+    return (kept_parts[0] if alone else replace(network, parts=kept_parts)), False

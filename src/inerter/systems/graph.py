@@ -15,6 +15,7 @@ from inerter.networks.transform import linearise, map_elements, to_analysis, to_
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
+Labelled = Element | Parallel | Series
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,7 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Mount:
-    """A mounted network: its own elongation, and branches whose forces add up to its force."""
+    """A network in its place: its own elongation, and branches whose forces add up to its force."""
 
     nodes: Matrix
     roads: Matrix
@@ -38,11 +39,17 @@ class Mount:
 
 @dataclass(frozen=True, eq=False)
 class Graph:
-    """Nodes (coordinates first, then the massless ones inside networks), branches between them, and mounts by name."""
+    """Nodes (coordinates first, then the massless ones inside networks), branches between them, and mounts by name.
+
+    `groups` are networks with a label of their own, such as those that stand for an element. What a `silent` label
+    means in linear analysis alone is no output.
+    """
 
     nodes: tuple[str, ...]
     branches: tuple[Branch, ...]
     mounts: dict[str, Mount]
+    groups: dict[str, Mount]
+    silent: frozenset[str]
     notes: tuple[str, ...]
 
 
@@ -53,7 +60,7 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
     Raises `MechanismError` if a mounted network then carries no force at all, or is rigid.
     """
-    whole = _networks(mechanism, to_analysis)
+    whole, labels = _labelled(mechanism, to_analysis)
     networks: dict[str, Network] = {}
     notes: list[str] = []
     for mount in mechanism.mounts():
@@ -72,13 +79,21 @@ def linear_graph(mechanism: Mechanism) -> Graph:
         notes += [f"friction {label!r} in {mount.name!r} left out" for label in linear.frictions]
         notes += [f"gap {label!r} in {mount.name!r} closed" for label in linear.gaps]
         notes += [f"{label!r} in {mount.name!r} carries no force then" for label in linear.idle]
-    return _expand(mechanism, networks, _labels(whole), tuple(notes))
+    graph = _expand(mechanism, networks, labels, tuple(notes))
+    if all(element.plain for mount in mechanism.mounts() for element in mount.network.elements()):
+        return graph
+    return replace(graph, silent=_other_meanings(graph, full_graph(mechanism)))
 
 
 def full_graph(mechanism: Mechanism) -> Graph:
     """The graph with every element in it, friction and gaps included."""
-    networks = _networks(mechanism, _shaped)
-    return _expand(mechanism, networks, _labels(networks), ())
+    return _expand(mechanism, *_labelled(mechanism, _shaped), ())
+
+
+def _other_meanings(linear: Graph, full: Graph) -> frozenset[str]:
+    """Labels of parts that stand for an element in linear analysis, but not, or with other values, in simulation."""
+    parts = {branch.label: branch.element for branch in full.branches}
+    return frozenset(b.label for b in linear.branches if b.label not in full.groups and parts.get(b.label) != b.element)
 
 
 def switching(mechanism: Mechanism) -> Mechanism:
@@ -110,15 +125,32 @@ def _shaped(element: Element) -> Network:
         return element.with_value(element.value.upper).as_piecewise()
 
 
-def _networks(mechanism: Mechanism, view: Callable[[Element], Network]) -> dict[str, Network]:
-    """The mounted networks, each element an object of its own: one may be mounted several times."""
-    return {mount.name: map_elements(unfolded(mount.network, view), copy) for mount in mechanism.mounts()}
+def _labelled(mechanism: Mechanism, view: Callable[[Element], Network]) -> tuple[dict[str, Network], dict[int, str]]:
+    """The mounted networks with groups named by their labels, and the label of each element by its identity.
+
+    Each element is an object of its own: one may be mounted several times.
+    """
+    networks = {mount.name: map_elements(unfolded(mount.network, view), copy) for mount in mechanism.mounts()}
+    placed = [(mount, part) for mount, network in networks.items() for part in _with_labels(network)]
+    labels = {id(part): label for (_, part), label in zip(placed, _unique(placed), strict=True)}
+    return {mount: _with_groups(network, labels) for mount, network in networks.items()}, labels
 
 
-def _labels(networks: Mapping[str, Network]) -> dict[int, str]:
-    """The label of each element, by its identity."""
-    placed = [(mount, element) for mount, network in networks.items() for element in network.elements()]
-    return {id(element): label for (_, element), label in zip(placed, _unique(placed), strict=True)}
+def _with_labels(network: Network) -> Iterator[Labelled]:
+    """Groups and elements."""
+    if isinstance(network, Parallel | Series):
+        if network.name is not None:
+            yield network
+        for part in network.parts:
+            yield from _with_labels(part)
+    elif isinstance(network, Element):
+        yield network
+
+
+def _with_groups(network: Network, labels: Mapping[int, str]) -> Network:
+    if not isinstance(network, Parallel | Series):
+        return network
+    return replace(network, parts=tuple(_with_groups(p, labels) for p in network.parts), name=labels.get(id(network)))
 
 
 def _expand(
@@ -144,16 +176,24 @@ def _expand(
         elongation = upper - lower
         mounts[mount.name] = Mount(elongation[:size], elongation[size:], carriers)
     branches = tuple(Branch(element, labels[id(element)], row[:size], row[size:]) for element, row in builder.branches)
-    return Graph(tuple(builder.nodes), branches, mounts, notes)
+    groups = {label: Mount(row[:size], row[size:], carriers) for label, (row, carriers) in builder.groups.items()}
+    return Graph(tuple(builder.nodes), branches, mounts, groups, frozenset(), notes)
 
 
 @dataclass
 class _Builder:
     nodes: list[str]
     branches: list[tuple[Element, Matrix]] = field(default_factory=list)
+    groups: dict[str, tuple[Matrix, tuple[int, ...]]] = field(default_factory=dict)
 
     def add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> tuple[int, ...]:
         """Add `network` between two ends; returns the branches whose forces add up to its force."""
+        carriers = self._add(mount, network, upper, lower)
+        if isinstance(network, Parallel | Series) and network.name is not None:
+            self.groups[network.name] = (upper - lower, carriers)
+        return carriers
+
+    def _add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> tuple[int, ...]:
         match network:
             case Element():
                 self.branches.append((network, upper - lower))
@@ -182,9 +222,9 @@ def _inner_nodes(network: Network) -> int:
     return 0
 
 
-def _unique(placed: list[tuple[str, Element]]) -> list[str]:
+def _unique(placed: list[tuple[str, Labelled]]) -> list[str]:
     """Labels, plain where that is unique or the only name given; else with the mount before, or a number behind."""
-    labels = [element.label for _, element in placed]
+    labels = [str(part.label if isinstance(part, Element) else part.name) for _, part in placed]
     names = [element.name for _, element in placed]
     plain = [
         labels.count(la) == 1 or (n is not None and names.count(n) == 1) for la, n in zip(labels, names, strict=True)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.kernels.arrays import FRICTION, GAP
-from inerter.networks.elements import Element, Network
+from inerter.networks.elements import Element, Network, Parallel, Series
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import clean, complete, independent_rows, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
@@ -97,7 +97,8 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
 def _drawn(network: Network) -> tuple[Any, ...]:
     if isinstance(network, Element):
         return type(network), network.name, network.coefficient > 0.0
-    return (type(network), *map(_drawn, network.parts))  # type: ignore[attr-defined]
+    assert isinstance(network, Parallel | Series)
+    return (type(network), network.name, *map(_drawn, network.parts))
 
 
 def _found(layout: _Layout) -> Kinematics:

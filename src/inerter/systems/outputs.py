@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError
-from inerter.systems.graph import Graph
+from inerter.systems.graph import Branch, Graph, Mount
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
@@ -124,12 +124,20 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
 
 
 def _of_elements(graph: Graph) -> list[Output]:
+    places: dict[str, tuple[Branch | Mount, tuple[int, ...]]] = {
+        label: (group, group.carriers) for label, group in graph.groups.items()
+    }
+    for i, branch in enumerate(graph.branches):
+        if branch.label not in graph.silent:
+            places.setdefault(branch.label, (branch, (i,)))
     found = []
-    for branch, row in zip(graph.branches, np.eye(len(graph.branches)), strict=True):
-        moved = {"velocity": branch.nodes, "road_velocity": branch.roads}
+    for label, (place, carriers) in places.items():
+        total = np.zeros(len(graph.branches))
+        total[list(carriers)] = 1.0
+        moved = {"velocity": place.nodes, "road_velocity": place.roads}
         found += [
-            Output(velocity_of(branch.label), "m/s", f"velocity across {branch.label}", **moved),
-            Output(force_of(branch.label), "N", f"force of {branch.label}", forces=row),
+            Output(velocity_of(label), "m/s", f"velocity across {label}", **moved),
+            Output(force_of(label), "N", f"force of {label}", forces=total),
         ]
     return found
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
@@ -68,9 +68,10 @@ class Network:
 
 @dataclass(frozen=True)
 class Parallel(Network):
-    """Parts side by side: one elongation, forces add."""
+    """Parts side by side: one elongation, forces add. With a name they stay together, and their force is an output."""
 
     parts: tuple[Network, ...]
+    name: str | None = field(default=None, kw_only=True, repr=False)
 
     def elements(self) -> Iterator[Element]:
         for part in self.parts:
@@ -82,9 +83,10 @@ class Parallel(Network):
 
 @dataclass(frozen=True)
 class Series(Network):
-    """Parts end to end, the first at the upper end: one force, elongations add."""
+    """Parts end to end, the first at the upper end: one force, elongations add. A name is as that of `Parallel`."""
 
     parts: tuple[Network, ...]
+    name: str | None = field(default=None, kw_only=True, repr=False)
 
     def elements(self) -> Iterator[Element]:
         for part in self.parts:
@@ -126,4 +128,4 @@ def check_network(value: object) -> Network:
 
 def _parts(network: object, kind: type[Parallel] | type[Series]) -> tuple[Network, ...]:
     checked = check_network(network)
-    return checked.parts if isinstance(checked, kind) else (checked,)
+    return checked.parts if isinstance(checked, kind) and checked.name is None else (checked,)

@@ -155,13 +155,22 @@ def test_json_is_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert designs["S2"]["status"].startswith("marginal")
 
 
+def test_what_check_says_fits_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(EXAMPLES)
+    for study in ("ball_screw.toml", "half-car.toml", "stiffness-sweep.toml"):
+        assert call(["check", study]) == 0
+        out = capsys.readouterr().out
+        assert out.startswith(f"{study}: ok. ")
+        assert max(map(len, out.splitlines())) <= 80
+
+
 @pytest.mark.campaign
 def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (EXAMPLES / "ball_screw.toml").read_text(encoding="utf-8")
     study, folder = tmp_path / "screw.toml", tmp_path / "out"
     study.write_text(text.replace('["J1", "J3", "J5"]', '["J1"]').replace('force = "1 kN"', ""), encoding="utf-8")
     assert call(["check", str(study)]) == 0
-    assert "3 designs to find, and 2 budgets." in capsys.readouterr().out
+    assert "3 designs to find, and 2 budgets." in " ".join(capsys.readouterr().out.split())
     assert call(["run", str(study), "-o", str(folder), "-j", "1"]) == 0
     out, err = capsys.readouterr()
     assert "5 designs and budgets" in err

@@ -9,6 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.errors import IdentificationError
+from inerter.identification.staged import Band
 from inerter.papers.wang_su_2008 import rig
 
 TRUE = {"ks": 1e6, "cs": 3200.0, "b": 113.0, "f": 10.0}
@@ -42,7 +43,7 @@ def test_the_papers_experiment():
         else:
             assert abs(p.difference) < 0.02
     assert found.status == "ok"
-    assert found.notes[-1] == "The check agrees in all of 6 octaves."
+    assert found.notes[-1] == "The check agrees in all 6 octaves."
     measured, model, linear, ideal = (found.responses[name] for name in ("measured", "model", "linear", "ideal"))
     off = [np.median(np.abs(r.value / measured.value - 1.0)) for r in (model, linear, ideal)]
     assert off[0] < 0.01 < off[1] < off[2]
@@ -88,3 +89,12 @@ def test_protocols_that_cannot_be(slow, fast):
         it.staged(slow, fast, model=it.Inerter(it.free(1.0, 10.0, name="b")))
     with pytest.raises(IdentificationError, match="positive"):
         it.staged(slow, fast, inertance=-1.0)
+
+
+@pytest.mark.parametrize("size", [-0.03, -1e-6, 0.0, 1e-6, 0.03])
+@pytest.mark.parametrize("lines", [1, 4])
+def test_what_rounds_to_nothing_has_no_sign_and_one_line_is_no_range(size, lines):
+    said = Band(0.5, 0.5 * lines, lines, size, size, 0.01, True).verdict
+    assert ("+" in said) == (size > 0.01)
+    assert ("-" in said) == (size < -0.01)
+    assert said.startswith("0.5 Hz:" if lines == 1 else "0.5 to 2 Hz:")

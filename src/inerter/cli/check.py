@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import wrap
 
 from inerter.files.common.suggest import some
 from inerter.files.study.budgets import budget_cases
 from inerter.files.study.checking import check_study, study_notes
 from inerter.files.study.loading import load_study
+
+_WIDTH = 80
 
 
 def check(study: Path) -> int:
@@ -18,10 +21,14 @@ def check(study: Path) -> int:
     count = len(loaded.layouts) * len(loaded.indices) * points
     budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
     swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
-    print(
+    _say(
         f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
         f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
     )
     for note in study_notes(loaded):
-        print(f"Note: {note}.")
+        _say(f"Note: {note}.")
     return 0
+
+
+def _say(text: str) -> None:
+    print("\n".join(wrap(text, _WIDTH, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)))

@@ -33,7 +33,9 @@ def reproduce(
     *,
     only: Annotated[
         tuple[Part, ...],
-        Parameter(negative="", help="The parts to reproduce, each with its own --only; all if left out."),
+        Parameter(
+            negative="", show_default=False, help="The parts to reproduce, each with its own --only; all if left out."
+        ),
     ] = (),
     output: Output = None,
     jobs: Jobs = None,
@@ -46,7 +48,7 @@ def reproduce(
     Parameters
     ----------
     paper
-        The name of the paper; which there are is told if it is left out.
+        The name of the paper; without one, all that there are are listed.
     """
     from inerter.cli.commands import papers
     from inerter.cli.commands import reproduce as command

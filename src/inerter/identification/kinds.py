@@ -86,7 +86,7 @@ def _offset(f: Finding) -> Text:
 def _moving_mass(f: Finding) -> Text:
     return (
         f"{f.about}: holds what moves with the table between load cell and device, which the records do not separate "
-        f"from an inertance; weigh it, and give it, ",
+        f"from an inertance; weigh it, and give it as ",
         *(Remedy(Action.FIXTURE_MASS), "."),
     )
 
@@ -185,7 +185,7 @@ def _saturated_check(f: Finding) -> Text:
 def _response(f: Finding) -> Text:
     differ, octaves = f.numbers["differ"], f.numbers["octaves"]
     if octaves and not differ:
-        return (f"The check agrees in all of {octaves} octaves.",)
+        return (f"The check agrees in all {octaves} octaves.",)
     return (f"The check differs in {differ} of {octaves} octaves.",)
 
 

@@ -66,8 +66,15 @@ class Band:
     def verdict(self) -> str:
         """For a reader."""
         how = "agrees" if self.agrees else "differs"
-        sizes = f"gain is {100.0 * self.gain:+.1f} %, its phase {math.degrees(self.phase):+.1f} degrees off"
-        return f"{self.lower:.3g} to {self.upper:.3g} Hz: {how}; the model's {sizes}."
+        sizes = f"gain is {_signed(100.0 * self.gain)} %, its phase {_signed(math.degrees(self.phase))} degrees off"
+        band = f"{self.lower:.3g} to {self.upper:.3g}" if self.lines > 1 else f"{self.lower:.3g}"
+        return f"{band} Hz: {how}; the model's {sizes}."
+
+
+def _signed(value: float) -> str:
+    """With its sign, and without one where it rounds to nothing."""
+    text = f"{value:+.1f}"
+    return "0.0" if float(text) == 0.0 else text
 
 
 @dataclass(frozen=True, eq=False)

@@ -101,7 +101,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             identified=[name for name, verdict in fit.identifiable.items() if verdict.plain],
             sentences=[verdict.sentence for verdict in fit.identifiable.values() if not verdict.plain],
             names=list(fit.parameters),
-            correlation=[[f"{value:+.2f}".replace("-", "−") for value in row] for row in fit.correlation.tolist()],
+            correlation=[[_signed(value) for value in row] for row in fit.correlation.tolist()],
             next_experiment=fit.next_experiment,
             elements=elements_block(found),
             records=list(_records(found)),
@@ -139,7 +139,7 @@ def _rows(found: Identified) -> Iterator[ParameterRow]:
         bounds = found.bounds(name)
         sought = "" if bounds is None else f"{format_handy(bounds[0], p.unit)} to {format_handy(bounds[1], p.unit)}"
         identified, (size, unit) = bool(found.fit.identifiable[name]), handy_unit(p.best, p.unit)
-        error = f"{format_number(p.standard_error / size, 2)} {unit}".rstrip() if identified else ""
+        error = f"{_two_digits(p.standard_error / size)} {unit}".rstrip() if identified else ""
         yield ParameterRow(name, value, interval, error, sought, identified)
 
 
@@ -181,3 +181,18 @@ def _computation(found: Identified) -> str:
         f"{fit.criterion:.1f}."
     )
     return text.replace(": -", ": −")
+
+
+def _signed(value: float) -> str:
+    """A correlation; one that rounds to nothing has no sign."""
+    text = f"{value:+.2f}"
+    return "0.00" if float(text) == 0.0 else text.replace("-", "−")
+
+
+def _two_digits(error: float) -> str:
+    """A standard error, with a zero where that is its second digit.
+
+    >>> _two_digits(0.0102), _two_digits(12.3), _two_digits(4321.0)
+    ('0.010', '12', '4300')
+    """
+    return f"{error:#.2g}".rstrip(".") if 1e-4 < error < 99.0 else format_number(error, 2)

@@ -92,7 +92,7 @@ def done(found: Identified, reading: Reading, comparison: RecordFit) -> Iterator
     left = reading.used.time.size - fitted - checked
     lead = f", among them the first {format_handy(comparison.lead, 's')}" if comparison.lead else ""
     unused = f"; {left} are left out{lead}" if left else ""
-    yield f"Fitted were {fitted} samples, and {checked} kept to check the fit{unused}."
+    yield f"{fitted} samples were fitted, and {checked} kept to check the fit{unused}."
 
 
 def _records(found: Identified) -> Iterator[str]:

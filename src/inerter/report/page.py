@@ -22,6 +22,7 @@ from inerter.report.question import computation, element_rows, index_rows, layou
 from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
 from inerter.writing import write_text
 
+_SPACE = "\N{NO-BREAK SPACE}"
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
 _REFERENCE = re.compile(r'(\bid="|href="#|url\(#)')
@@ -91,14 +92,14 @@ def environment(*packages: str) -> Environment:
     templates.filters |= {
         "typeset": typeset,
         "breakable": breakable,
-        "sentence": lambda text: typeset(printed_sentence(text)),
+        "sentence": lambda text: typeset(printed_sentence(text)).replace(" × 10", f"{_SPACE}×{_SPACE}10"),
     }
     return templates
 
 
 def printed_sentence(sentence: str) -> str:
     """A sentence with a minus where there is one, and per cent on the line of their number."""
-    text = sentence.replace(" +- ", " ± ").replace(" %", "\N{NO-BREAK SPACE}%")
+    text = sentence.replace(" +- ", " ± ").replace(" %", f"{_SPACE}%")
     return re.sub(r" -(?=[\d.]|inf\b)", " −", text)
 
 

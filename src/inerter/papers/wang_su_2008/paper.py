@@ -80,9 +80,7 @@ FIGURES = {
         "Method 1 drives the car with white noise of height, which moves the inerter far less than the road does: "
         "friction then weighs about ten times more."
     ),
-    NETWORKS: (
-        "The layouts, and the device: spring k, damper c, inerter b; shaft k_s and c_s, backlash eps, friction f."
-    ),
+    NETWORKS: ("The layouts, and the device: spring k, damper c, inerter b; shaft kₛ and cₛ, backlash ε, friction f."),
 }
 
 PAPER = Paper(

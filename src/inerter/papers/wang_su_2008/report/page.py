@@ -24,7 +24,7 @@ from inerter.papers.wang_su_2008.report.tables import (
     rig_table,
     simulated_table,
 )
-from inerter.papers.wang_su_2008.report.text import agreement_of
+from inerter.papers.wang_su_2008.report.text import agreement_of, rig_value
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rig import SIMULATED
 from inerter.papers.wang_su_2008.rows import VERDICTS
@@ -102,7 +102,6 @@ def _page(found: Reproduction, folder: Path) -> str:
         .get_template("reproduction.html")
         .render(
             title=PAPER.title,
-            agreement=agreement_of(linear.compared) if linear else "",
             summary=_summary(found),
             linear=[compared_table(linear.compared, number) for number in (1, 2, 3)] if linear else [],
             simulated=[simulated_table(found, number) for number in (1, 2, 3)],
@@ -120,7 +119,7 @@ def _page(found: Reproduction, folder: Path) -> str:
 
 def _summary(found: Reproduction) -> list[str]:
     """What was found, in a few sentences."""
-    lines = []
+    lines = [agreement_of(found.linear.compared)] if found.linear else []
     rows = list(found.rows.values())
     if rows:
         counts = {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
@@ -138,4 +137,7 @@ def _summary(found: Reproduction) -> list[str]:
         lines.append(
             f"A design that knows its friction gains up to {-numbers['percent']:.1f} % on the best linear one ({name})."
         )
+    if found.rig is not None:
+        values = ", ".join(f"{p.name} {rig_value(p)[0]}" for p in found.rig.parameters)
+        lines.append(f"Identified from the records of a virtual rig: {values}.")
     return lines

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from inerter.figures.identification import draw
 from inerter.files.common.folder import FIGURES, REPORT
-from inerter.files.identification.running import FIT, RESIDUALS, Identified, model_title, responses
+from inerter.files.identification.loading import CUSTOM
+from inerter.files.identification.running import FIT, RESIDUALS, Identified, responses
 from inerter.networks.parser import written
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
@@ -93,7 +94,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
         .get_template("identification.html")
         .render(
             title=found.title,
-            model=model_title(found),
+            model="that of the configuration" if found.name == CUSTOM else found.name,
             layout=written(found.model, [e.label for e in found.model.elements()]),
             status="" if fit.status.ok else fit.status.message,
             answers=list(_answers(found)),

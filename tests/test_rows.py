@@ -9,18 +9,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from study_text import study_text
 
 import inerter as it
 from inerter import rows
-from inerter.errors import MechanismError, RowError, UnknownRowError
+from inerter.errors import MechanismError, RowError, StudyError, UnknownRowError
 from inerter.fields import fields_of, mounts_of
 from inerter.files.study.loading import load_study
-from inerter.files.study.study import write_resolved
+from inerter.files.study.study import Study, write_resolved
 from inerter.indices.registry import amplitude_of, index_settings
 from inerter.methods.registry import averages
+from inerter.report.question import vehicle_rows
 from inerter.rows import Rows, made_of_rows
-from inerter.units import parse_quantity
+from inerter.units import format_quantity, parse_quantity
 
 STRUT = it.Spring(20e3) | it.Damper(1e3)
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -253,6 +256,58 @@ def test_a_study_gives_a_method_what_it_takes(name: str, tmp_path: Path) -> None
     assert isinstance(method.sees, it.Sees)
     assert method.words[0].islower()
     assert not method.words.endswith(".")
+
+
+@pytest.fixture
+def of_its_own() -> Iterator[type]:
+    @dataclass(frozen=True)
+    class OfItsOwn:
+        length: float = field(metadata=it.quantity("m", "How far it looks.", "5 m", words="reach"))
+        width: float = field(default=2.0, metadata=it.quantity("m", "How wide it looks.", "1 m", key="breadth"))
+        seed: int = 0
+        name = "of-its-own"
+        words = "guesses"
+        sees = it.Sees.BOTH
+        needs_amplitude = searches = False
+        estimate = estimate_many = objective = it.Norm.estimate
+
+    yield it.METHODS.add(OfItsOwn)  # type: ignore[arg-type]
+    it.METHODS.remove(OfItsOwn)  # type: ignore[arg-type]
+
+
+def loaded(tmp_path: Path, methods: str, evaluate: str = '["norm", "of-its-own"]') -> Study:
+    path = tmp_path / "study.toml"
+    path.write_text(study_text(f'indices = ["J1"]\nseed = 3\nevaluate = {evaluate}\n{methods}'), encoding="utf-8")
+    return load_study(path)
+
+
+@pytest.mark.usefixtures("of_its_own")
+@given(st.floats(1e-3, 1e3), st.one_of(st.none(), st.floats(1e-3, 1e3)))
+@settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_method_has_the_settings_of_its_own_section(tmp_path: Path, length: float, breadth: float | None) -> None:
+    wide = "" if breadth is None else f'breadth = "{breadth!r} m"\n'
+    study = loaded(tmp_path, f'[methods.of-its-own]\nlength = "{length!r} m"\n{wide}')
+    method: Any = study.method("of-its-own")
+    assert (method.length, method.width, method.seed) == (length, breadth or 2.0, 3)
+    again = tmp_path / "again.toml"
+    again.write_text(write_resolved(study), encoding="utf-8")
+    assert load_study(again) == study
+    rows = dict(vehicle_rows(study))
+    assert rows["Reach of of-its-own"].startswith(format_quantity(length, "m", digits=12).split()[0])
+    assert ("Width of of-its-own" in rows) == (breadth is not None)
+
+
+@pytest.mark.usefixtures("of_its_own")
+def test_a_setting_of_a_method_is_missing_or_unused_in_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(StudyError, match=r'methods\.of-its-own\.length: missing; expected length = "5 m"'):
+        loaded(tmp_path, "")
+    with pytest.raises(StudyError, match=r"methods\.of-its-own: length of .*neither in optimise nor in evaluate"):
+        loaded(tmp_path, '[methods.of-its-own]\nlength = "1 m"', '["norm"]')
+
+
+def test_without_a_method_that_has_settings_there_is_no_section_for_them(tmp_path: Path) -> None:
+    with pytest.raises(StudyError, match="methods: unknown key"):
+        loaded(tmp_path, "[methods]", '["norm"]')
 
 
 def test_methods_that_see_friction_need_to_know_how_large_a_force_is() -> None:

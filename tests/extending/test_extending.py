@@ -37,6 +37,8 @@ shaft_stiffness = "1000 kN/m", shaft_damping = "3200 N s/m" }
 [layouts]
 S1 = "k | c"
 S3 = "k | c - J"
+[methods.quadrature]
+middle = "3 Hz"
 [study]
 indices = ["J1", "T1", "W1"]
 weighting_corner = "0.5 Hz"
@@ -106,7 +108,7 @@ def rows(results: Path) -> list[dict[str, str]]:
 
 
 def test_check_knows_rows_of_another_distribution(place: Path, study: Path) -> None:
-    said = inerter(place, "check", study.name, cwd=study.parent).stdout
+    said = " ".join(inerter(place, "check", study.name, cwd=study.parent).stdout.split())
     assert "seated-car; layouts S1, S3; indices J1, T1, W1: 6 designs to find." in said
     for method in ("norm", "quadrature"):
         assert f"Note: S3: {method}: friction 'J_friction' in 'strut' left out." in said
@@ -189,7 +191,7 @@ print(len(found[0]), np.abs(found[0]).max() > 100.0, np.array_equal(*found))
 
 
 def test_a_simulation_file_knows_the_vehicle_the_element_and_the_signal(place: Path, tmp_path: Path) -> None:
-    text = BASE[: BASE.index("[study]")].replace("{ from", '"2 kN s/m" # { from', 1)
+    text = BASE[: BASE.index("[methods")].replace("{ from", '"2 kN s/m" # { from', 1)
     text = text.replace('{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }', '"1e-3 kg m^2"')
     end = '[signal]\nkind = "saw-tooth"\nheight = "20 mm"\n[simulation]\nlayout = "S3"\nduration = "0.2 s"\n'
     (tmp_path / "slabs.toml").write_text(text + end, encoding="utf-8")
@@ -266,6 +268,16 @@ BAD = {
     "setting": ('["J1", "T1", "W1"]', '["J1"]', "study.weighting_corner", ["weighting filter of W1", "no weighting_c"]),
     "setting's unit": ('"0.5 Hz"', '"0.5 s"', "study.weighting_corner", ["another kind", "rad/s"]),
     "method": ('"quadrature"', '"quadrture"', "study.evaluate", ['Did you mean "quadrature"?']),
+    "method's setting": ("middle =", "midle =", "methods.quadrature.midle", ["unknown key", "one of middle"]),
+    "method's unit": ('"3 Hz"', '"3 m"', "methods.quadrature.middle", ["another kind", "rad/s"]),
+    "method's place": (
+        'middle = "3 Hz"\n[study]\n',
+        '[study]\nmiddle = "3 Hz"\n',
+        "study.middle",
+        ["in [methods.quadrature]"],
+    ),
+    "method's name": ("methods.quadrature", "methods.norm", "methods.norm", ["unknown key", "one of quadrature"]),
+    "method unused": ('"quadrature", ', "", "methods.quadrature", ["middle of", "neither in optimise nor in evaluate"]),
     "search": ('optimise = "norm"', 'optimise = "quadrature"', "study.optimise", ["not an optimisation method"]),
     "element": ('pitch = "12 mm", ', "", "elements.J", ["no pitch of the ball screw"]),
     "kind": ('"ball screw"', '"ball scrw"', "elements.J", ['"gap", "ball screw"']),

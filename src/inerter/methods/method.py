@@ -105,7 +105,8 @@ class Method(Protocol):
     """A way to get a number.
 
     A method that files know is a frozen dataclass. Of `conventions`, `seed`, `realisations`, `relative_error` and
-    `jobs`, it gets from a study those that it has as fields.
+    `jobs`, it gets from a study those that it has as fields. Fields that are quantities (`quantity`) are keys of a
+    section of its own there, [methods.NAME].
     """
 
     @property

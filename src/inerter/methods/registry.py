@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from typing import Any
 
+from inerter.fields import Field, fields_of
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method, Sees
@@ -57,12 +58,23 @@ def methods_that(can: Callable[[str], object]) -> tuple[str, ...]:
     return tuple(name for name in METHODS if can(name))
 
 
-def make_method(name: str, settings: Mapping[str, Any]) -> Method:
-    """The method of that name, with those of the settings that it has and that are not None."""
+def method_settings(name: str) -> tuple[Field, ...]:
+    """The settings that are the method's own, and no other's."""
+    return fields_of(_kind(name))
+
+
+def missing_settings(name: str, given: Container[str]) -> list[Field]:
+    """Those of its own settings that it cannot do without, and that are not `given` by their keys."""
+    bare = {f.name for f in dataclasses.fields(_kind(name)) if f.default is f.default_factory is dataclasses.MISSING}
+    return [field for field in method_settings(name) if field.name in bare and field.key not in given]
+
+
+def make_method(name: str, shared: Mapping[str, Any], own: Mapping[str, float]) -> Method:
+    """The method of that name, with those of the `shared` settings that it has and that are not None, and its `own`."""
     kind = _kind(name)
-    method: Method = kind(
-        **{key: settings[key] for key in _settings(kind) & set(settings) if settings[key] is not None}
-    )
+    given = {key: shared[key] for key in _settings(kind) & set(shared) if shared[key] is not None}
+    given |= {field.name: own[field.key] for field in method_settings(name) if field.key in own}
+    method: Method = kind(**given)
     return method
 
 

@@ -14,7 +14,7 @@ from inerter.figures.labels import capital, index_title, indices
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES, amplitude_of
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.registry import is_blind, words_of
+from inerter.methods.registry import is_blind, method_settings, words_of
 from inerter.networks.elements import Element, Free
 from inerter.units import format_quantity
 from inerter.vehicle.registry import VEHICLES
@@ -43,6 +43,9 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in study.settings and field != amplitude]
         rows += [(f"{capital(f.in_words)} of {symbol}", _given(study.settings[f.key], f.unit)) for f in given]
+    for name, settings in study.method_settings.items():
+        given = [field for field in method_settings(name) if field.key in settings]
+        rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
     return rows
 
 

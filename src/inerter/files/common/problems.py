@@ -69,7 +69,9 @@ def _where(place: tuple[str, ...], key: str, shapes: Shapes) -> str:
         if path[0] == place[0] in _TELLING:
             return f'It is a key of {_TELLING[path[0]]} = "{path[1].strip("<>").split()[0]}".'
     elsewhere = [path for path in elsewhere if path[0] != place[0]]
-    return f"It belongs in [{elsewhere[0][0]}]." if elsewhere else nearest(key, _keys(_shape(place[:-1], shapes)))
+    if elsewhere:
+        return f"It belongs in [{'.'.join(part for part in elsewhere[0] if not _is_tag(part))}]."
+    return nearest(key, _keys(_shape(place[:-1], shapes)))
 
 
 def _example(place: tuple[str, ...], shapes: Shapes) -> str:

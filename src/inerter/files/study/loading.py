@@ -11,6 +11,7 @@ from inerter.files.common.entries import Amount
 from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
+from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
 from inerter.files.study.method_problems import method_problems
@@ -71,8 +72,17 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         realisations=settings.realisations,
         relative_error=settings.relative_error,
         settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
+        method_settings=_method_settings(shape),
         budgets=settings.budgets,
     )
+
+
+def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
+    """The section [methods], which is there if any method has settings of its own: by method, what is given."""
+    section: Shape | None = getattr(shape, "methods", None)
+    tables = {} if section is None else section.model_dump(by_alias=True)
+    given = {n: {key: value for key, value in table.items() if value is not None} for n, table in tables.items()}
+    return {name: table for name, table in given.items() if table}
 
 
 def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:

@@ -9,7 +9,15 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.study import Study, elements_used
 from inerter.indices.registry import INDICES, amplitude_of, index_settings
-from inerter.methods.registry import METHODS, averages, is_blind, methods_that, needs_amplitude, refuses_gaps
+from inerter.methods.registry import (
+    METHODS,
+    averages,
+    is_blind,
+    methods_that,
+    missing_settings,
+    needs_amplitude,
+    refuses_gaps,
+)
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Statistical
 from inerter.systems.graph import switching_parts
@@ -20,6 +28,7 @@ def method_problems(study: Study) -> Iterator[Problem]:
     """One line for each."""
     yield from _road_problems(study)
     yield from _index_problems(study)
+    yield from _own_problems(study)
     yield from _force_problems(study)
     yield from _gap_problems(study)
     yield from _budget_problems(study)
@@ -62,6 +71,21 @@ def _index_problems(study: Study) -> Iterator[Problem]:
         elif not asked:
             wanted = f"{there} there, or no {key}"
             yield at(("study", key), fault=f"{what}, which is not in indices", expected=wanted)
+
+
+def _own_problems(study: Study) -> Iterator[Problem]:
+    """Settings of methods that nothing asks for, and those that are missing."""
+    for name, given in study.method_settings.items():
+        if name not in study.methods:
+            yield at(
+                ("methods", name),
+                fault=f"{some(given)} of {shown(name)}, which is neither in optimise nor in evaluate",
+                expected=f"{shown(name)} in one of them, or no section for it",
+            )
+    for name in study.methods:
+        for field in missing_settings(name, study.method_settings.get(name, {})):
+            example = f'{field.key} = "{field.example}"'
+            yield at(("methods", name, field.key), fault="missing", expected=example, hint=field.sentence)
 
 
 def _keys(symbol: str) -> set[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Any
 
 from pydantic import (
@@ -16,6 +17,8 @@ from pydantic import (
 )
 
 from inerter.errors import RowError
+from inerter.fields import Field as Quantity
+from inerter.fields import fields_of
 from inerter.files.common.entries import (
     MOST_POINTS,
     Amount,
@@ -146,17 +149,12 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     taken = sorted(index_settings().keys() & Settings.model_fields.keys())
     if taken:
         raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
-    keys: dict[str, Any] = {
-        key: (
-            Annotated[float | None, positive(field.unit)],
-            Field(default=None, examples=[f'{key} = "{field.example}"']),
-        )
-        for key, field in index_settings().items()
-    }
-    settings = create_model("Settings", __base__=Settings, **keys)
+    settings = create_model("Settings", __base__=Settings, **_if_given(index_settings().values()))
+    method, own = _method_shapes()
     vehicle, vehicles = vehicle_shapes(_cars(), AnyCar)
     cars = " or ".join(map(shown, _cars()))
     layout, tables = layouts()
+    section: dict[str, Any] = {"methods": (method, Field(default_factory=method))} if own else {}
     file = create_model(
         "StudyFile",
         __base__=StudyFile,
@@ -164,6 +162,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         road=(RoadShape, Field(examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'])),
         layouts=(layout, ...),
         study=(settings, Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])),
+        **section,
     )
     return file, {
         (): file,
@@ -173,4 +172,32 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         **tables,
         ("study",): settings,
         ("study", "sweep", "*", "<range>"): SweepRange,
+        **own,
+    }
+
+
+def _method_shapes() -> tuple[type[Shape], Shapes]:
+    """The section [methods], with a table for each method that has settings of its own, and its shapes by place."""
+    own = {
+        name: create_model(f"Method {name}", __base__=Shape, **_if_given(fields))
+        for name, kind in METHODS.items()
+        if (fields := fields_of(kind))
+    }
+    tables: dict[str, Any] = {
+        f"table{number}": (shape, Field(default_factory=shape, alias=name))
+        for number, (name, shape) in enumerate(own.items())
+    }
+    section = create_model("Methods", __base__=Shape, **tables)
+    places: dict[tuple[str, ...], type[Shape]] = {("methods", name): shape for name, shape in own.items()}
+    return section, {("methods",): section, **places} if own else {}
+
+
+def _if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
+    """Keys for quantities that may be left out."""
+    return {
+        field.key: (
+            Annotated[float | None, positive(field.unit)],
+            Field(default=None, examples=[f'{field.key} = "{field.example}"']),
+        )
+        for field in fields
     }

@@ -16,7 +16,7 @@ from inerter.files.common.toml import as_toml
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
 from inerter.methods.method import Method
-from inerter.methods.registry import DEFAULT, make_method
+from inerter.methods.registry import DEFAULT, make_method, method_settings
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
 from inerter.signals.road import Road
@@ -53,6 +53,7 @@ class Study:
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
+    method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
     budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
     @property
@@ -69,7 +70,8 @@ class Study:
         changes no digit.
         """
         known = ("conventions", "seed", "realisations", "relative_error")
-        return make_method(name, {**{key: getattr(self, key) for key in known}, "jobs": threads})
+        shared = {**{key: getattr(self, key) for key in known}, "jobs": threads}
+        return make_method(name, shared, self.method_settings.get(name, {}))
 
     def design(self, layout: str, swept: float | None = None) -> VehicleModel:
         """The vehicle with the struts of `layout`; `swept` replaces the value of the swept element [its SI unit].
@@ -102,7 +104,11 @@ class Study:
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "study": self._settings(),
+            **({"methods": own} if (own := self._of_methods()) else {}),
         }
+
+    def _of_methods(self) -> dict[str, Any]:
+        return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}
 
     def _settings(self) -> dict[str, Any]:
         sweep = self.sweep

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from math import pi
 from typing import Any
@@ -22,6 +22,7 @@ class Quadrature:
     """
 
     points: int = 600
+    middle: float = field(default=20.0, metadata=it.quantity("rad/s", "Half of the frequencies lie below it.", "3 Hz"))
     name = "quadrature"
     words = "integrals of the squared gains of the linear model over all frequencies"
     sees = it.Sees.NEITHER
@@ -35,7 +36,7 @@ class Quadrature:
             raise it.InerterError(f"Quadrature is for r.m.s. values on a road, and {index.symbol} is none.")
         names = [weighted.output for weighted in question.outputs]
         system = it.assemble(vehicle, question.inputs, names)
-        omega, weights = _nodes(self.points)
+        omega, weights = _nodes(self.points, self.middle)
         delays = {road.name: road.distance / question.road.speed for road in mechanism.roads}
         s = 1j * omega
         resolvent = np.linalg.solve(s[:, None, None] * np.eye(system.order) - system.A, system.B + 0j)
@@ -60,8 +61,8 @@ class Quadrature:
 
 
 @cache
-def _nodes(count: int) -> tuple[Any, Any]:
-    """Frequencies from zero to infinity [rad/s] with the weights of an integral: omega = 20 x / (1 - x)."""
+def _nodes(count: int, middle: float) -> tuple[Any, Any]:
+    """Frequencies from zero to infinity [rad/s] with the weights of an integral: omega = middle x / (1 - x)."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
-    x, scale = 0.5 * (nodes + 1.0), 20.0
-    return scale * x / (1.0 - x), 0.5 * weights * scale / (1.0 - x) ** 2
+    x = 0.5 * (nodes + 1.0)
+    return middle * x / (1.0 - x), 0.5 * weights * middle / (1.0 - x) ** 2

@@ -83,7 +83,8 @@ class Pool:
         lost: Callable[[Item], Result] | None = None,
     ) -> Iterator[Result]:
         """Results of `work` on each of `items` as they are ready; see `batches`."""
-        return chain.from_iterable(self.batches(work, items, here, lost))
+        for found in self.batches(work, items, here, lost):
+            yield from found
 
     def mapped(self, work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
         """Results of `work` on each of `items`, in their order."""
@@ -100,8 +101,8 @@ class Pool:
     ) -> Iterator[list[Result]]:
         """Results of `work` on each of `items` as they are ready, those that come together in one list.
 
-        Items are taken as they are needed. Without an executor that is given, the first are worked on in this process
-        (by `here`, if that is another way to the same), for as long as it would take to start others.
+        Items are taken as they are needed. As long as it would take to start processes, they are worked on in
+        this one, by `here` if that is another way to the same.
 
         A piece of work whose process ends is handed out again. If `KILLS` processes have ended on an item, its result
         is what `lost` says. Where calls of this are abandoned, what is not begun is not begun any more.
@@ -111,7 +112,7 @@ class Pool:
         """
         left = len(items) if isinstance(items, Sized) else None
         waiting = iter(items)
-        if self._given is None:
+        if self._given is None and (self.jobs == 1 or self._own is None):
             for found in self._at_home(here or work, waiting):
                 left = None if left is None else left - len(found)
                 yield found

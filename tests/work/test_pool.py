@@ -21,6 +21,8 @@ from hypothesis import strategies as st
 from inerter.errors import WorkError
 from inerter.work.pieces import WORTH, Cutter, Worked
 from inerter.work.pool import KILLS, Pool, pooled
+from inerter.work.processes import Processes
+from inerter.work.running import mapped, running_on
 
 PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
 KILL = "__import__('os').kill(__import__('os').getpid(), 9)"
@@ -80,9 +82,8 @@ def test_the_first_are_worked_on_here_until_processes_would_be_there() -> None:
 
 
 def test_results_keep_the_order_of_their_items_if_that_is_asked_for() -> None:
-    with Pool(2) as pool:
-        pool.begin(os.getpid)
-        assert pool.mapped(abs, range(-300, 0)) == list(range(300, 0, -1))
+    with Processes(2) as processes, running_on(processes):
+        assert mapped(abs, range(-300, 0)) == list(range(300, 0, -1))
 
 
 def test_a_killed_process_costs_its_pieces_only(tmp_path: Path) -> None:

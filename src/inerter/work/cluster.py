@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from inerter.errors import WorkError
+from inerter.errors import StudyError, WorkError
 from inerter.work.origin import VERSION, origin
 
 if TYPE_CHECKING:
@@ -110,22 +112,35 @@ def places(executor: Executor) -> tuple[Place, ...]:
 
 
 @contextmanager
-def connected(address: str | None, file: str | None = None, **tls: str | None) -> Iterator[Executor]:
-    """An executor on the cluster of a scheduler that is already there.
+def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
+    """An executor on the cluster of a scheduler that is already there, by its address or the file that it wrote.
 
-    Raises `WorkError` if dask is not installed, or the scheduler does not answer.
+    `tls` are fields of dask's `Security`.
+
+    Raises `StudyError` for an address that is none, `WorkError` if dask is not installed or the scheduler does not
+    answer.
     """
     try:
         from distributed import Client, Security  # noqa: PLC0415 - heavy, and an extra
+        from distributed.comm import get_address_host_port  # noqa: PLC0415
     except ImportError:
-        raise WorkError('for --scheduler install dask too, with: pip install "inerter[cluster]"') from None
-    given = {name: value for name, value in tls.items() if value is not None}
-    security = Security(require_encryption=True, **given) if given else None
-    where = address or file
+        raise WorkError('for a cluster install dask too: pip install "inerter[cluster]"') from None
     try:
-        client = Client(address, scheduler_file=file, security=security, timeout=_ANSWER, set_as_default=False)
-    except (OSError, TimeoutError, ValueError, RuntimeError) as error:
-        raise WorkError(f"no scheduler answers at {where} ({error}). Is it running, and is this its address?") from None
+        get_address_host_port(address or "host:1")
+    except ValueError as error:
+        raise StudyError(f'Got the scheduler "{address}" ({error}); expected such as tcp://HOST:8786.') from None
+    if file is not None and not file.is_file():
+        raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
+    security = Security(require_encryption=True, **tls) if tls else None
+    where = {"address": address} if file is None else {"scheduler_file": str(file)}
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what goes wrong is told by errors
+    try:
+        client = Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
+    except Exception as error:  # of sockets, of TLS, of addresses that are none
+        raise WorkError(
+            f"no scheduler of dask answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "
+            "is this its address, and does it want TLS?"
+        ) from None
     with client:
         yield client.get_executor(pure=False)
 

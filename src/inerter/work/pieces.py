@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from itertools import count, islice
 from typing import Generic, TypeVar
@@ -17,6 +18,7 @@ from inerter.work.origin import origin
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+THREADS: ContextVar[int | None] = ContextVar("threads", default=None)  # that work here may use; None: as many as cores
 WORTH = 0.5  # seconds that a piece takes: handing it out takes a few milliseconds at most
 _MOST = 2000  # items of a piece
 _GROWTH = 8  # times as many items as in pieces that are known already
@@ -44,7 +46,11 @@ class Worked(Generic[Result]):
 def worked(work: Callable[[Item], Result], piece: Piece[Item]) -> Worked[Result]:
     """Work on all items of a piece, in the process that is to do it."""
     begin = time.perf_counter()
-    results = tuple(work(item) for item in piece.items)
+    before = THREADS.set(1)  # the other cores work on other pieces
+    try:
+        results = tuple(work(item) for item in piece.items)
+    finally:
+        THREADS.reset(before)
     return Worked(results, time.perf_counter() - begin, origin())
 
 

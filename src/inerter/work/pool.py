@@ -7,13 +7,13 @@ named, and plain data.
 from __future__ import annotations
 
 import os
+import pickle
 import time
 from collections.abc import Callable, Iterable, Iterator, Sized
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
 from itertools import chain
-from typing import Any, Generic
+from typing import Any
 
 from inerter.errors import WorkError
 from inerter.work import cluster
@@ -86,12 +86,6 @@ class Pool:
         for found in self.batches(work, items, here, lost):
             yield from found
 
-    def mapped(self, work: Callable[[Item], Result], items: Iterable[Item]) -> list[Result]:
-        """Results of `work` on each of `items`, in their order."""
-        numbered = list(enumerate(items))
-        found = dict(self.spread(_Numbered(work), numbered))
-        return [found[i] for i, _ in numbered]
-
     def batches(
         self,
         work: Callable[[Item], Result],
@@ -145,7 +139,7 @@ class Pool:
                 done, _ = wait(under_way, return_when=FIRST_COMPLETED)
                 for future in done:
                     piece = under_way.pop(future)
-                    deaths, found, seconds = _result(future)
+                    deaths, found, seconds = _result(future, (work, piece))
                     if not deaths:
                         cutter.learn(piece, seconds)
                         yield found
@@ -176,18 +170,7 @@ class Pool:
         return self._own
 
 
-@dataclass(frozen=True)
-class _Numbered(Generic[Item, Result]):
-    """Work on an item that has a number, which its result keeps."""
-
-    work: Callable[[Item], Result]
-
-    def __call__(self, numbered: tuple[int, Item]) -> tuple[int, Result]:
-        number, item = numbered
-        return number, self.work(item)
-
-
-def _result(future: Future[Worked[Result]]) -> tuple[int, list[Result], float]:
+def _result(future: Future[Worked[Result]], call: object) -> tuple[int, list[Result], float]:
     """How many processes have ended on a piece, its results if none, and how long they took [s]."""
     try:
         found = future.result()
@@ -198,6 +181,7 @@ def _result(future: Future[Worked[Result]]) -> tuple[int, list[Result], float]:
             raise WorkError(f"a process of the executor does not have this package. {cluster.INSTALL}") from None
         deaths = cluster.deaths(error)
         if not deaths:
+            _check_sent(call)
             raise
         return deaths, [], 0.0
     if found.origin != origin():
@@ -206,6 +190,17 @@ def _result(future: Future[Worked[Result]]) -> tuple[int, list[Result], float]:
             f"{cluster.INSTALL} {_KEPT}."
         )
     return 0, list(found.results), found.seconds
+
+
+def _check_sent(call: object) -> None:
+    """Raises `WorkError` if a call cannot be sent to another process."""
+    try:
+        pickle.dumps(call)
+    except Exception as error:
+        raise WorkError(
+            f"this work cannot be handed to other processes ({error}). What is your own must be a class or function of "
+            "a module, and not made inside a function; or leave the executor out."
+        ) from None
 
 
 def _lost(item: Item, lost: Callable[[Item], Result] | None) -> Result:

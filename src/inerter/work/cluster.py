@@ -76,9 +76,7 @@ def check(executor: Executor) -> None:
             ) from None
     for address, answer in client.run(told, on_error="return").items():
         if isinstance(answer, BaseException):
-            missing = isinstance(answer, ModuleNotFoundError) and str(answer.name).partition(".")[0] == "inerter"
-            what = "does not have this package" if missing else f"cannot load this package ({answer})"
-            raise WorkError(f"the worker {address} {what}. {INSTALL}")
+            raise WorkError(f"the worker {address} cannot load this package ({answer}). {INSTALL}")
         version, numerics = answer
         if version != VERSION:
             raise WorkError(f"the worker {address} has inerter {version}, and this is {VERSION}. {INSTALL}")
@@ -133,7 +131,8 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
         raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
     security = Security(require_encryption=True, **tls) if tls else None
     where = {"address": address} if file is None else {"scheduler_file": str(file)}
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what goes wrong is told by errors
+    for name in ("distributed", "tornado", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is told by errors
     try:
         client = Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
     except Exception as error:  # of sockets, of TLS, of addresses that are none

@@ -177,8 +177,10 @@ def _result(future: Future[Worked[Result]], call: object) -> tuple[int, list[Res
     except CancelledError:
         raise WorkError(_GONE) from None
     except Exception as error:
-        if isinstance(error, ModuleNotFoundError) and str(error.name).partition(".")[0] == "inerter":
-            raise WorkError(f"a process of the executor does not have this package. {cluster.INSTALL}") from None
+        if isinstance(error, ModuleNotFoundError):
+            raise WorkError(
+                f"a process of the executor cannot load what it is to call ({error}). {cluster.INSTALL}"
+            ) from None
         deaths = cluster.deaths(error)
         if not deaths:
             _check_sent(call)
@@ -207,8 +209,8 @@ def _lost(item: Item, lost: Callable[[Item], Result] | None) -> Result:
     if lost is not None:
         return lost(item)
     raise WorkError(
-        f"{KILLS} processes have ended while they worked on the same piece, perhaps for want of memory. {_KEPT}, and "
-        "fewer processes (-j 1)."
+        f"{KILLS} processes have ended while they worked on the same piece, {str(item)[:80]}, perhaps for want of "
+        f"memory. {_KEPT}, and fewer processes (-j 1)."
     )
 
 

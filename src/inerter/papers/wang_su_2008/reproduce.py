@@ -141,7 +141,7 @@ def reproduce(
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
     intent = Intent(folder, "reproduce", _OWN, resume=resume, force=force)
     with claimed(intent) as results, pooled(jobs, executor) as pool:
-        if needed and wanted > {"linear"} and not resume:
+        if needed and wanted > {"linear"} and not resume and not pool.on_each_node(_warm_up):
             pool.begin(_warm_up)
         studies = {
             name: run_study(study(name), results.within(name), executor=pool, progress=_named(progress, name))

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -209,19 +210,21 @@ def test_values_an_identification_and_a_table_are_the_same(tmp_path: Path, there
     strut = k | c - (b | it.Friction(30.0))
     car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
     comfort, roads = it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.ExpectedValue(realisations=64)
-    record = load_rig(EXAMPLES / "rig_fit.toml").run()
+    record = replace(load_rig(EXAMPLES / "rig_fit.toml"), duration=0.6).run()
     with connected(there.address, None, {}) as workers, Processes(2) as processes:
         there.start_worker()
         values = [it.evaluate(car, comfort, roads, executor=executor) for executor in (None, processes, workers)]
-        fits = [it.identify(record, "ball-screw", executor=executor) for executor in (None, processes, workers)]
+        fits = [
+            it.identify(record, "ball-screw", starts=8, executor=executor) for executor in (None, processes, workers)
+        ]
     assert values[0] == values[1] == values[2]
     assert repr(fits[0].parameters) == repr(fits[1].parameters) == repr(fits[2].parameters)
     assert fits[0].simulations == fits[1].simulations == fits[2].simulations
-    command = ("reproduce", "wang-su-2008", "--only", "table3")
+    command = ("reproduce", "wang-su-2008", "--only", "rig")
     done(inerter(*command, "-o", tmp_path / "own", "-j", 2))
     done(inerter(*command, "-o", tmp_path / "there", "--scheduler", there.address))
     tables = {path.name for path in (tmp_path / "own").glob("*.csv")}
-    assert "simulated-rows.csv" in tables
+    assert "rig.csv" in tables
     for name in tables:
         assert (tmp_path / "own" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
 
@@ -256,7 +259,7 @@ def test_workers_of_another_kind_are_refused(tmp_path: Path) -> None:
     study = study_file(tmp_path, 24, 8)
     for name, says in (
         ("other", "has other sources of inerter"),
-        ("none", r"cannot load this package (No module named inerter)"),
+        ("none", "cannot load this package (ModuleNotFoundError"),
     ):
         (tmp_path / name / "cluster").mkdir()
         with cluster(tmp_path / name / "cluster", 1, PYTHONPATH=str(tmp_path / name)) as made:

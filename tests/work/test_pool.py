@@ -160,7 +160,7 @@ def test_a_process_without_the_package_is_told() -> None:
     def fail(found: object) -> Worked[object]:
         raise ModuleNotFoundError("No module named 'inerter'", name="inerter")
 
-    with Pool(executor=Elsewhere(fail)) as pool, pytest.raises(WorkError, match="cannot load .*No module named"):
+    with Pool(executor=Elsewhere(fail)) as pool, pytest.raises(WorkError, match=r"cannot load .*No module named"):
         list(pool.spread(abs, [1]))
 
 

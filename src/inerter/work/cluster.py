@@ -131,8 +131,9 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
         raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
     security = Security(require_encryption=True, **tls) if tls else None
     where = {"address": address} if file is None else {"scheduler_file": str(file)}
-    for name in ("distributed", "tornado", "asyncio"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is told by errors
+    for name in tuple(logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is told by errors
     try:
         client = Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
     except Exception as error:  # of sockets, of TLS, of addresses that are none

@@ -98,7 +98,7 @@ def wait_until(what: Callable[[], bool], process: subprocess.Popen[str] | None =
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, bytes]:
     """The larger study by one process."""
     folder = tmp_path_factory.mktemp("alone")
-    it.run_study(it.load_study(study_file(folder, 24, 8)), folder / "out")
+    it.run_study(it.load_study(study_file(folder, 12, 8)), folder / "out")
     return results(folder / "out")
 
 
@@ -152,7 +152,7 @@ def test_no_scheduler_answers(tmp_path: Path) -> None:
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("trouble", ["none", "one killed", "one added", "all killed, new ones started"])
 def test_whatever_workers_come_and_go(trouble: str, alone: Mapping[str, bytes], tmp_path: Path, there: Cluster) -> None:
-    process = inerter("run", study_file(tmp_path, 24, 8), "-o", tmp_path / "out", "--scheduler", there.address)
+    process = inerter("run", study_file(tmp_path, 12, 8), "-o", tmp_path / "out", "--scheduler", there.address)
     wait_until(lambda: finished(tmp_path) >= 5, process)
     first, second = there.processes[1:]
     if trouble == "one killed":
@@ -175,7 +175,7 @@ def test_whatever_workers_come_and_go(trouble: str, alone: Mapping[str, bytes], 
 def test_what_ends_is_gone_on_with_by_another_executor(
     victim: str, alone: Mapping[str, bytes], tmp_path: Path, there: Cluster
 ) -> None:
-    study, out = study_file(tmp_path, 24, 8), tmp_path / "out"
+    study, out = study_file(tmp_path, 12, 8), tmp_path / "out"
     process = inerter("run", study, "-o", out, "--scheduler", there.address)
     wait_until(lambda: finished(tmp_path) >= 5, process)
     if victim == "coordinator":
@@ -194,7 +194,7 @@ def test_what_ends_is_gone_on_with_by_another_executor(
 @pytest.mark.campaign
 @pytest.mark.timeout(900)
 def test_what_an_executor_began_a_cluster_ends(alone: Mapping[str, bytes], tmp_path: Path, there: Cluster) -> None:
-    study, out = study_file(tmp_path, 24, 8), tmp_path / "out"
+    study, out = study_file(tmp_path, 12, 8), tmp_path / "out"
     process = inerter("run", study, "-o", out, "-j", 2)
     wait_until(lambda: finished(tmp_path) >= 5, process)
     os.killpg(process.pid, signal.SIGKILL)
@@ -220,11 +220,11 @@ def test_values_an_identification_and_a_table_are_the_same(tmp_path: Path, there
     assert values[0] == values[1] == values[2]
     assert repr(fits[0].parameters) == repr(fits[1].parameters) == repr(fits[2].parameters)
     assert fits[0].simulations == fits[1].simulations == fits[2].simulations
-    command = ("reproduce", "wang-su-2008", "--only", "rig")
+    command = ("reproduce", "wang-su-2008", "--only", "table1")
     done(inerter(*command, "-o", tmp_path / "own", "-j", 2))
     done(inerter(*command, "-o", tmp_path / "there", "--scheduler", there.address))
     tables = {path.name for path in (tmp_path / "own").glob("*.csv")}
-    assert "rig.csv" in tables
+    assert "simulated-rows.csv" in tables
     for name in tables:
         assert (tmp_path / "own" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
 
@@ -256,7 +256,7 @@ def test_workers_of_another_kind_are_refused(tmp_path: Path) -> None:
     (tmp_path / "none" / "inerter.py").write_text(
         "raise ModuleNotFoundError('No module named inerter', name='inerter')"
     )
-    study = study_file(tmp_path, 24, 8)
+    study = study_file(tmp_path, 12, 8)
     for name, says in (
         ("other", "has other sources of inerter"),
         ("none", "cannot load this package (ModuleNotFoundError"),

@@ -381,7 +381,7 @@ class WheelTravel:
 if __name__ == "__main__":
     study = it.load_study("seated.toml")
     with ProcessPoolExecutor(2, get_context("spawn")) as executor:
-        away = it.run_study(study, "away", jobs=executor)
+        away = it.run_study(study, "away", executor=executor)
         print(len(executor._processes))
     here = it.run_study(study, "here")
     print(away.data.equals(here.data), sorted(study.indices), away.failures)

@@ -1,24 +1,38 @@
-"""A process pool: processes that work through one list after another."""
+"""One way to run: pieces of work here, in processes of our own, or on any executor."""
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import replace
+from itertools import count
 from multiprocessing import active_children
+from pathlib import Path
+from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from inerter.errors import WorkError
-from inerter.work.pool import Pool, pooled
+from inerter.work.pieces import WORTH, Cutter, Worked
+from inerter.work.pool import KILLS, Pool, pooled
+from inerter.work.processes import Processes
+from inerter.work.running import mapped, running_on
 
 PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
 KILL = "__import__('os').kill(__import__('os').getpid(), 9)"
 
 
-def evaluated(items: list[str]) -> list[object]:
+def handed_out(items: list[str], **told: Any) -> list[Any]:
+    """What two processes make of the items, from the first on."""
     with Pool(2) as pool:
         pool.begin(os.getpid)
-        return list(pool.spread(eval, items))
+        return list(pool.spread(eval, items, **told))
 
 
 def none_left() -> bool:
@@ -51,31 +65,144 @@ def test_processes_stay_for_the_next_list_and_end_with_the_crew() -> None:
         assert len(there) == 2
         for _ in range(2):
             assert set(pool.spread(eval, [PROCESS] * 20)) <= there
-        with pooled(pool) as same:
+        with pooled(executor=pool) as same:
             assert same is pool
         assert active_children()
     assert none_left()
 
 
-def test_the_first_of_each_kind_is_worked_on_here() -> None:
+def test_the_first_are_worked_on_here_until_processes_would_be_there() -> None:
+    slow = f"__import__('time').sleep(0.9) or {PROCESS}"
     with Pool(2) as pool:
-        pool.begin(os.getpid)
-        found = list(pool.spread(eval, [PROCESS, f" {PROCESS}", PROCESS, PROCESS], kind=len, here=lambda item: item))
-    assert found[:2] == [PROCESS, f" {PROCESS}"]
-    assert os.getpid() not in found[2:]
-    assert len(found) == 4
-
-
-def test_a_killed_process_is_told() -> None:
-    with pytest.raises(WorkError, match="--resume"):
-        evaluated([KILL, PROCESS])
+        found = list(pool.spread(eval, [slow] * 6, here=lambda item: 0))
+        assert found == [0] * 6  # they were quick
+        found = list(pool.spread(eval, [slow] * 6))
+    assert 1 <= found.count(os.getpid()) <= 5
     assert none_left()
+
+
+def test_results_keep_the_order_of_their_items_if_that_is_asked_for() -> None:
+    with Processes(2) as processes, running_on(processes):
+        assert mapped(abs, range(-300, 0)) == list(range(300, 0, -1))
+
+
+def test_a_killed_process_costs_its_pieces_only(tmp_path: Path) -> None:
+    once = f"__import__('pathlib').Path({str(tmp_path / 'there')!r})"
+    kill_once = f"7 if {once}.exists() else {once}.write_text('') or {KILL}"
+    assert sorted(handed_out(["1", kill_once, *["5"] * 20])) == [1, *[5] * 20, 7]
+    assert none_left()
+
+
+def test_what_kills_every_process_is_named_and_the_rest_complete(tmp_path: Path) -> None:
+    mark = f"__import__('tempfile').mkstemp(dir={str(tmp_path)!r}) and "
+    items = [f"{mark}{KILL}", *[f"abs({-i})" for i in range(40)]]
+    found = handed_out(items, lost=lambda item: f"lost: {item[-4:]}")
+    assert sorted(map(str, found)) == sorted([*map(str, range(40)), f"lost: {items[0][-4:]}"])
+    assert len(list(tmp_path.iterdir())) == KILLS
+    assert none_left()
+
+
+def test_what_kills_every_process_ends_work_that_cannot_do_without() -> None:
+    with pytest.raises(WorkError, match=f"{KILLS} processes have ended.*--resume"):
+        handed_out([KILL, PROCESS])
+    assert none_left()
+
+
+def test_processes_that_cannot_start_are_told(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text("from inerter.work.processes import Processes\nProcesses(2).submit(abs, -1)\n")
+    ended = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False)
+    assert ended.returncode == 1
+    assert "WorkError" in ended.stderr
+    assert '`if __name__ == "__main__":`' in ended.stderr
+
+
+def test_any_executor_works_and_goes_on_afterwards() -> None:
+    with ThreadPoolExecutor(3) as threads:
+        with Pool(executor=threads) as pool:
+            assert pool.slots == 3
+            assert sorted(pool.spread(abs, range(-100, 0))) == list(range(1, 101))
+            assert not pool.on_each_node(os.getpid)
+        assert threads.submit(abs, -1).result() == 1
+
+
+def test_an_executor_that_has_ended_is_told() -> None:
+    threads = ThreadPoolExecutor(1)
+    threads.shutdown()
+    with Pool(executor=threads) as pool, pytest.raises(WorkError, match=r"executor .* has ended.*--resume"):
+        list(pool.spread(abs, [1]))
+
+
+class Elsewhere(Executor):
+    """Where results are altered on the way."""
+
+    def __init__(self, alter: Callable[[Worked[object]], Worked[object]]) -> None:
+        self.alter = alter
+
+    def submit(self, call: Callable[..., object], /, *args: object, **keywords: object) -> Future[object]:
+        future: Future[object] = Future()
+        try:
+            future.set_result(self.alter(call(*args)))  # type: ignore[arg-type]
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def test_numbers_of_another_version_are_not_taken() -> None:
+    with (
+        Pool(executor=Elsewhere(lambda found: replace(found, origin="another"))) as pool,
+        pytest.raises(WorkError, match=r"another version of inerter, .* Install the same versions"),
+    ):
+        list(pool.spread(abs, [1]))
+
+
+def test_a_process_without_the_package_is_told() -> None:
+    def fail(found: object) -> Worked[object]:
+        raise ModuleNotFoundError("No module named 'inerter'", name="inerter")
+
+    with Pool(executor=Elsewhere(fail)) as pool, pytest.raises(WorkError, match=r"cannot load .*No module named"):
+        list(pool.spread(abs, [1]))
+
+
+@given(
+    st.integers(0, 300),
+    st.integers(1, 9),
+    st.lists(st.sampled_from([1e-6, 1e-3, 0.1, 5.0]), min_size=1),
+    st.integers(0, 2**30),
+)
+def test_every_item_is_in_one_piece_whatever_comes_back(
+    items: int, slots: int, paces: list[float], deaths: int
+) -> None:
+    cutter, found, numbers = Cutter(iter(range(items)), items), list[int](), set[int]()
+    for step in count():
+        piece = cutter.take(slots) or cutter.take_alone()
+        if piece is None:
+            break
+        assert piece.number not in numbers
+        numbers.add(piece.number)
+        if deaths >> (step % 31) & 1 and piece.deaths < KILLS:
+            cutter.back(piece, 1)
+        else:
+            assert piece.alone == (piece.deaths >= 2)
+            cutter.learn(piece, paces[step % len(paces)] * len(piece.items))
+            found += piece.items
+    assert sorted(found) == list(range(items))
+
+
+def test_pieces_become_as_large_as_they_are_worth() -> None:
+    cutter, sizes = Cutter(iter(range(10**6)), 10**6), list[int]()
+    while piece := cutter.take(2):
+        cutter.learn(piece, 1e-3 * len(piece.items))
+        sizes.append(len(piece.items))
+    assert 0.9 * WORTH < 1e-3 * max(sizes) <= WORTH
+    assert len(sizes) < 1.1 * 10**6 * 1e-3 / WORTH
+    assert sizes[-1] == 1  # towards the end
 
 
 def test_an_error_does_not_wait_for_what_is_under_way() -> None:
     start = time.monotonic()
     with pytest.raises(ZeroDivisionError):
-        evaluated(["1 / 0", "__import__('time').sleep(60)", "__import__('time').sleep(60)"])
+        handed_out(["1 / 0", "__import__('time').sleep(60)", "__import__('time').sleep(60)"])
     assert time.monotonic() - start < 30.0
 
 
@@ -84,7 +211,7 @@ def test_a_process_that_does_not_heed_its_end_is_not_waited_for() -> None:
     deaf = "__import__('signal').signal(15, __import__('signal').SIG_IGN), __import__('time').sleep(60)"
     start = time.monotonic()
     with pytest.raises(ZeroDivisionError):
-        evaluated([deaf, "__import__('time').sleep(1) or 1 / 0"])
+        handed_out([deaf, "__import__('time').sleep(1) or 1 / 0"])
     assert time.monotonic() - start < 30.0
     assert none_left()
 

@@ -13,7 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
+from inerter.cli.options import Cluster
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
@@ -32,7 +34,16 @@ _MOST = 20  # designs that are told one by one
 _JSON = {"improvement_error": "improvement_error_percent"}
 
 
-def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, force: bool, as_json: bool) -> int:
+def run(
+    study: Path,
+    output: Path | None,
+    jobs: int | None,
+    cluster: Cluster,
+    *,
+    resume: bool,
+    force: bool,
+    as_json: bool,
+) -> int:
     """Run a study file into a folder; returns the exit code."""
     loaded = load_study(study)
     folder = output or Path(f"{study.stem}-results")
@@ -42,13 +53,14 @@ def run(study: Path, output: Path | None, jobs: int | None, *, resume: bool, for
         draw_study(result.data, into / FIGURES)
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
 
-    kept = _kept(("run", str(study)), folder, jobs, as_json=as_json)
+    kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
     items = "designs and budgets" if loaded.budgets else "designs"
-    with interruptible(lambda: kept), progress(study.stem, items) as shown:
+    with interruptible(lambda: kept), workers(cluster, jobs) as executor, progress(study.stem, items) as shown:
         result = run_study(
             loaded,
             folder,
             jobs=processes,
+            executor=executor,
             resume=resume,
             force=force,
             progress=shown.cases,
@@ -84,6 +96,7 @@ def reproduce(
     only: tuple[str, ...],
     output: Path | None,
     jobs: int | None,
+    cluster: Cluster,
     *,
     resume: bool,
     force: bool,
@@ -94,17 +107,18 @@ def reproduce(
     folder = output or Path(f"{name}-results")
     processes = _processes(jobs)
     parts = (word for part in only for word in ("--only", part))
-    kept = _kept(("reproduce", name, *parts), folder, jobs, as_json=as_json)
-    with interruptible(lambda: kept), steps(name) as callback:
-        found = paper.reproduce(folder, only=only, jobs=processes, resume=resume, force=force, progress=callback)
+    kept = _kept(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
+    settings = {"jobs": processes, "resume": resume, "force": force}
+    with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps(name) as callback:
+        found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
     _say(f"report: {folder / REPORT}")
     print(json.dumps(paper.as_data(found), indent=2) if as_json else paper.as_text(found))
     return max([_judge(result) for result in found.studies.values()], default=0)
 
 
-def _kept(command: Iterable[str], folder: Path, jobs: int | None, *, as_json: bool) -> str:
+def _kept(command: Iterable[str], folder: Path, jobs: int | None, cluster: Cluster, *, as_json: bool) -> str:
     """What is kept of work that is interrupted, with the whole command that goes on with it."""
-    options = (*(() if jobs is None else ("-j", str(jobs))), *(("--json",) if as_json else ()))
+    options = (*(() if jobs is None else ("-j", str(jobs))), *cluster.words, *(("--json",) if as_json else ()))
     again = shlex.join(["inerter", *command, "-o", str(folder), "--resume", *options])
     return f"; what was computed is kept. Continue with: {again}"
 

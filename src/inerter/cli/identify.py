@@ -9,7 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
+from inerter.cli.options import Cluster
 from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.files.common.folder import REPORT, Intent, claimed
@@ -42,6 +44,7 @@ def identify(
     output: Path | None,
     options: Mapping[str, Any],
     settings: Mapping[str, int | None],
+    cluster: Cluster,
     *,
     force: bool,
     as_json: bool,
@@ -60,9 +63,9 @@ def identify(
     intent = Intent(folder, "identify", OWN, inputs, force=force)
     kept = [" before there was a fit."]
     try:
-        with interruptible(lambda: kept[-1]), claimed(intent) as results:
+        with interruptible(lambda: kept[-1]), workers(cluster) as executor, claimed(intent) as results:
             with fraction(f"fitting {request.name or 'the model'}") as callback:
-                found = run_identification(readings, request, callback)
+                found = run_identification(readings, request, callback, executor)
             write_fit(found, results.draft)
             results.publish()
             kept.append(

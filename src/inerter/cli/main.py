@@ -17,7 +17,7 @@ from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
-from inerter.cli.options import Force, Jobs, Json, Output, Resume
+from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
 from inerter.cli.reading import AS_THEY_ARE, ReadingOptions
 from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
@@ -50,7 +50,8 @@ Reading = Annotated[ReadingOptions, Parameter(name="*")]
     help_epilogue="""Examples:
   inerter run examples/quarter-car.toml
   inerter run sweep.toml -o sweep -j 2
-  inerter run sweep.toml -o sweep --resume    after an interruption"""
+  inerter run sweep.toml -o sweep --resume    after an interruption
+  inerter run sweep.toml --scheduler tcp://node1:8786    on a dask cluster"""
 )
 def run(
     study: Path,
@@ -58,6 +59,7 @@ def run(
     *,
     output: Output = None,
     jobs: Jobs = None,
+    cluster: ClusterOptions = OWN,
     resume: Resume = False,
     force: Force = False,
     json: Json = False,
@@ -74,7 +76,7 @@ def run(
     """
     from inerter.cli.commands import run as command
 
-    return command(study, output, jobs, resume=resume, force=force, as_json=json)
+    return command(study, output, jobs, cluster, resume=resume, force=force, as_json=json)
 
 
 @app.command(help_epilogue="Example: inerter check examples/half-car.toml")
@@ -143,6 +145,7 @@ def identify(
     seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None,
     starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None,
     output: Output = None,
+    cluster: ClusterOptions = OWN,
     force: Force = False,
     json: Json = False,
 ) -> int:
@@ -159,7 +162,7 @@ def identify(
     from inerter.cli.identify import identify as command
 
     settings = {"seed": seed, "starts": starts}
-    return command(records, model, config, output, asdict(reading), settings, force=force, as_json=json)
+    return command(records, model, config, output, asdict(reading), settings, cluster, force=force, as_json=json)
 
 
 @app.command(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from inerter.cli.options import Force, Jobs, Json, Output, Resume
+from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
 from inerter.errors import StudyError
 from inerter.papers.registry import PAPERS
 
@@ -39,6 +39,7 @@ def reproduce(
     ] = (),
     output: Output = None,
     jobs: Jobs = None,
+    cluster: ClusterOptions = OWN,
     resume: Resume = False,
     force: Force = False,
     json: Json = False,
@@ -54,7 +55,7 @@ def reproduce(
     from inerter.cli.commands import reproduce as command
 
     if paper is None:
-        if only or output or jobs or resume or force or json:
+        if only or output or jobs or resume or force or json or cluster != OWN:
             raise StudyError(f"Got options without a paper; expected the name of one: {', '.join(PAPERS)}.")
         return papers()
-    return command(paper, only, output, jobs, resume=resume, force=force, as_json=json)
+    return command(paper, only, output, jobs, cluster, resume=resume, force=force, as_json=json)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from scipy.stats import t as student
 
 from inerter.identification.experiment import Experiment
 from inerter.identification.intervals import ROBUST, BestFit, steps_of
-from inerter.identification.problem import FitProblem
+from inerter.identification.problem import FitProblem, apart
 from inerter.identification.search import improve
 from inerter.identification.sensors import source_of
 
@@ -53,14 +54,14 @@ def bootstrap(problem: FitProblem, optimum: BestFit, seed: int, draws: int = DRA
     source = source_of(problem, optimum.point)
     if source is None:
         return Bootstrap(optimum, np.zeros(optimum.point.size), 0.0)
-    points, costs, shares = [], [], []
+    drawn = []
     for _ in range(draws):
-        drawn = replace(problem, experiments=source.drawn(random))
+        experiments = source.drawn(random)
         start = optimum.point + optimum.errors * random.standard_normal(optimum.point.size)
-        point, cost, _, _ = improve(drawn, np.clip(start, lower, upper), _EVALUATIONS, steps, ROBUST)
-        points.append(point)
-        costs.append(cost)
-        shares.append(_shared(source.forces, drawn.forces(optimum.point), problem.experiments))
+        drawn.append((replace(problem, experiments=experiments), np.clip(start, lower, upper)))
+    found = apart(partial(_refitted, optimum.point, steps), drawn)
+    points, costs, forces = zip(*found, strict=True)
+    shares = [_shared(source.forces, force, problem.experiments) for force in forces]
     moved = np.array(points) - optimum.point
     unexplained = max(optimum.cost / max(float(np.median(costs)), 1e-300), 1.0)
     few = student.ppf(0.975, draws - 1) / norm.ppf(0.975)
@@ -69,6 +70,14 @@ def bootstrap(problem: FitProblem, optimum: BestFit, seed: int, draws: int = DRA
     wider = replace(optimum, widening=optimum.widening + ratio - 1.0)
     bias = np.clip(np.mean(moved, axis=0), -2.0 * wider.errors, 2.0 * wider.errors)
     return Bootstrap(wider, np.asarray(bias), float(np.median(shares)))
+
+
+def _refitted(
+    truth: Matrix, steps: Matrix, problem: FitProblem, start: Matrix
+) -> tuple[Matrix, float, list[Matrix | None]]:
+    """The fit to a drawn record from a start, its cost, and the forces there of the device that the record is of."""
+    point, cost, _, _ = improve(problem, start, _EVALUATIONS, steps, ROBUST)
+    return point, cost, problem.forces(truth)
 
 
 def _shared(forces: Sequence[Matrix], others: Sequence[Matrix | None], experiments: Sequence[Experiment]) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Unpack
@@ -26,6 +27,7 @@ from inerter.networks.transform import map_elements, with_values
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
+from inerter.work.running import running_on
 
 Matrix = NDArray[np.float64]
 LEAST, MOST = 0.02, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
@@ -80,6 +82,7 @@ def choose(
     options: FitOptions = DEFAULTS,
     *,
     progress: Callable[[float], None] | None = None,
+    executor: Executor | None = None,
     **changes: Unpack[OptionChanges],
 ) -> Choice:
     """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
@@ -105,12 +108,13 @@ def choose(
     if not asked.check > 0.0:
         raise IdentificationError(f"Candidates are compared on the part kept for the check, got {asked.check!r}.")
     selection = _Selection(records, asked, len(given) + (2 if models is None else 0), progress)
-    selection.enter(given)
-    if models is None:
-        first = _chosen(ranking(selection.fits))
-        pair = next(pair for pair in _PAIRS if first in pair)
-        selection.enter({VISCOUS[name]: MODELS[VISCOUS[name]] for name in pair})
-    return selection.decided()
+    with running_on(executor):
+        selection.enter(given)
+        if models is None:
+            first = _chosen(ranking(selection.fits))
+            pair = next(pair for pair in _PAIRS if first in pair)
+            selection.enter({VISCOUS[name]: MODELS[VISCOUS[name]] for name in pair})
+        return selection.decided()
 
 
 @dataclass(eq=False)

@@ -35,10 +35,14 @@ class Tally:
         self.total = 0
         self._lock = Lock()
 
-    def add(self) -> None:
-        """One more."""
+    def add(self, count: int = 1) -> None:
+        """Some more."""
         with self._lock:
-            self.total += 1
+            self.total += count
+
+    def __reduce__(self) -> tuple[type[Tally], tuple[()]]:
+        """Another process counts for itself."""
+        return Tally, ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +60,10 @@ class Experiment:
     information: Matrix  # (samples,) how much of the squared force of all samples kept lies up to each
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
     tally: Tally = field(default_factory=Tally)
+
+    def __getstate__(self) -> dict[str, object]:
+        """What another process needs: tables are quicker made than sent."""
+        return {**vars(self), "finer": {}}
 
     @property
     def size(self) -> int:

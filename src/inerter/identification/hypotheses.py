@@ -68,18 +68,25 @@ class Hypothesis:
 def gain() -> Hypothesis:
     """A load cell that reads in proportion."""
     unknown = Unknown(GAIN, "", *_GAINS, 1.0)
-    return Hypothesis(Suspect.GAIN, (unknown,), read=lambda force, e, values: values[GAIN] * force)
+    return Hypothesis(Suspect.GAIN, (unknown,), read=_in_proportion)
+
+
+def _in_proportion(force: Matrix, experiment: Experiment, values: Values) -> Matrix:
+    return values[GAIN] * force
 
 
 def delay(longest: float) -> Hypothesis:
     """A force that is late against the displacement, or early where the displacement is late."""
     unknown = Unknown(DELAY, "s", -longest, longest, 0.1 * longest)
-    return Hypothesis(
-        Suspect.DELAY,
-        (unknown,),
-        moved=lambda e, values: e.late(values[DELAY]),
-        details=lambda values: {"delay": values[DELAY]},
-    )
+    return Hypothesis(Suspect.DELAY, (unknown,), moved=_late, details=_lateness)
+
+
+def _late(experiment: Experiment, values: Values) -> Experiment:
+    return experiment.late(values[DELAY])
+
+
+def _lateness(values: Values) -> Details:
+    return {"delay": values[DELAY]}
 
 
 def filtered_displacement(order: int) -> Hypothesis:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from typing import Unpack
 
 from inerter.checks import is_number
@@ -20,6 +21,7 @@ from inerter.networks.elements.roles import Linear
 from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
+from inerter.work.running import running_on
 
 _SOLVED = 0.8  # of the work, before explanations are looked for
 
@@ -30,12 +32,14 @@ def identify(
     options: FitOptions = DEFAULTS,
     *,
     progress: Callable[[float], None] | None = None,
+    executor: Executor | None = None,
     **changes: Unpack[OptionChanges],
 ) -> Fit:
     """Fit the free values of `model`, the device on the rig, to the force of one record or several together.
 
     `model` is a network with free values, or the name of one of `inerter.identification.models.MODELS`. What
-    `options` say may be given, or changed, as keywords: `identify(record, model, seed=1, gain=True)`.
+    `options` say may be given, or changed, as keywords: `identify(record, model, seed=1, gain=True)`. An `executor`
+    (of `concurrent.futures`, of a dask client, of mpi4py) shares the searches, profiles and the bootstrap.
 
     The model is moved as the record's displacement was, smoothed, and its force compared; no measured motion is
     differentiated twice. Points of a Sobol sequence, and a first guess without simulation for devices that are a
@@ -53,7 +57,8 @@ def identify(
     records that cannot be used.
     """
     asked = options.changed(**changes)
-    fit = fit_of(solution_of(records, model_of(model), asked, part(progress, 0.0, _SOLVED)))
+    with running_on(executor):
+        fit = fit_of(solution_of(records, model_of(model), asked, part(progress, 0.0, _SOLVED)))
     if progress is not None:
         progress(1.0)
     return fit

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from inerter.identification.noise import OPTIMISM
-from inerter.identification.problem import FitProblem
+from inerter.identification.problem import FitProblem, apart
 from inerter.identification.search import improve
+from inerter.work.running import over_threads
 
 Matrix = NDArray[np.float64]
 ROBUST = 3.0  # whitened residuals beyond this count less than their square
@@ -106,8 +108,8 @@ class Profile:
 
 def profiles(problem: FitProblem, optimum: BestFit) -> list[Profile]:
     """The profile of every coordinate."""
-    tasks = [(i, sign) for i in range(optimum.point.size) for sign in (-1, 1)]
-    found = list(problem.pool.map(lambda task: _walk(problem, optimum, *task), tasks))
+    tasks = [(problem, (i, sign)) for i in range(optimum.point.size) for sign in (-1, 1)]
+    found = apart(partial(_walk, optimum), tasks, over_threads)
     result = []
     for i in range(optimum.point.size):
         (below, points, better), (above, more, other) = found[2 * i], found[2 * i + 1]
@@ -117,9 +119,10 @@ def profiles(problem: FitProblem, optimum: BestFit) -> list[Profile]:
 
 
 def _walk(
-    problem: FitProblem, optimum: BestFit, i: int, sign: int
+    optimum: BestFit, problem: FitProblem, way: tuple[int, int]
 ) -> tuple[Side, list[tuple[float, float]], tuple[float, Matrix] | None]:
-    """Walk away from the optimum until the rise of the cost meets its threshold."""
+    """Walk from the optimum along a coordinate, up or down, until the rise of the cost meets its threshold."""
+    i, sign = way
     bound = float(problem.space.bounds[1 if sign > 0 else 0][i])
     start, threshold = float(optimum.point[i]), float(optimum.threshold[i])
     points: list[tuple[float, float]] = []

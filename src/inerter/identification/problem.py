@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError
-from inerter.identification.experiment import Experiment, reading_of
+from inerter.identification.experiment import Experiment, Tally, reading_of
 from inerter.identification.hypotheses import Hypothesis, through_cell
 from inerter.identification.models import standing
 from inerter.identification.noise import Whitening
@@ -22,6 +21,7 @@ from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
 from inerter.vehicle.rig import Rig
+from inerter.work.running import Item, Result, mapped, over_threads
 
 Matrix = NDArray[np.float64]
 _FEWEST = 100  # samples that are compared
@@ -40,23 +40,33 @@ class FitProblem:
     assumed: tuple[Hypothesis, ...] = ()
     horizon: float = 1.0  # part of each record that is compared, as its force counts
     systems: dict[tuple[object, ...], PiecewiseSystem] = field(default_factory=dict)  # by load cell and zeros
-    pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(os.cpu_count() or 1))
+
+    def __getstate__(self) -> dict[str, object]:
+        """What another process needs: systems are quicker made than sent."""
+        return {**vars(self), "systems": {}}
 
     def system(self, coordinates: Matrix, record: Record) -> PiecewiseSystem | None:
-        """The rig with these values and a record's load cell; None where such a device cannot be simulated."""
+        """The rig with these values and a record's load cell; None where such a device cannot be simulated.
+
+        It is made once, and revalued: so what is possible does not depend on the values that came first.
+        """
         kinds = dict(zip(self.space.names, self.space.kinds, strict=True))
         values = {n: v for n, v in self.space.named(coordinates).items() if kinds[n] is not None}
         layout = (record.force_bandwidth, *(value == 0.0 for value in values.values()))
         try:
             known = self.systems.get(layout)
-            if known is not None:
+            if known is None:
+                largest = dict(zip(self.space.names, self.space.upper.tolist(), strict=True))
+                known = self._made(record, {n: v and largest[n] for n, v in values.items()})
+                self.systems[layout] = known
+            if set(values) <= {b.label for b in known.graph.branches} and not known.kinematics.weighs:
                 return revalued(known, {n: v for n, v in values.items() if v != 0.0})
-            system = piecewise(standing(_labelled(self.rig), record.force_bandwidth).with_values(values))
+            return self._made(record, values)
         except InerterError:
             return None
-        if set(values) <= {b.label for b in system.graph.branches} and not system.kinematics.weighs:
-            self.systems[layout] = system
-        return system
+
+    def _made(self, record: Record, values: Mapping[str, float]) -> PiecewiseSystem:
+        return piecewise(standing(_labelled(self.rig), record.force_bandwidth).with_values(values))
 
     def forces(self, coordinates: Matrix) -> list[Matrix | None]:
         """What the load cells would read, for each record as far as the horizon; None where the device fails."""
@@ -101,7 +111,7 @@ class FitProblem:
 
     def residuals(self, points: Sequence[Matrix]) -> list[Matrix]:
         """The residuals at several points, over the cores."""
-        return list(self.pool.map(self.residual, points))
+        return over_threads(self.residual, points)
 
     def jacobian(self, coordinates: Matrix, steps: Matrix) -> Matrix:
         """Central differences of the residuals over these steps, one-sided at a bound.
@@ -132,6 +142,30 @@ class FitProblem:
             column, white = w.of_offset(size), w(e.record.force[:size] - force)
             result.append(float(column @ white / max(float(column @ column), 1e-300)))
         return result
+
+
+def apart(
+    work: Callable[[FitProblem, Item], Result],
+    calls: Sequence[tuple[FitProblem, Item]],
+    otherwise: Callable[..., Iterable[tuple[Result, list[int]]]] = map,
+) -> list[Result]:
+    """Results of `work` on each problem and item, on what was said to work on, else by `otherwise`.
+
+    Wherever they are made, the simulations count for the problem's records.
+    """
+    found = []
+    for (problem, _), (result, counts) in zip(calls, mapped(partial(_apart, work), calls, otherwise), strict=True):
+        for experiment, count in zip(problem.experiments, counts, strict=True):
+            experiment.tally.add(count)
+        found.append(result)
+    return found
+
+
+def _apart(work: Callable[[FitProblem, Item], Result], call: tuple[FitProblem, Item]) -> tuple[Result, list[int]]:
+    problem, item = call
+    own = replace(problem, experiments=[replace(e, tally=Tally()) for e in problem.experiments])
+    result = work(own, item)
+    return result, [e.tally.total for e in own.experiments]
 
 
 def _labelled(rig: Rig) -> Network:

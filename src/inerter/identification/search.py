@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 from inerter.identification.options import POINTS
-from inerter.identification.problem import FitProblem
+from inerter.identification.problem import FitProblem, apart
 
 Matrix = NDArray[np.float64]
 Stages = tuple[tuple[float, int, int], ...]  # horizon, candidates, and evaluations of each
@@ -48,12 +49,17 @@ def search(
         part = replace(problem, horizon=horizon)
         accuracy = 1e-9 if horizon == 1.0 else _ROUGH
         candidates = _distinct(candidates, costs)[:kept]
-        found = [improve(part, candidate, evaluations, accuracy=accuracy) for candidate in candidates]
+        found = apart(partial(_improved, evaluations, accuracy), [(part, candidate) for candidate in candidates])
         candidates, costs = [f[0] for f in found], [f[1] for f in found]
         halfway = sorted(costs) if horizon < 1.0 else halfway
         if progress is not None:
             progress((stage + 1) / len(stages))
     return candidates[int(np.argmin(costs))], halfway
+
+
+def _improved(evaluations: int, accuracy: float, problem: FitProblem, start: Matrix) -> tuple[Matrix, float]:
+    point, cost, _, _ = improve(problem, start, evaluations, accuracy=accuracy)
+    return point, cost
 
 
 def _distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -118,6 +119,7 @@ def staged(
     seed: int = 0,
     starts: int = POINTS,
     progress: Callable[[float], None] | None = None,
+    executor: Executor | None = None,
 ) -> Staged:
     """The parameters of a ball-screw inerter from three short tests, one after the other.
 
@@ -145,7 +147,9 @@ def staged(
         )
     half = max(law.level - law.interval[0], _NARROWEST * law.level)
     within = free(max(law.level - half, 0.0), law.level + half, _FRICTION)
-    found = identify(fit, _with(device, _FRICTION, within), seed=seed, starts=starts, progress=progress)
+    found = identify(
+        fit, _with(device, _FRICTION, within), seed=seed, starts=starts, progress=progress, executor=executor
+    )
     parameters, identifiable = dict(found.parameters), dict(found.identifiable)
     parameters[_FRICTION], identifiable[_FRICTION] = _friction(law)
     values = {name: p.best for name, p in parameters.items()}

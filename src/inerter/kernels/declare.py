@@ -51,6 +51,10 @@ class Kernel:
         self._called: Callable[..., Any] | None = None
         self.typed = False
 
+    def __reduce__(self) -> str:
+        """Another process finds it by its name."""
+        return str(self.function.__qualname__)
+
     def __call__(self, *args: Any) -> Any:
         """Call it.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from math import hypot
 
@@ -14,6 +15,7 @@ from inerter.indices.question import Index
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import running_on
 
 _FEWEST = 4  # samples for a regression
 Controls = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -67,7 +69,13 @@ class Comparison:
 
 
 def compare(
-    first: Vehicle, second: Vehicle, index: Index, method: Method, *, known: Estimate | None = None
+    first: Vehicle,
+    second: Vehicle,
+    index: Index,
+    method: Method,
+    *,
+    known: Estimate | None = None,
+    executor: Executor | None = None,
 ) -> Comparison:
     """Two designs by one index and one method, with the standard error of their difference.
 
@@ -75,7 +83,7 @@ def compare(
     road by road: what the roads do to both alike cancels. What friction does to first order, which is quickly
     computed, is averaged over many more roads by `ExpectedValue`, and only the rest over these (a control variate).
     Standard errors of numbers without samples add up as independent ones. `known` is the estimate of the second by
-    this very method, if it is there already.
+    this very method, if it is there already. An `executor` shares the roads, as that of `evaluate` does.
 
     Raises what `evaluate` raises.
 
@@ -90,6 +98,11 @@ def compare(
     >>> round(two.percent, 1), two.percent_error < 0.02
     (-0.3, True)
     """
+    with running_on(executor):
+        return _compared(first, second, index, method, known)
+
+
+def _compared(first: Vehicle, second: Vehicle, index: Index, method: Method, known: Estimate | None) -> Comparison:
     one, other = evaluate(first, index, method), known or evaluate(second, index, method)
     most, longest = max(one.realisations, other.realisations), max(one.period or 0, other.period or 0) or None
     if most > 0 and isinstance(method, Averaging):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from enum import Enum, auto
+from functools import partial
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -17,8 +19,10 @@ from inerter.systems.graph import full_graph
 from inerter.systems.outputs import check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.work.running import mapped, running_on
 
 Array = NDArray[np.float64]
+_TOGETHER = 64  # designs that are valued in one call where others take some too
 
 
 @dataclass(frozen=True)
@@ -147,8 +151,10 @@ class Method(Protocol):
         ...
 
 
-def evaluate(vehicle: Vehicle, index: Index, method: Method) -> Estimate:
+def evaluate(vehicle: Vehicle, index: Index, method: Method, *, executor: Executor | None = None) -> Estimate:
     """One index of one design by one method.
+
+    An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) does what comes apart, such as random roads.
 
     Raises `DesignError` if the design still has free values, `MechanismError` if it is ill-posed,
     `PerformanceIndexError` if the vehicle cannot answer the index.
@@ -165,16 +171,23 @@ def evaluate(vehicle: Vehicle, index: Index, method: Method) -> Estimate:
         raise DesignError(
             f"The design still has free values: {free}. Fix them with with_values(...), or use optimise(...)."
         )
-    return method.estimate(vehicle, index)
+    with running_on(executor):
+        return method.estimate(vehicle, index)
 
 
 def evaluate_many(
-    vehicle: Vehicle, indices: Sequence[Index] | Index, values: Mapping[str, ArrayLike], method: Method
+    vehicle: Vehicle,
+    indices: Sequence[Index] | Index,
+    values: Mapping[str, ArrayLike],
+    method: Method,
+    *,
+    executor: Executor | None = None,
 ) -> Array:
     """Indices of many designs of one layout: an array (designs, indices).
 
     `values` gives for each free value of `vehicle` an array of one length (or one number for all designs); they
-    need not lie between its bounds. Where `evaluate` would not say `ok`, the value is nan here.
+    need not lie between its bounds. Where `evaluate` would not say `ok`, the value is nan here. An `executor` (of
+    `concurrent.futures`, of a dask client, of mpi4py) takes some of the designs at a time.
 
     Raises `DesignError` if a free value is missing, unknown, not positive or not finite, or if lengths differ; and
     what `evaluate` raises.
@@ -182,7 +195,17 @@ def evaluate_many(
     several = [indices] if not isinstance(indices, Sequence) else list(indices)
     for index in several:
         check_request(vehicle, index, method)
-    return method.estimate_many(vehicle, several, check_points(vehicle, values))
+    points = check_points(vehicle, values)
+    if executor is None:
+        return method.estimate_many(vehicle, several, points)
+    with running_on(executor):
+        rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
+        parts = np.array_split(rows, -(-len(rows) // _TOGETHER)) if len(rows) else [rows]
+        return np.concatenate(mapped(partial(_estimated, vehicle, several, tuple(points), method), parts))
+
+
+def _estimated(vehicle: Vehicle, indices: Sequence[Index], names: Sequence[str], method: Method, rows: Array) -> Array:
+    return method.estimate_many(vehicle, indices, dict(zip(names, rows.T, strict=True)))
 
 
 def check_request(vehicle: Vehicle, index: Index, method: object) -> None:

@@ -21,6 +21,7 @@ from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.linear import LinearSystem
 from inerter.systems.piecewise import PiecewiseSystem
+from inerter.work.running import mapped
 
 Array = NDArray[np.float64]
 LONGEST = 640  # [s] of a road
@@ -63,7 +64,7 @@ class OnRoads:
         """The realisations `first`, ..., `stop` - 1."""
         seeds = realisation_seeds(self.seed, first, stop)
         outputs = (*self.outputs, *self.frictions)
-        return list(pool.map(partial(run, self.system, self.way, outputs, self.question.filters), seeds))
+        return mapped(partial(run, self.system, self.way, outputs, self.question.filters), seeds, pool.map)
 
 
 @dataclass(frozen=True, eq=False)

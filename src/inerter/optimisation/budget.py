@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -20,6 +21,7 @@ from inerter.networks.transform import map_elements
 from inerter.units import format_quantity
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import running_on
 
 _POINTS = 16  # between which crossings are looked for
 _REACH = 1e3  # default bounds lie so many times below and above the present value
@@ -65,6 +67,7 @@ def budget(
     parameter: str,
     method: Method,
     bounds: tuple[float, float] | None = None,
+    executor: Executor | None = None,
 ) -> Budget:
     """The values of `parameter` for which `design` has a lower `index` than `baseline`.
 
@@ -72,7 +75,7 @@ def budget(
     the baseline has it too, it changes there alike: the crossing of two curves over a stiffness is found so. Values
     between `bounds` (SI; by default a thousandth to a thousand times the present value) are tried on a grid in
     logarithms, and each change of sign is found by Brent's method, on the same roads throughout. The standard error of
-    a crossing is that of the difference, over the slope.
+    a crossing is that of the difference, over the slope. An `executor` shares the roads, as that of `evaluate` does.
 
     Two crossings between neighbouring points of the grid are not seen: narrow the bounds where that may be.
 
@@ -93,7 +96,21 @@ def budget(
     check_request(design, index, method)
     check_request(baseline, index, method)
     chosen = _elements(design.mechanism(), parameter)
-    lower, upper = _bounds(chosen, parameter, bounds)
+    between = _bounds(chosen, parameter, bounds)
+    with running_on(executor):
+        return _budget(design, baseline, index, parameter, method, chosen, between)
+
+
+def _budget(
+    design: Vehicle,
+    baseline: Vehicle,
+    index: Index,
+    parameter: str,
+    method: Method,
+    chosen: list[Element],
+    between: tuple[float, float],
+) -> Budget:
+    lower, upper = between
     known: dict[float, Comparison] = {}
     fixed = _as_many_roads(design, index, method)
     same = None if _has(baseline, parameter) else evaluate(baseline, index, fixed)
@@ -124,7 +141,7 @@ def budget(
         standard_error=np.nan if end is None else end.standard_error,
         interval=(np.nan, np.nan) if end is None else end.interval,
         crossings=crossings,
-        bounds=(lower, upper),
+        bounds=between,
         status=_status(gaps, end, failed, parameter, chosen[0].unit, lower, upper),
         evaluations=len(known),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from numbers import Integral
 
@@ -19,6 +20,7 @@ from inerter.networks.elements import Free
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.threads import one_blas_thread
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import running_on
 
 Array = NDArray[np.float64]
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
@@ -70,7 +72,15 @@ class Optimum:
         return self.estimate.status
 
 
-def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, starts: int | None = None) -> Optimum:
+def optimise(
+    vehicle: Vehicle,
+    index: Index,
+    method: Method,
+    *,
+    seed: int = 0,
+    starts: int | None = None,
+    executor: Executor | None = None,
+) -> Optimum:
     """The free values of `vehicle` that make `index` smallest, within their bounds.
 
     A scrambled Sobol sequence in the logarithms of the values is searched for local minima; the best `starts` of them
@@ -79,7 +89,7 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
 
     A method that simulates is searched without derivatives (COBYQA), from the best two among the best linear design and
     the local optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the
-    best.
+    best. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) shares the random roads of such a method.
 
     Raises `DesignError` if nothing is free, if a free value has no effect in the method, or if `starts` is not a
     positive whole number; and what `evaluate` raises.
@@ -89,19 +99,23 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
     starts = 8 * len(free) if starts is None else starts
     if not isinstance(starts, Integral) or starts < 1 or not isinstance(seed, Integral) or seed < 0:
         raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
+    with one_blas_thread(), running_on(executor):
+        return _best(vehicle, index, method, free, int(seed), starts)
+
+
+def _best(vehicle: Vehicle, index: Index, method: Method, free: dict[str, Free], seed: int, starts: int) -> Optimum:
     lower = np.array([value.lower for value in free.values()])
     upper = np.array([value.upper for value in free.values()])
     objective = method.objective(vehicle, index)
     agreement = AGREEMENT if isinstance(objective, Differentiable) else COSTLY_AGREEMENT
-    with one_blas_thread():
-        linear = None if method.sees is Sees.NEITHER else _linear_optimum(vehicle, index, method, seed, starts)
-        if isinstance(objective, Differentiable):
-            first, evaluations = _starting_points(objective, lower, upper, starts, seed)
-            found = _searches(objective, first, lower, upper)
-        else:
-            first = [] if linear is None else [linear]
-            first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)
-            found, evaluations = _costly_searches(objective, _apart(first), lower, upper)
+    linear = None if method.sees is Sees.NEITHER else _linear_optimum(vehicle, index, method, seed, starts)
+    if isinstance(objective, Differentiable):
+        first, evaluations = _starting_points(objective, lower, upper, starts, seed)
+        found = _searches(objective, first, lower, upper)
+    else:
+        first = [] if linear is None else [linear]
+        first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)
+        found, evaluations = _costly_searches(objective, _apart(first), lower, upper)
     evaluations += sum(local.evaluations for local in found)
     best = min(found, key=lambda local: local.value, default=None)
     if best is None or not np.isfinite(best.value):
@@ -124,7 +138,7 @@ def optimise(vehicle: Vehicle, index: Index, method: Method, *, seed: int = 0, s
         starts=len(found),
         agreed=len(same) if found else 0,
         evaluations=evaluations,
-        seed=int(seed),
+        seed=seed,
         over_linear=over_linear,
     )
 

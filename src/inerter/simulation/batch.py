@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Collection, Mapping, Sequence
-from concurrent.futures import as_completed
+from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
+from functools import partial
 from itertools import count as count_from
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Unpack
@@ -24,11 +24,13 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import mapped, running_on, threads_here
 
 if TYPE_CHECKING:
     import xarray
 
 Matrix = NDArray[np.float64]
+_TOGETHER = 16  # designs on the same signal in one item of work, which is laid out once for them
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,15 +70,16 @@ def simulate_many(
     settled: float = 0.0,
     initial: Initial = "rest",
     jobs: int | None = None,
+    executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
     **driven: Unpack[DrivenMany],
 ) -> Batch:
     """Simulate every vehicle on every signal, and keep the mean squares of `outputs` from `settled` [s] on.
 
     What drives them are the keywords of `simulate`, here sequences of signals, which are gone through together: the
-    j-th run of a vehicle takes the j-th of each. `jobs` threads
-    (all cores by default) share the work; results do not depend on how many. Each calls `progress` with the part that
-    is done, one at a time. See `simulate` for the rest.
+    j-th run of a vehicle takes the j-th of each. `jobs` threads (all cores by default) share the work, or an
+    `executor` (of `concurrent.futures`, of a dask client, of mpi4py); results do not depend on it. `progress` is called
+    with the part that is done, never twice at the same time. See `simulate` for the rest.
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
     """
@@ -95,6 +98,10 @@ def simulate_many(
     knots, skipped = whole_steps(duration, step), round(settled / step)
     if not 0 <= skipped < knots:
         raise SimulationError(f"The part that does not count, {settled:g} s, must be shorter than {duration:g} s.")
+    if executor is not None:
+        same = {"outputs": names, "duration": duration, "step": step, "settled": settled, "initial": initial}
+        with running_on(executor):
+            return _handed_out(cars, groups, count, {**same, "speed": speed}, progress)
     squares = np.full((len(cars), count, len(names)), np.nan)
     events, status = np.zeros((len(cars), count), np.int64), np.empty((len(cars), count), dtype=object)
     systems: list[PiecewiseSystem | None] = [None] * len(cars)
@@ -126,7 +133,7 @@ def simulate_many(
                 with preparing:
                     progress(next(done) / len(runs))
 
-    workers = min(jobs or os.cpu_count() or 1, len(runs))
+    workers = min(jobs or threads_here(), len(runs))
     with threads(workers) as pool:
         for worker in as_completed([pool.submit(work) for _ in range(workers)]):
             worker.result()
@@ -134,6 +141,36 @@ def simulate_many(
     assert system is not None
     units = tuple(system.outputs[name].unit for name in names)
     return Batch(tuple(names), units, squares, events, tuple(tuple(row) for row in status))
+
+
+def _handed_out(
+    cars: Sequence[Vehicle],
+    groups: Mapping[str, Any],
+    count: int,
+    same: Mapping[str, Any],
+    progress: Callable[[float], None] | None,
+) -> Batch:
+    """The runs on what was said to work on: some designs at a time, on one signal."""
+    firsts = range(0, len(cars), _TOGETHER)
+    items = [
+        (cars[i : i + _TOGETHER], {name: [group[j]] for name, group in groups.items()})
+        for i in firsts
+        for j in range(count)
+    ]
+    found = mapped(partial(_some, same), items, progress=progress)
+    rows = [found[k * count : (k + 1) * count] for k in range(len(firsts))]
+    return Batch(
+        found[0].outputs,
+        found[0].units,
+        np.concatenate([np.concatenate([batch.mean_square for batch in row], axis=1) for row in rows]),
+        np.concatenate([np.concatenate([batch.events for batch in row], axis=1) for row in rows]),
+        tuple(tuple(batch.status[i][0] for batch in row) for row in rows for i in range(len(row[0].status))),
+    )
+
+
+def _some(same: Mapping[str, Any], item: tuple[Sequence[Vehicle], Mapping[str, Any]]) -> Batch:
+    cars, driven = item
+    return simulate_many(cars, **same, **driven)
 
 
 class _Tables:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
+
+from inerter.work.running import threads_here
 
 
 class _Local(threading.local):
@@ -20,7 +21,7 @@ _LOCAL = _Local()
 def threads(jobs: int | None = None) -> Iterator[ThreadPoolExecutor]:
     """A pool of so many threads (by default one for each core), whose simulations are given up if the block fails."""
     ending = threading.Event()
-    pool = ThreadPoolExecutor(jobs or os.cpu_count() or 1, initializer=_join, initargs=(ending,))
+    pool = ThreadPoolExecutor(jobs or threads_here(), initializer=_join, initargs=(ending,))
     try:
         yield pool
     except BaseException:

@@ -1,157 +1,224 @@
-"""Pieces of work in this process or over several.
+"""One way to run: pieces of work in this process, in processes of our own, or on any executor.
 
-A piece of work is a function and an item. Both can be pickled, and so can the result, which depends on nothing else: a
-piece may be run anywhere and in any order.
+An executor is what `concurrent.futures` says it is. What it is called to do can be pickled: a function that can be
+named, and plain data.
 """
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
-import threading
+import pickle
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager
-from functools import partial
-from multiprocessing.connection import wait as wait_for_end
-from multiprocessing.process import BaseProcess
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sized
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from contextlib import contextmanager, nullcontext
+from itertools import chain
+from typing import Any
 
 from inerter.errors import WorkError
-from inerter.writing import undisturbed
+from inerter.work import cluster
+from inerter.work.origin import origin
+from inerter.work.pieces import Cutter, Item, Piece, Result, Worked, worked
+from inerter.work.processes import Processes
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
+KILLS = 3  # processes that an item may end
 _SHORT = 3.0  # seconds: to start processes takes about as long
-_ASKED, _KILLED = 0.4, 10.0  # seconds that a process has to end, and to be gone where it must
+_AT_ONCE = 0.1  # seconds for which results of this process are kept back, to come together
+_KEPT = "What was computed is kept; continue with --resume"
+_GONE = f"the executor that the work was handed to has ended, or lost its connection. {_KEPT} when it is there again."
+_AHEAD = 2  # pieces for each process: the one that it works on, and the next
 
 
 class Pool:
-    """Up to `jobs` processes that work through one list after another, from when they are needed until the end.
+    """Where work is done, for one list of items after another: here, in up to `jobs` processes, or by `executor`.
 
-    They are spawned afresh (a fork of a threaded process may hang) and end when this one is gone, however it went. An
-    `executor` that is given works in their place, and goes on afterwards.
+    Processes are started when work takes long enough, and end with this. An `executor` that is given goes on
+    afterwards.
     """
 
-    def __init__(self, jobs: int, executor: Executor | None = None) -> None:
+    def __init__(self, jobs: int = 1, executor: Executor | None = None) -> None:
         self.jobs = jobs
-        self._own = executor is None
-        self._executor = executor
-        self._processes: set[BaseProcess] = set()
+        self._given = executor
+        self._own: Processes | None = None
+        if executor is not None:
+            cluster.check(executor)
 
     def __enter__(self) -> Pool:
         return self
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
-        if self._executor is None or not self._own:
-            return
-        self._executor.shutdown(wait=kind is None, cancel_futures=kind is not None)
-        if kind is not None:  # Ctrl-C: what is under way is not waited for
-            _end(self._processes)
-
-    def begin(self, work: Callable[[], object]) -> None:
-        """Have one of the processes do this first, whatever comes of it."""
-        if not self._alone:
-            self._submit([work])
+        if self._own is not None:  # Ctrl-C: what is under way is not waited for
+            self._own.shutdown(wait=kind is None, cancel_futures=kind is not None)
 
     @property
-    def _alone(self) -> bool:
-        return self._own and self.jobs == 1
+    def is_cluster(self) -> bool:
+        """Whether the work is done by the workers of a cluster."""
+        return self._given is not None and cluster.is_one(self._given)
+
+    @property
+    def slots(self) -> int:
+        """How many pieces can be worked on at the same time, as far as the executor tells."""
+        return self.jobs if self._given is None else cluster.slots(self._given)
+
+    @contextmanager
+    def of_this_machine(self) -> Iterator[Pool]:
+        """Itself if its processes are our own, else one of own processes: for work that reads or writes files."""
+        with nullcontext(self) if self._given is None else Pool(os.cpu_count() or 1) as near:
+            yield near
+
+    def begin(self, work: Callable[[], object]) -> None:
+        """Have one of our own processes do this first, whatever comes of it."""
+        if self._given is None and self.jobs > 1:
+            self._processes().submit(work)
+
+    def on_each_node(self, function: Callable[..., object], *args: object) -> bool:
+        """Call a function once on each machine of a cluster, and wait; False if there is none."""
+        return self._given is not None and cluster.on_each_node(self._given, function, *args)
 
     def spread(
         self,
         work: Callable[[Item], Result],
-        pending: Sequence[Item],
-        kind: Callable[[Item], object] | None = None,
+        items: Iterable[Item],
         here: Callable[[Item], Result] | None = None,
+        lost: Callable[[Item], Result] | None = None,
     ) -> Iterator[Result]:
-        """Results of `work` on each of `pending` as they are ready.
+        """Results of `work` on each of `items` as they are ready; see `batches`."""
+        for found in self.batches(work, items, here, lost):
+            yield from found
 
-        The first item of each kind is worked on in this process (by `here`, if that is another way to the same), so
-        that compiled code is in the cache before others look for it, and so are the next ones for as long as it would
-        take to start processes.
+    def batches(
+        self,
+        work: Callable[[Item], Result],
+        items: Iterable[Item],
+        here: Callable[[Item], Result] | None = None,
+        lost: Callable[[Item], Result] | None = None,
+    ) -> Iterator[list[Result]]:
+        """Results of `work` on each of `items` as they are ready, those that come together in one list.
 
-        Raises `WorkError` if a process is killed from outside.
+        Items are taken as they are needed. As long as it would take to start processes, they are worked on in
+        this one, by `here` if that is another way to the same.
+
+        A piece of work whose process ends is handed out again. If `KILLS` processes have ended on an item, its result
+        is what `lost` says. Where calls of this are abandoned, what is not begun is not begun any more.
+
+        Raises `WorkError` if an item ends its processes and `lost` is not given, if the executor itself has ended, or
+        if its processes have other sources or libraries than this one.
         """
-        firsts = {kind(pending[i]): i for i in reversed(range(len(pending)))}.values() if kind else ()
-        at_home = here or work
-        for i in firsts:
-            yield at_home(pending[i])
-        rest = [item for i, item in enumerate(pending) if i not in firsts]
-        start = time.monotonic()
-        while rest and (self._alone or (self._executor is None and time.monotonic() - start < _SHORT)):
-            yield at_home(rest.pop(0))
-        if not rest:
-            return
-        waiting = self._submit(partial(work, item) for item in rest)
+        left = len(items) if isinstance(items, Sized) else None
+        waiting = iter(items)
+        if self._given is None and (self.jobs == 1 or self._own is None):
+            for found in self._at_home(here or work, waiting):
+                left = None if left is None else left - len(found)
+                yield found
+        for first in waiting:  # there is more
+            yield from self._handed_out(work, Cutter(chain([first], waiting), left), lost)
+
+    def _at_home(self, work: Callable[[Item], Result], items: Iterator[Item]) -> Iterator[list[Result]]:
+        start = begun = time.monotonic()
+        found: list[Result] = []
+        for item in items:
+            found.append(work(item))
+            now = time.monotonic()
+            if now - begun > _AT_ONCE:
+                yield found
+                found, begun = [], now
+            if self.jobs > 1 and now - start > _SHORT:
+                break
+        if found:
+            yield found
+
+    def _handed_out(
+        self, work: Callable[[Item], Result], cutter: Cutter[Item], lost: Callable[[Item], Result] | None
+    ) -> Iterator[list[Result]]:
+        under_way: dict[Future[Any], Piece[Item]] = {}
         try:
-            while waiting:
-                done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+            while True:
+                self._submit(work, cutter, under_way)
+                if not under_way:
+                    return
+                done, _ = wait(under_way, return_when=FIRST_COMPLETED)
                 for future in done:
-                    yield future.result()
-        except BrokenExecutor:
-            raise WorkError(
-                "a process of this run was ended from outside, perhaps for want of memory. "
-                "What was computed is kept; continue with --resume, and fewer processes (-j 1)."
-            ) from None
+                    piece = under_way.pop(future)
+                    deaths, found, seconds = _result(future, (work, piece))
+                    if not deaths:
+                        cutter.learn(piece, seconds)
+                        yield found
+                    elif piece.alone and piece.deaths + deaths >= KILLS:
+                        yield [_lost(piece.items[0], lost)]
+                    else:
+                        cutter.back(piece, deaths)
         finally:
-            for future in waiting:
+            for future in under_way:
                 future.cancel()
 
-    def _submit(self, calls: Iterable[Callable[[], Result]]) -> set[Future[Result]]:
-        """Have the calls made; one that finds no process idle starts another, up to as many as there may be."""
-        if self._executor is None:
-            context = multiprocessing.get_context("spawn")
-            self._executor = ProcessPoolExecutor(self.jobs, context, initializer=_begin_worker)
-        others = set(multiprocessing.active_children()) - self._processes
-        with _deaf_to_interrupts():
-            submitted = {self._executor.submit(call) for call in calls}
-        self._processes |= set(multiprocessing.active_children()) - others
-        return submitted
-
-
-def _end(processes: Iterable[BaseProcess]) -> None:
-    """End processes, those that do not heed it by force, and wait for none of them for long."""
-    for end, patience in ((BaseProcess.terminate, _ASKED), (BaseProcess.kill, _KILLED)):
-        for process in processes:
-            end(process)
-        deadline = time.monotonic() + patience
-        for process in processes:
-            process.join(max(deadline - time.monotonic(), 0.0))
-
-
-@contextmanager
-def pooled(jobs: int | Executor | Pool) -> Iterator[Pool]:
-    """The process pool that is given, or one of so many processes, or with that executor, that ends with this."""
-    if isinstance(jobs, Pool):
-        yield jobs
-    else:
-        with Pool(os.cpu_count() or 1, jobs) if isinstance(jobs, Executor) else Pool(jobs) as pool:
-            yield pool
-
-
-@contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
-    """Processes started inside are born deaf to Ctrl-C, which is for the parent alone; there it waits for the end."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    with undisturbed():
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    def _submit(
+        self, work: Callable[[Item], Result], cutter: Cutter[Item], under_way: dict[Future[Any], Piece[Item]]
+    ) -> None:
+        executor = self._given or self._processes()
+        slots = max(self.slots, 1)
         try:
-            yield
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+            while len(under_way) < _AHEAD * slots and (piece := cutter.take(slots)):
+                under_way[executor.submit(worked, work, piece)] = piece
+            if not under_way and (piece := cutter.take_alone()):
+                under_way[executor.submit(worked, work, piece)] = piece
+        except (BrokenExecutor, RuntimeError):  # the latter: it was shut down
+            raise WorkError(_GONE) from None
+
+    def _processes(self) -> Processes:
+        if self._own is None:
+            self._own = Processes(self.jobs)
+        return self._own
 
 
-def _begin_worker() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+def _result(future: Future[Worked[Result]], call: object) -> tuple[int, list[Result], float]:
+    """How many processes have ended on a piece, its results if none, and how long they took [s]."""
+    try:
+        found = future.result()
+    except CancelledError:
+        raise WorkError(_GONE) from None
+    except Exception as error:
+        if isinstance(error, ModuleNotFoundError):
+            raise WorkError(
+                f"a process of the executor cannot load what it is to call ({error}). {cluster.INSTALL}"
+            ) from None
+        deaths = cluster.deaths(error)
+        if not deaths:
+            _check_sent(call)
+            raise
+        return deaths, [], 0.0
+    if found.origin != origin():
+        raise WorkError(
+            "a process of the executor has another version of inerter, or of the libraries that make its numbers. "
+            f"{cluster.INSTALL} {_KEPT}."
+        )
+    return 0, list(found.results), found.seconds
 
 
-def _end_with(sentinel: int) -> None:
-    wait_for_end([sentinel])
-    os._exit(1)
+def _check_sent(call: object) -> None:
+    """Raises `WorkError` if a call cannot be sent to another process."""
+    try:
+        pickle.dumps(call)
+    except Exception as error:
+        raise WorkError(
+            f"this work cannot be handed to other processes ({error}). What is your own must be a class or function of "
+            "a module, and not made inside a function; or leave the executor out."
+        ) from None
+
+
+def _lost(item: Item, lost: Callable[[Item], Result] | None) -> Result:
+    if lost is not None:
+        return lost(item)
+    raise WorkError(
+        f"{KILLS} processes have ended while they worked on the same piece, {str(item)[:80]}, perhaps for want of "
+        f"memory. {_KEPT}, and fewer processes (-j 1)."
+    )
+
+
+@contextmanager
+def pooled(jobs: int = 1, executor: Executor | Pool | None = None) -> Iterator[Pool]:
+    """The pool that is given, or one of so many processes, or with that executor, that ends with this."""
+    if isinstance(executor, Pool):
+        yield executor
+    else:
+        with Pool(jobs, executor) as pool:
+            yield pool

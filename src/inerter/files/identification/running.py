@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,7 @@ from inerter.records.record import Record
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
 from inerter.vehicle.rig import Rig
+from inerter.work.running import running_on
 
 Progress = Callable[[float], None]
 FIT, RESIDUALS = "fit.json", "residuals.csv"
@@ -110,12 +112,20 @@ def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> 
 
 
 def run_identification(
-    readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None = None
+    readings: Sequence[Reading],
+    request: IdentificationRequest,
+    progress: Progress | None = None,
+    executor: Executor | None = None,
 ) -> Identified:
-    """Fit the model, or choose one, to the records.
+    """Fit the model, or choose one, to the records; an `executor` shares the work.
 
     Raises what `identify` raises.
     """
+    with running_on(executor):
+        return _identified(readings, request, progress)
+
+
+def _identified(readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None) -> Identified:
     records = [r.used for r in readings]
     settings = dict(request.settings)
     title = request.title or ", ".join(dict.fromkeys(r.source for r in records))

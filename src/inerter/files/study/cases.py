@@ -17,6 +17,7 @@ from inerter.optimisation.threads import one_blas_thread
 from inerter.systems.descriptor import is_held_by_springs
 from inerter.systems.graph import linear_graph
 from inerter.vehicle.mechanism import Mechanism
+from inerter.work.pool import KILLS
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
@@ -84,8 +85,17 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
         with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return _run(study, case, threads)
     except FAILURES as error:
-        failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
-        return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, str(error))
+        return _failed(study, case, str(error))
+
+
+def lost_case(study: Study, case: Case) -> Outcome:
+    """What is known of a case whose processes have ended, each time that it was tried."""
+    return _failed(study, case, f"{KILLS} processes ended while they worked on it, perhaps for want of memory")
+
+
+def _failed(study: Study, case: Case, why: str) -> Outcome:
+    failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
+    return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, why)
 
 
 def design_notes(study: Study, mechanism: Mechanism) -> list[str]:

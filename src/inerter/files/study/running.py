@@ -16,7 +16,7 @@ from inerter.errors import StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.study import journal as journals
 from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
-from inerter.files.study.cases import Case, Outcome, cases, run_case
+from inerter.files.study.cases import Case, Outcome, cases, lost_case, run_case
 from inerter.files.study.checking import check_study, kernels
 from inerter.files.study.results import dataset, summary_csv
 from inerter.files.study.study import Study, write_resolved
@@ -63,7 +63,8 @@ def run_study(
     study: Study,
     folder: str | Path | Results,
     *,
-    jobs: int | Executor | Pool = 1,
+    jobs: int = 1,
+    executor: Executor | Pool | None = None,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, outcome: None,
@@ -72,9 +73,10 @@ def run_study(
 ) -> StudyResult:
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
 
-    `folder` may be a part of results that are being written. `jobs` is a number of processes, or an executor (of
-    `concurrent.futures`) or a pool, which goes on afterwards. With more than one process, a script that calls this
-    needs the line `if __name__ == "__main__":`, because processes are started afresh and import it. `progress` is told
+    `folder` may be a part of results that are being written. `jobs` is a number of processes of our own: with more
+    than one, a script that calls this needs the line `if __name__ == "__main__":`, because processes are started
+    afresh and import it. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) works in their place, and
+    goes on afterwards. Results do not depend on it. `progress` is told
     how many designs and budgets are done, how many there are, and the last one. `finish` may add files to the results,
     in the folder that it is given. What the work needs of compiled code is compiled first, if it is not yet;
     `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
@@ -84,11 +86,11 @@ def run_study(
     stay until these are whole.
 
     Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, if it holds what is not
-    from this study, or if another run is writing to it, and then nothing has been changed; `WorkError` if a process is
-    killed or the disk is full.
+    from this study, or if another run is writing to it, and then nothing has been changed; `WorkError` if the disk is
+    full, or an executor has ended, or its processes have another version.
     """
     check_study(study)
-    with _into(study, folder, resume, force) as results, pooled(jobs) as pool:
+    with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
         done, budgets, computed = _computed(study, results, pool, progress, compiling)
         found = tuple(budgets[case] for case in budget_cases(study))
         data = dataset(study, done)
@@ -124,7 +126,7 @@ def _computed(
     everything, further = cases(study), budget_cases(study)
     pending = [case for case in everything if case not in done]
     if pending:
-        prepare(kernels(study), compiling)
+        _prepare(pool, study, compiling)
     total, computed = len(everything) + len(further), len(pending)
     progress(len(done) + len(budgets), total, None)
     results.list_journal(journals.NAME)
@@ -143,4 +145,13 @@ def _computed(
 
 def _outcomes(study: Study, pending: Sequence[Case], pool: Pool) -> Iterator[Outcome]:
     here = partial(run_case, study, threads=pool.jobs)
-    return pool.spread(partial(run_case, study), pending, lambda case: case.index, here)
+    return pool.spread(partial(run_case, study), pending, here, partial(lost_case, study))
+
+
+def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:
+    """Compile what the work calls, where it is done, before several processes would do so at once."""
+    wanted = kernels(study)
+    if pool.is_cluster and compiling is not None:
+        compiling("on each machine of the cluster", 1, 1)
+    if not pool.on_each_node(prepare, wanted):
+        prepare(wanted, compiling)

@@ -119,7 +119,8 @@ def reproduce(
     folder: Path,
     *,
     only: Sequence[str] = (),
-    jobs: int | Executor | Pool = 1,
+    jobs: int = 1,
+    executor: Executor | Pool | None = None,
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda what, done, total: None,
@@ -139,11 +140,11 @@ def reproduce(
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
     intent = Intent(folder, "reproduce", _OWN, resume=resume, force=force)
-    with claimed(intent) as results, pooled(jobs) as pool:
-        if needed and wanted > {"linear"} and not resume:
+    with claimed(intent) as results, pooled(jobs, executor) as pool:
+        if needed and wanted > {"linear"} and not resume and not pool.on_each_node(_warm_up):
             pool.begin(_warm_up)
         studies = {
-            name: run_study(study(name), results.within(name), jobs=pool, progress=_named(progress, name))
+            name: run_study(study(name), results.within(name), executor=pool, progress=_named(progress, name))
             for name in needed
         }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}

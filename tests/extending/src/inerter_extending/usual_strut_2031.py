@@ -34,13 +34,14 @@ def recompute(
     *,
     only: tuple[str, ...],
     finish: Callable[..., object],
-    jobs: Any = 1,
+    jobs: int = 1,
+    executor: Any = None,
     resume: bool = False,
     force: bool = False,
     progress: Callable[[str, int, int], None] = lambda what, done, total: None,
 ) -> Found:
     intent = it.Intent(folder, "reproduce", ("table.csv", "report.html"), resume=resume, force=force)
-    with it.claimed(intent) as results, it.pooled(jobs) as pool:
+    with it.claimed(intent) as results, it.pooled(jobs, executor) as pool:
         table: dict[float, float] = {}
         for damping, value in pool.spread(work, list(PRINTED)):
             table[damping] = value

@@ -57,13 +57,13 @@ _METHOD_TITLES = {
 }
 
 
-def write_reproduction(found: Reproduction, folder: Path, jobs: int | Executor | Pool = 1) -> None:
+def write_reproduction(found: Reproduction, folder: Path, executor: Executor | Pool | None = None) -> None:
     """Write the tables as CSV, the figures, and a page that shows all of it, into `folder`."""
     for name, rows in tables(found).items():
         if rows:
             write_text(folder / f"{name}.csv", csv_text(rows))
-    with pooled(jobs) as pool:
-        list(pool.spread(call, _figures(found, folder / FIGURES)))
+    with pooled(executor=executor) as pool, pool.of_this_machine() as near:  # drawings are files here
+        list(near.spread(call, _figures(found, folder / FIGURES)))
     write_text(folder / REPORT, _page(found, folder))
 
 

@@ -1,0 +1,156 @@
+"""What is particular to executors that others have made, above all those of dask.distributed."""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import BrokenExecutor, Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+from inerter.errors import StudyError, WorkError
+from inerter.work.origin import VERSION, origin
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+INSTALL = "Install the same versions in all places."
+_FRESH = 2.0  # seconds for which a number of workers is taken as it was
+_ANSWER = "10s"  # within which a scheduler must
+_FIRST = 60.0  # seconds within which the first worker must be there
+_counted: WeakKeyDictionary[Executor, tuple[float, int]] = WeakKeyDictionary()
+
+
+@dataclass(frozen=True)
+class Place:
+    """What a worker of a cluster is."""
+
+    host: str
+    threads: int
+
+
+def is_one(executor: Executor) -> bool:
+    """Whether an executor is that of a cluster."""
+    return _client(executor) is not None
+
+
+def slots(executor: Executor) -> int:
+    """How many calls an executor makes at the same time, as far as it tells."""
+    client = _client(executor)
+    if client is None:
+        told = getattr(executor, "num_workers", None) or getattr(executor, "_max_workers", None)
+        return int(told or os.cpu_count() or 1)
+    when, count = _counted.get(executor, (-_FRESH, 0))
+    if time.monotonic() - when >= _FRESH:
+        count = sum(client.nthreads().values())
+        _counted[executor] = time.monotonic(), count
+    return count
+
+
+def deaths(error: Exception) -> int:
+    """How many processes have ended on a call that failed with this; 0 if it failed by itself."""
+    if isinstance(error, BrokenExecutor):
+        return 1
+    killed = getattr(sys.modules.get("distributed"), "KilledWorker", None)
+    return int(error.allowed_failures) + 1 if killed and isinstance(error, killed) else 0
+
+
+def check(executor: Executor) -> None:
+    """Raises `WorkError` if the workers of a cluster do not answer, or would not give the numbers of this process."""
+    client = _client(executor)
+    if client is None:
+        return
+    if not client.nthreads():
+        try:
+            client.wait_for_workers(1, timeout=_FIRST)
+        except TimeoutError:
+            raise WorkError(
+                f"the scheduler has no workers, and none came within {_FIRST:.0f} s. Start some, such as: "
+                f"dask worker {client.scheduler_info()['address']} --nthreads 1"
+            ) from None
+    for address, answer in client.run(told, on_error="return").items():
+        if isinstance(answer, BaseException):
+            raise WorkError(f"the worker {address} cannot load this package ({answer}). {INSTALL}")
+        version, numerics = answer
+        if version != VERSION:
+            raise WorkError(f"the worker {address} has inerter {version}, and this is {VERSION}. {INSTALL}")
+        if numerics != origin():
+            raise WorkError(
+                f"the worker {address} has other sources of inerter {version}, or other libraries that make the "
+                f"numbers (numpy, scipy, numba). {INSTALL}"
+            )
+
+
+def told() -> tuple[str, str]:
+    """What a worker says of itself: its version of this package, and what makes its numbers."""
+    return VERSION, origin()
+
+
+def on_each_node(executor: Executor, function: Callable[..., object], *args: object) -> bool:
+    """Call a function once on each machine of a cluster, and wait; False for an executor that is none."""
+    client = _client(executor)
+    if client is None:
+        return False
+    first = {info["host"]: address for address, info in reversed(_workers(client).items())}
+    client.gather([client.submit(function, *args, workers=[w], pure=False) for w in first.values()])
+    return True
+
+
+def places(executor: Executor) -> tuple[Place, ...]:
+    """The workers of a cluster; none for another executor."""
+    client = _client(executor)
+    found = _workers(client).values() if client is not None else ()
+    return tuple(Place(info["host"], info["nthreads"]) for info in found)
+
+
+@contextmanager
+def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
+    """An executor on the cluster of a scheduler that is already there, by its address or the file that it wrote.
+
+    `tls` are fields of dask's `Security`.
+
+    Raises `StudyError` for an address that is none, `WorkError` if dask is not installed or the scheduler does not
+    answer.
+    """
+    try:
+        from distributed import Client, Security  # noqa: PLC0415 - heavy, and an extra
+        from distributed.comm import get_address_host_port  # noqa: PLC0415
+    except ImportError:
+        raise WorkError('for a cluster install dask too: pip install "inerter[cluster]"') from None
+    try:
+        get_address_host_port(address or "host:1")
+    except ValueError as error:
+        raise StudyError(f'Got the scheduler "{address}" ({error}); expected such as tcp://HOST:8786.') from None
+    if file is not None and not file.is_file():
+        raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
+    security = Security(require_encryption=True, **tls) if tls else None
+    where = {"address": address} if file is None else {"scheduler_file": str(file)}
+    for name in tuple(logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is told by errors
+    try:
+        client = Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
+    except Exception as error:  # of sockets, of TLS, of addresses that are none
+        raise WorkError(
+            f"no scheduler of dask answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "
+            "is this its address, and does it want TLS?"
+        ) from None
+    with client:
+        yield client.get_executor(pure=False)
+
+
+def _workers(client: Client) -> dict[str, dict[str, Any]]:
+    return dict(client.scheduler_info(n_workers=-1)["workers"])
+
+
+def _client(executor: Executor) -> Client | None:
+    """The client of an executor of dask; None for another. `get_executor` gives no public way back to it."""
+    distributed = sys.modules.get("distributed")
+    client = getattr(executor, "_client", None)
+    return client if distributed is not None and isinstance(client, distributed.Client) else None

@@ -1,0 +1,135 @@
+"""Processes of our own, as an executor."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from multiprocessing.connection import wait as wait_for_end
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+from inerter.errors import WorkError
+from inerter.writing import undisturbed
+
+_ASKED, _KILLED = 0.4, 10.0  # seconds that a process has to end, and to be gone where it must
+
+
+@dataclass(eq=False)
+class _Single:
+    """An executor of one process, and what it was given and has not done yet."""
+
+    executor: ProcessPoolExecutor
+    under_way: set[Future[Any]] = field(default_factory=set)
+    broken: bool = False
+
+    def submit(self, call: Callable[..., Any], *args: object) -> Future[Any]:
+        future = self.executor.submit(call, *args)
+        self.under_way.add(future)
+        future.add_done_callback(self._done)
+        return future
+
+    def _done(self, future: Future[Any]) -> None:
+        self.under_way.discard(future)
+        if not future.cancelled() and isinstance(future.exception(), BrokenExecutor):
+            self.broken = True
+
+
+class Processes(Executor):
+    """Up to `jobs` processes, started when they are needed, and ended when this process is gone, however it went.
+
+    Each is an executor of its own, so that the end of one costs what it was doing, and no more; another takes its
+    place. They are spawned afresh: a fork of a threaded process may hang.
+    """
+
+    def __init__(self, jobs: int) -> None:
+        self.jobs = jobs
+        self._singles: list[_Single] = []
+        self._processes: set[BaseProcess] = set()
+
+    def submit(self, call: Callable[..., Any], /, *args: object, **keywords: object) -> Future[Any]:
+        """Have a call made by the process that has least to do.
+
+        Raises `WorkError` if no process can be started.
+        """
+        assert not keywords
+        self._singles = [single for single in self._singles if not single.broken]
+        least = min(self._singles, key=lambda single: len(single.under_way), default=None)
+        if least is None or (least.under_way and len(self._singles) < self.jobs):
+            least = self._started()
+        try:
+            return self._watched(least, call, *args)
+        except BrokenExecutor:
+            least.broken = True
+            return self.submit(call, *args)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End all processes: when they have done what they do, or at once, those that do not heed it by force."""
+        for single in self._singles:
+            single.executor.shutdown(wait=wait, cancel_futures=cancel_futures)
+        if not wait:
+            _end(self._processes)
+        self._singles = []
+
+    def _started(self) -> _Single:
+        context = multiprocessing.get_context("spawn")
+        single = _Single(ProcessPoolExecutor(1, context, initializer=_begin_worker))
+        if not self._processes:  # the first: whether any can be started
+            try:
+                self._watched(single, os.getpid).result()
+            except BrokenExecutor:
+                raise WorkError(
+                    "no process can be started. A script that asks for several needs the line "
+                    '`if __name__ == "__main__":` before its first call, because processes are started afresh and '
+                    "import it; or ask for one process (jobs=1)."
+                ) from None
+        self._singles.append(single)
+        return single
+
+    def _watched(self, single: _Single, call: Callable[..., Any], *args: object) -> Future[Any]:
+        others = set(multiprocessing.active_children()) - self._processes
+        with _deaf_to_interrupts():
+            future = single.submit(call, *args)
+        self._processes |= set(multiprocessing.active_children()) - others
+        return future
+
+
+def _end(processes: Iterable[BaseProcess]) -> None:
+    """End processes, those that do not heed it by force, and wait for none of them for long."""
+    for end, patience in ((BaseProcess.terminate, _ASKED), (BaseProcess.kill, _KILLED)):
+        for process in processes:
+            end(process)
+        deadline = time.monotonic() + patience
+        for process in processes:
+            process.join(max(deadline - time.monotonic(), 0.0))
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Processes started inside are born deaf to Ctrl-C, which is for the parent alone; there it waits for the end."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    with undisturbed():
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin_worker() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait_for_end([sentinel])
+    os._exit(1)

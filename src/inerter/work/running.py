@@ -1,0 +1,90 @@
+"""What long work runs on: said once, where it begins, and asked where it comes apart.
+
+A function of the library that takes long has an argument `executor`; what it calls, and what that calls, need not pass
+it on.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Generic, TypeVar
+
+from inerter.work.pieces import THREADS
+from inerter.work.pool import Pool, pooled
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+_POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
+
+
+@contextmanager
+def running_on(executor: Executor | Pool | None) -> Iterator[None]:
+    """Work inside that comes apart runs on this; on what is said already, or on threads of this process, without."""
+    if executor is None:
+        yield
+        return
+    with pooled(executor=executor) as pool:
+        before = _POOL.set(pool)
+        try:
+            yield
+        finally:
+            _POOL.reset(before)
+
+
+def pool_here() -> Pool | None:
+    """What work runs on, if that was said."""
+    return _POOL.get()
+
+
+def threads_here() -> int:
+    """How many threads may be used: one in a process that works on a piece among others, else as many as cores."""
+    return THREADS.get() or os.cpu_count() or 1
+
+
+def mapped(
+    work: Callable[[Item], Result],
+    items: Sequence[Item],
+    otherwise: Callable[[Callable[[Item], Result], Sequence[Item]], Iterable[Result]] = map,
+    progress: Callable[[float], None] | None = None,
+) -> list[Result]:
+    """Results of `work` on each of `items`, in their order, on what was said to work on; else by `otherwise`.
+
+    Where something was said, `work` and `items` can be pickled, and `progress` is told the part that is done.
+    """
+    pool = pool_here()
+    if pool is None or len(items) < 2:
+        return list(otherwise(work, items))
+    found: dict[int, Result] = {}
+    for number, result in pool.spread(_Numbered(work), list(enumerate(items))):
+        found[number] = result
+        if progress is not None:
+            progress(len(found) / len(items))
+    return [found[number] for number in range(len(items))]
+
+
+@dataclass(frozen=True)
+class _Numbered(Generic[Item, Result]):
+    """Work on an item that has a number, which its result keeps."""
+
+    work: Callable[[Item], Result]
+
+    def __call__(self, numbered: tuple[int, Item]) -> tuple[int, Result]:
+        number, item = numbered
+        return number, self.work(item)
+
+
+def over_threads(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+    """Results of `work` on each of `items`, in their order, over the threads of this process."""
+    count = threads_here()
+    return list(map(work, items) if count == 1 else _threads(count).map(work, items))
+
+
+@lru_cache(maxsize=4)
+def _threads(count: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(count)

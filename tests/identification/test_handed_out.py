@@ -1,0 +1,53 @@
+"""An identification on other processes is the same to the last digit; a problem remembers nothing of what was asked."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import inerter as it
+from inerter.files.rig.loading import load_rig
+from inerter.identification.identify import solution_of
+from inerter.identification.models import MODELS
+from inerter.identification.options import FitOptions
+from inerter.identification.problem import FitProblem
+from inerter.records.record import Record
+from inerter.work.processes import Processes
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(scope="module")
+def record() -> Record:
+    request = load_rig(EXAMPLES / "rig_fit.toml")
+    return replace(request, duration=0.6).run()
+
+
+@pytest.fixture(scope="module")
+def problem(record: Record) -> FitProblem:
+    return solution_of(record, MODELS["ball-screw"], FitOptions(starts=8), None).problem
+
+
+def test_an_identification_on_other_processes_is_the_same(record: Record) -> None:
+    with Processes(2) as processes:
+        there = it.identify(record, "ball-screw", starts=8, executor=processes)
+    here = it.identify(record, "ball-screw", starts=8)
+    assert repr(there.parameters) == repr(here.parameters)
+    assert there.simulations == here.simulations > 100
+    assert there.misfit == here.misfit
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-16, 1e-10, 0.5])
+def test_residuals_do_not_depend_on_what_was_asked_before(problem: FitProblem, gap: float) -> None:
+    """A gap beyond what can be computed with, which a search comes by, is refused when such a system is made first."""
+    lower, upper = problem.space.bounds
+    point = np.where(np.array(problem.space.names) == "gap", gap, 0.5 * (lower + upper))
+    fresh: FitProblem = pickle.loads(pickle.dumps(problem))
+    assert not fresh.systems
+    assert fresh.residual(point).tobytes() == problem.residual(point).tobytes()
+    assert fresh.residual(point).tobytes() == problem.residual(point).tobytes()
+    assert all(force is not None for force in fresh.forces(point))

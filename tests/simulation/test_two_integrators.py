@@ -67,7 +67,7 @@ def differences(vehicle, inputs: dict) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize("chunk", sampled(range(CHUNKS), range(0, CHUNKS, 6)))
+@pytest.mark.parametrize("chunk", sampled(range(CHUNKS), [0, 12, 18]))
 def test_the_difference_vanishes_with_the_step_of_time_stepping(chunk):
     orders, done = [], 0
     for seed in count(1000 * chunk):

@@ -79,7 +79,7 @@ def start(arguments: list[str], held: int | None = None) -> subprocess.Popen[byt
 
 
 def wait_for_cases(process: subprocess.Popen[bytes], journal: Path, count: int) -> None:
-    deadline = time.monotonic() + 120.0
+    deadline = time.monotonic() + 250.0
     while len(lines(journal)) < 1 + count:
         assert process.poll() is None, process.communicate()[1].decode()
         assert time.monotonic() < deadline
@@ -161,7 +161,7 @@ def test_interrupted_sweep_resumes_to_the_same_bytes(
 def test_workers_end_with_their_parent(tmp_path: Path) -> None:
     process = start(["run", str(write(tmp_path, points=1000)), "-o", str(tmp_path / "out"), "-j", "2"])
     children: list[int] = []
-    deadline = time.monotonic() + 120.0
+    deadline = time.monotonic() + 250.0
     while len(children) < 2:  # processes are started once the work is known to be long
         assert process.poll() is None
         assert time.monotonic() < deadline

@@ -52,7 +52,7 @@ def test_the_right_elements_and_no_others(truth, seed, others):
     assert found.notes[0].startswith(f"{truth}: ")
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(1200)
 def test_an_element_too_many_is_seldom_chosen():
     """Where the parts predict alike, the scatter of one record decides: one record in eight may, as with seed 5."""

@@ -93,7 +93,7 @@ def test_gain_and_delay_of_the_sensor(kind):
 
 
 def test_a_reversed_load_cell_is_noticed():
-    turned = it.identify([fit_test(seed=6, sensors={"reversed": True}, duration=1.0)], BALL_SCREW, seed=0, starts=16)
+    turned = it.identify([fit_test(seed=6, sensors={"reversed": True}, duration=1.0)], BALL_SCREW, seed=0, starts=8)
     assert any("reversed" in note for note in turned.notes)
     assert turned.parameters["b"].value == pytest.approx(113.0, rel=0.02)
 

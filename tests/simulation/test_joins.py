@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from campaigns import sampled
+from campaigns import in_parts, sampled
 from members import Member, member
 from strategies import paper_half_car, paper_quarter_car
 
@@ -94,8 +94,7 @@ def test_two_parts_are_the_whole(chunk: int) -> None:
     assert sum(f is not None for f in found.values()) >= 6
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("chunk", range(20))
+@pytest.mark.parametrize("chunk", in_parts(range(20), 10))
 def test_two_parts_are_the_whole_in_many_members(chunk: int) -> None:
     found = {seed: joined(seed) for seed in range(1000 * chunk, 1000 * chunk + 11)}
     print("worst", max(f for f in found.values() if f is not None))

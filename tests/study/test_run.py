@@ -126,7 +126,7 @@ def test_resolved_study_gives_the_same_results(tmp_path: Path) -> None:
     assert (tmp_path / "one" / "summary.csv").read_bytes() == (tmp_path / "two" / "summary.csv").read_bytes()
 
 
-INTERRUPTED = [(how, *size) for how in (signal.SIGINT, signal.SIGKILL) for size in ((8, 1), (100, 2))]
+INTERRUPTED = [(how, *size) for how in (signal.SIGINT, signal.SIGKILL) for size in ((8, 1), (60, 2))]
 
 
 @pytest.mark.parametrize(("how", "points", "processes"), sampled(INTERRUPTED, INTERRUPTED[:1]))
@@ -159,7 +159,7 @@ def test_interrupted_sweep_resumes_to_the_same_bytes(
 
 @pytest.mark.campaign
 def test_workers_end_with_their_parent(tmp_path: Path) -> None:
-    process = start(["run", str(write(tmp_path, points=1000)), "-o", str(tmp_path / "out"), "-j", "2"])
+    process = start(["run", str(write(tmp_path, points=400)), "-o", str(tmp_path / "out"), "-j", "2"])
     children: list[int] = []
     deadline = time.monotonic() + 250.0
     while len(children) < 2:  # processes are started once the work is known to be long

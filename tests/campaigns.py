@@ -22,9 +22,12 @@ def sampled(members: Iterable[Any], always: Collection[Any]) -> list[Any]:
 
 
 def in_parts(parts: Sequence[Any], kept: int) -> list[Any]:
-    """Parameters of which about so many, evenly spread, are a campaign, and the others a marathon."""
+    """Parameters of which about so many, evenly spread, are a campaign, and the others a marathon; as `sampled`."""
     every = -(-len(parts) // kept)
     return [
-        pytest.param(part, marks=pytest.mark.marathon if i % every else pytest.mark.campaign)
+        pytest.param(
+            *(part if isinstance(part, tuple) else (part,)),
+            marks=pytest.mark.marathon if i % every else pytest.mark.campaign,
+        )
         for i, part in enumerate(parts)
     ]

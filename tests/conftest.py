@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import os
 from importlib import import_module
 from pkgutil import iter_modules
 from types import ModuleType
@@ -13,6 +15,7 @@ from inerter import kernels
 from inerter.kernels.declare import Kernel
 from inerter.kernels.prepare import prepare
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have a process for each core already
 settings.register_profile(
     "reproducible",
     derandomize=True,
@@ -36,6 +39,12 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Those that are allowed more time than others come first, so that none is left to run alone at the end."""
     items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """What is loaded by now stays to the end: to look through it for what can be freed takes long."""
+    gc.collect()
+    gc.freeze()
 
 
 def _imported(name: str) -> ModuleType:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field, make_dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import field, make_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ import inerter as it
 from inerter import rows
 from inerter.errors import MechanismError, RowError, StudyError, UnknownRowError
 from inerter.fields import fields_of, mounts_of
+from inerter.files.common.signal_kinds import unit_of
 from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study, write_resolved
 from inerter.indices.registry import amplitude_of, index_settings
@@ -164,6 +165,32 @@ def test_free_values_of_all_mounts_are_fixed_together(model: str) -> None:
     assert vehicle.with_values({"c": 1e3}).free_values() == {}
 
 
+def like_a_car(title: str, *given: Any, **attributes: Any) -> type:
+    return make_dataclass(title, given, bases=(it.QuarterCar,), namespace={"key": "sled", **attributes}, frozen=True)
+
+
+@pytest.mark.parametrize(
+    ("forces", "words"),
+    [
+        ({"pull": "kg"}, r"Pulled has a force 'pull' in kg; a signal is in m, N, N m\."),
+        ({"sprung_force": "N m"}, r"Pulled has 'sprung_force' in N m, and another vehicle in N\."),
+    ],
+)
+def test_a_force_has_one_unit_and_one_that_a_signal_has(forces: dict[str, str], words: str, added: Added) -> None:
+    added(it.VEHICLES, like_a_car("Pulled", forces=forces))
+    with pytest.raises(RowError, match=words):
+        unit_of("road")
+
+
+def test_a_vehicle_has_no_quantity_named_as_the_key_that_names_it(added: Added, tmp_path: Path) -> None:
+    given = ("model", float, field(metadata=it.quantity("kg", "A mass.", "1 kg")))
+    added(it.VEHICLES, like_a_car("Named", given))
+    path = tmp_path / "study.toml"
+    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
+    with pytest.raises(RowError, match=r"sled has a quantity 'model', a key that \[vehicle\] has already"):
+        load_study(path)
+
+
 # --- indices ---
 
 
@@ -193,49 +220,43 @@ def test_a_setting_without_its_index_is_told(symbol: str, tmp_path: Path) -> Non
             load_study(path)
 
 
-@pytest.fixture
-def seeded() -> Iterator[type]:
-    @dataclass(frozen=True)
-    class Seeded:
-        seed: float = field(default=1.0, metadata=it.quantity("m", "A length.", "1 m"))
-        symbol = "X2"
-        title = unit = response = "x"
-
-        def question(self, mechanism: it.Mechanism) -> it.Question:
-            raise NotImplementedError
-
-    yield it.INDICES.add(Seeded)
-    it.INDICES.remove(Seeded)
-
-
-@pytest.mark.usefixtures("seeded")
-def test_a_setting_takes_no_key_of_the_section(tmp_path: Path) -> None:
-    path = tmp_path / "study.toml"
-    path.write_text(study_text('indices = ["J1"]\nseed = 3'), encoding="utf-8")
-    with pytest.raises(RowError, match=r"setting 'seed', a key that \[study\] has already"):
-        load_study(path)
+Added = Callable[[Rows[Any], type], None]
 
 
 @pytest.fixture
-def clashing() -> Iterator[type]:
-    @dataclass(frozen=True)
-    class Clashing:
-        high_pass: float = field(default=1.0, metadata=it.quantity("m", "A length.", "1 m"))
-        symbol = "X1"
-        title = unit = response = "x"
+def added() -> Iterator[Added]:
+    """Adds rows to tables, for one test."""
+    there: list[tuple[Rows[Any], type]] = []
 
-        def question(self, mechanism: it.Mechanism) -> it.Question:
-            raise NotImplementedError
+    def add(table: Rows[Any], kind: type) -> None:
+        there.append((table, table.add(kind)))
 
-    yield it.INDICES.add(Clashing)
-    it.INDICES.remove(Clashing)
+    yield add
+    for table, kind in there:
+        table.remove(kind)
 
 
-@pytest.mark.usefixtures("clashing")
-def test_one_key_has_one_unit(tmp_path: Path) -> None:
+def index_with(setting: str) -> type:
+    """An index that has this setting, in m."""
+    given = (setting, float, field(default=1.0, metadata=it.quantity("m", "A length.", "1 m")))
+    words = dict.fromkeys(("title", "unit", "response", "question"), "x")
+    return make_dataclass("Other", [given], namespace={"symbol": "X1", **words}, frozen=True)
+
+
+@pytest.mark.parametrize(
+    ("setting", "line", "words"),
+    [
+        ("seed", "seed = 3", r"setting 'seed', a key that \[study\] has already"),
+        ("high_pass", "", r"X1 has a setting 'high_pass' in m, and another index has it in rad/s"),
+    ],
+)
+def test_a_setting_has_a_key_of_its_own_or_the_unit_of_its_namesake(
+    setting: str, line: str, words: str, added: Added, tmp_path: Path
+) -> None:
+    added(it.INDICES, index_with(setting))
     path = tmp_path / "study.toml"
-    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
-    with pytest.raises(RowError, match=r"X1 has a setting 'high_pass' in m, and another index has it in rad/s"):
+    path.write_text(study_text(f'indices = ["J1"]\n{line}'), encoding="utf-8")
+    with pytest.raises(RowError, match=words):
         load_study(path)
 
 

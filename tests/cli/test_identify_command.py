@@ -173,7 +173,7 @@ def rattled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     device = Device(b=113.0, f=10.0, ks=1e6, cs=3200.0)
     motion = Tones((2e-3, 4e-4), (1.5, 4.0), (0.0, 1.0))
     for name, sensors in {"late": Sensors(displacement_late=4e-3), "heavy": Sensors(fixture=6.0)}.items():
-        it.write_record(it.Record(*measured(device, motion, sensors, 2.0, 1)), folder / f"{name}.csv")
+        it.write_record(it.Record(*measured(device, motion, sensors, 1.2, 1)), folder / f"{name}.csv")
     return folder
 
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib
 import pytest
 from campaigns import sampled
 
@@ -68,7 +69,7 @@ def test_check_loads_nothing_that_only_the_work_needs(study: str) -> None:
 
 
 def test_an_import_compiles_nothing_and_starts_nothing(tmp_path: Path) -> None:
-    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "MPLCONFIGDIR": matplotlib.get_cachedir()}
     done = subprocess.run(
         [sys.executable, "-c", EVERYTHING], capture_output=True, text=True, env=environment, check=True, timeout=280
     )

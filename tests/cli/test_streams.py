@@ -11,7 +11,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from campaigns import sampled
+from campaigns import in_parts, sampled
 from study_text import study_text
 
 from inerter.cli.main import call
@@ -51,10 +51,12 @@ ENDS = {
 
 
 RUN, SIMULATE = "run study.toml -j 1 -o out", "simulate rattle.toml -o out"
+ENDED_MOTIONS = list(product(ENDS.values(), (SIMULATE,)))
 
 
 @pytest.mark.parametrize(
-    ("line", "arguments"), sampled(product(ENDS.values(), (RUN, SIMULATE)), [(ENDS["no reader at all"], RUN)])
+    ("line", "arguments"),
+    [*sampled(product(ENDS.values(), (RUN,)), [(ENDS["no reader at all"], RUN)]), *in_parts(ENDED_MOTIONS, 2)],
 )
 def test_results_are_whole_whoever_listens(line: str, arguments: str, home: Path) -> None:
     code, out, err = shell(line.format(arguments), home)
@@ -76,7 +78,7 @@ SAID = {  # the exit code, and what is in the text
 }
 
 
-@pytest.mark.parametrize(("line", "terminal"), sampled(product(SAID, POOR), [(next(iter(SAID)), "C")]))
+@pytest.mark.parametrize(("line", "terminal"), sampled(product(SAID, POOR), [("inerter check 'ü.toml'", "C")]))
 def test_a_terminal_that_knows_few_characters(line: str, terminal: str, home: Path) -> None:
     code, out, err = shell(line, home, **POOR[terminal])
     assert code == SAID[line][0]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from matplotlib.colors import to_hex
 
 from inerter.errors import StudyError
@@ -54,9 +55,17 @@ def drawn(case, window=None):
     return figure
 
 
-@pytest.mark.parametrize("name", CASES)
+@cache
+def figure_of(name):
+    return drawn(case_of(name))
+
+
+FULLEST = ["half car", "rig", "two frictions", "short"]
+
+
+@pytest.mark.parametrize("name", sampled(CASES, FULLEST))
 def test_nothing_runs_over_the_edge_or_over_anything_else(name):
-    figure = drawn(case_of(name))
+    figure = figure_of(name)
     boxes = [ax.get_tightbbox() for ax in figure.axes] + [legend.get_window_extent() for legend in figure.legends]
     for box in boxes:
         assert figure.bbox.padded(2.0).count_contains([box.min, box.max]) == 2
@@ -66,10 +75,10 @@ def test_nothing_runs_over_the_edge_or_over_anything_else(name):
         assert ax.yaxis.label.get_window_extent().height <= 1.05 * ax.get_window_extent().height
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", sampled(CASES, FULLEST))
 def test_every_curve_is_in_si_units_times_the_unit_on_the_axis(name):
     case = case_of(name)
-    figure = drawn(case)
+    figure = figure_of(name)
     factors = {"[m": 1.0, "[mm]": 1e3, "[N]": 1.0, "[kN]": 1e-3}
     for ax, panel in zip(figure.axes, panels(case), strict=False):
         unit = next(f for name, f in sorted(factors.items(), reverse=True) if name in ax.get_ylabel().split()[-1])
@@ -83,16 +92,16 @@ def test_every_curve_is_in_si_units_times_the_unit_on_the_axis(name):
 
 def test_every_interval_is_shaded_and_the_legend_says_what_it_is():
     case = case_of("quarter car")
-    figure = drawn(case)
+    figure = figure_of("quarter car")
     ax = figure.axes[3]
     shaded = sorted((p.get_x(), p.get_x() + p.get_width()) for p in ax.patches)
     assert shaded == [pytest.approx(i) for i in case.run.intervals("f", "stick")]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["f sticks"]
-    assert [text.get_text() for text in drawn(case_of("rig")).legends[0].get_texts()] == ["g is open", "f sticks"]
+    assert [text.get_text() for text in figure_of("rig").legends[0].get_texts()] == ["g is open", "f sticks"]
 
 
 def test_an_axle_has_one_colour_everywhere():
-    figure = drawn(case_of("half car"))
+    figure = figure_of("half car")
     road, _, tyre, front, rear = figure.axes
     for pair in ([road.lines[0], tyre.lines[0], front.lines[0]], [road.lines[1], tyre.lines[1], rear.lines[0]]):
         assert len({to_hex(line.get_color()) for line in pair}) == 1

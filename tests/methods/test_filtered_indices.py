@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy
-from campaigns import in_parts
+from campaigns import in_parts, sampled
 from filtered import Weighed, iso_2631_wk, random_filter, some_filters
 from nodal import Nodal
 from quadrature import h2_by_quadrature
@@ -102,7 +102,7 @@ def test_compiled_norms_and_gradients_with_random_filters(seed):
     assert checked >= 3
 
 
-@pytest.mark.parametrize("case", ["Wk", "one each", "late axle"])
+@pytest.mark.parametrize("case", sampled(["Wk", "one each", "late axle"], ["Wk", "late axle"]))
 def test_the_norm_is_the_integral_of_both_responses(case):
     """By quadrature of |H|^2 |F|^2 over frequency, with dynamic stiffness in place of states; and the gradient."""
     c, b = Damper(free(1e3, 1e5, "c")), Inerter(free(10.0, 2e3, "b"))

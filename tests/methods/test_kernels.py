@@ -77,7 +77,7 @@ def draw_usual(car, count, seed):
 )
 def test_many_designs_at_once_are_the_same_as_one_by_one(name, conventions):
     car, method = CARS[name], Norm(conventions)
-    values = draw(car, 40, seed=len(name))
+    values = draw(car, 16, seed=len(name))
     many = evaluate_many(car, INDICES, values, method)
     for i, row in enumerate(many):
         design = car.with_values({key: float(column[i]) for key, column in values.items()})

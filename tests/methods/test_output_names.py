@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from nodal import Nodal
 from strategies import random_network, random_quarter_car
 
@@ -47,7 +48,7 @@ def test_every_output_means_the_same_to_every_method(strut):
     """Frictions and gaps are so small here that all methods must agree about everything else."""
     mechanism = asking("sprung_acceleration", strut)
     in_linear = outputs(mechanism, linear_graph(mechanism))
-    some = np.random.default_rng(0).permutation(list(in_linear))[:6]  # simulations take long
+    some = np.random.default_rng(0).permutation(list(in_linear))[:4]  # simulations take long
     for name in outputs(mechanism, full_graph(mechanism)):
         methods = (*LINEAR, *SIMULATING) if name in some else LINEAR
         norm, *others = (answer(name, strut, method) for method in methods)
@@ -90,7 +91,7 @@ def misspelt(rng, name):
     return [*ways, name[:i] + name[i + 1] + name[i] + name[i + 2 :]][int(rng.integers(4))]
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", sampled(range(12), [1, 3, 4, 8]))
 def test_a_name_that_is_not_there_gets_the_same_sentence_everywhere(seed):
     rng = np.random.default_rng(seed)
     strut = [*STRUTS.values()][seed % 2]

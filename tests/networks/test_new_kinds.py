@@ -101,6 +101,14 @@ class Clutch(Element):
     tried = (0.1, 1e3)
 
 
+@dataclass(frozen=True)
+class Play(it.Gap):
+    """A gap, with words of its own."""
+
+    key = "play"
+    switch = Switch(Guard.ELONGATION, "pressed", "adrift", "stretched")
+
+
 OWN = (Flywheel, TwoSlopes, Clutch)
 
 
@@ -315,6 +323,19 @@ def test_a_clutch_has_a_budget():
     found = it.budget(own, plain, COMFORT, parameter="clutch", method=method, bounds=(1.0, 1e4))
     assert found.value == it.budget(same, plain, COMFORT, parameter="friction", method=method, bounds=(1.0, 1e4)).value
     assert it.budget(own, plain, COMFORT, parameter="clutch", method=method).bounds == Clutch.tried
+
+
+def test_an_identified_play_comes_loose_as_often_as_a_gap():
+    """In a motion that breaks contact at every turn, whatever it calls that."""
+    shaft, b = it.Spring(1e6) | it.Damper(3200.0), it.free(50.0, 200.0, "b")
+    rattling, open_gap, open_play = (
+        shaft - gap - (it.Inerter(value) | it.Friction(10.0))
+        for value, gap in ((113.0, it.Gap(1e-4)), (b, it.Gap(1e-4, "g")), (b, Play(1e-4, "g")))
+    )
+    record = it.VirtualRig(rattling, seed=0).run(it.cosine(1e-3, 6.0), 1.0)
+    fits = [it.identify(record, model, starts=8) for model in (open_gap, open_play)]
+    counts = [fit.comparisons[0].openings["g"] for fit in fits]
+    assert counts[0] == counts[1] >= 10
 
 
 @pytest.mark.parametrize(("element", "lines"), [(WHEEL, Flywheel.drawing), (slopes(), BOX)])

@@ -14,6 +14,7 @@ import pytest
 import inerter
 from inerter.cli import commands
 from inerter.cli.main import call
+from inerter.errors import StudyError
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 
@@ -64,6 +65,15 @@ def test_the_papers_are_listed_where_none_is_named(capsys: pytest.CaptureFixture
 def test_options_without_a_paper_are_refused(options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["reproduce", *options]) == 2
     assert f"expected the name of one: {', '.join(PAPERS)}." in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", PAPERS)
+def test_a_part_that_a_paper_does_not_have_is_refused_before_anything_is_written(name: str, tmp_path: Path) -> None:
+    parts = PAPERS[name].parts
+    words = rf"no part named 'table 9' of {name} \(there are: {', '.join(parts)}\)"
+    with pytest.raises(StudyError, match=words):
+        PAPERS[name].reproduce(tmp_path / "out", only=(parts[0], "table 9"))
+    assert not (tmp_path / "out").exists()
 
 
 @dataclass(frozen=True)

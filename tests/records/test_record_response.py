@@ -11,7 +11,7 @@ from scipy import signal
 import inerter as it
 from inerter.errors import LinearSystemError, RecordError
 from inerter.records.periods import period_of
-from inerter.records.response import ESTIMATORS
+from inerter.records.response import ESTIMATORS, _blurred
 from inerter.records.smoothing import resolution
 
 RATE = 500.0
@@ -50,6 +50,23 @@ def random(seed, device=DEVICE, samples=20000, force=0.0, displacement=0.0):
     omega = np.maximum(OMEGA * frequency, 1e-9)
     x, f = (np.fft.irfft(s)[:samples] for s in (spectrum, spectrum * response_of(device, omega)))
     return noisy(it.Record(np.arange(samples) / RATE, x, f), seed, force, displacement)
+
+
+WEIGHTS = np.abs(np.fft.fft(signal.windows.hann(64, sym=False))[[-1, 0, 1]]) ** 2  # of a line and its neighbours
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.97, True), (1.03, False)])
+def test_a_bend_that_a_window_levels_by_more_than_the_band_is_told(share, told):
+    """A response that is a parabola of the frequency, and what the mean under a Hann window's spectrum makes of it."""
+    line = np.arange(20.0)
+    shift = np.average([1.0, 0.0, 1.0], weights=WEIGHTS)
+    gain = 1e3 + line**2
+    found = it.Response(
+        omega=OMEGA * (1.0 + line), gain=gain, phase=np.zeros(20), coherence=np.ones(20),
+        band=gain + share * shift * np.array([[-1.0], [1.0]]), phase_band=np.zeros((2, 20)),
+        averages=np.full(20, 9.0), amplitude=1.0, estimator="H1", source="parabola",
+    )  # fmt: skip
+    assert [note.partition(" the ")[0] for note in _blurred(found)] == ["At 18 frequencies"] * told
 
 
 # --- periodic -----------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.linalg
+from campaigns import sampled
 from mechanisms import random_network
 from strategies import paper_half_car, paper_quarter_car
 
@@ -75,7 +76,7 @@ def random_car(seed: int):
     return car, [*roads, *forces], delays, half
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", sampled(range(8), range(0, 8, 2)))
 def test_whole_steps_are_single_steps(seed):
     car, signals, delays, half = random_car(seed)
     outputs = COMFORT + LOADS[half]

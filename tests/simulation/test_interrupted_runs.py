@@ -9,6 +9,7 @@ import time
 
 import pytest
 from campaigns import sampled
+from processes import processor_time
 
 _BEFORE = """
 import os, random, signal, sys, threading, time
@@ -40,7 +41,7 @@ try:
     while True:
         work()
 except KeyboardInterrupt:
-    print(time.monotonic(), flush=True)
+    print(time.process_time(), flush=True)
 """
 _OFTEN = """
 shaft = it.Spring(1e6) | it.Damper(it.free(1e3, 1e4, name="c"))
@@ -80,10 +81,10 @@ def test_ctrl_c_ends_long_work_soon(what: str) -> None:
         assert process.stdout is not None
         assert process.stdout.readline() == "begun\n"
         time.sleep(0.5)
-        pressed = time.monotonic()
+        pressed = processor_time(process.pid)
         process.send_signal(signal.SIGINT)
         ended = float(process.stdout.readline())
-    assert ended - pressed < 2.0  # under 0.5 s on a machine that is not busy
+    assert ended - pressed < 2.0  # seconds of the processor
     assert process.returncode == 0
 
 

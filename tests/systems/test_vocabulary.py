@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from campaigns import in_parts
+from campaigns import in_parts, sampled
 from random_mechanisms import FAMILIES, mechanisms
 
 import inerter as it
@@ -106,7 +106,7 @@ def all_who_are_asked(mechanism, name):
     )
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", sampled(range(3), [0]))
 def test_a_name_that_is_not_there_gets_the_same_sentence_from_all(seed):
     rng = np.random.default_rng(seed)
     for mechanism, system in members(100 + seed, 2):

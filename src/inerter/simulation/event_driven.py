@@ -355,8 +355,8 @@ def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[
     mechanics = system.mechanics
     heights = (
         outputs
-        or np.any(mechanics.balance[:, na + nw + n : na + nw + n + roads])
-        or np.any(mechanics.lengths[:, n - na :])
+        or mechanics.balance[:, na + nw + n : na + nw + n + roads].any()
+        or mechanics.lengths[:, n - na :].any()
     )
     numbers = range(4 * len(table.moving))
     used = [i for i in numbers if table.moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]

@@ -354,9 +354,7 @@ def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[
     na, nw = (motion.shape[1] for motion in system.motions[:2])
     mechanics = system.mechanics
     heights = (
-        outputs
-        or mechanics.balance[:, na + nw + n : na + nw + n + roads].any()
-        or mechanics.lengths[:, n - na :].any()
+        outputs or mechanics.balance[:, na + nw + n : na + nw + n + roads].any() or mechanics.lengths[:, n - na :].any()
     )
     numbers = range(4 * len(table.moving))
     used = [i for i in numbers if table.moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]

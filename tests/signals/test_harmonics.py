@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from inerter.signals.harmonics import Harmonics, cosine, flat_multisine, multisine, sine
@@ -27,6 +28,9 @@ def largest_error(got, expected):
 
 
 @given(st.integers(0, 2**32), st.integers(1, 300), st.integers(1, 700), st.floats(-3.0, 3.0), st.integers(1, 900))
+@example(0, 40, 100, 0.0, 30)
+@example(0, 40, 100, 0.0, 250)
+@example(0, 120, 100, 0.0, 250)
 def test_transform_is_the_plain_sum(seed, harmonics, points, start, count):
     """Also with fewer points a period than harmonics (they fold back), odd ones, and grids of several periods."""
     signal = flat_multisine(seed, rms=1.0, lowest=1.0, highest=float(harmonics))
@@ -65,6 +69,19 @@ def test_all_ways_agree_on_the_road_of_the_paper():
     for way in ways:
         assert largest_error(way[0], expected[0]) < 1e-12
         assert largest_error(way[1], expected[1]) < 1e-11
+
+
+@pytest.mark.parametrize(("highest", "step", "start"), [(1000.0, 2e-4, 0.0), (100.0, 1e-4, 0.0137), (20.0, 1e-3, -2.0)])
+def test_a_grid_takes_the_memory_of_two_transforms(highest, step, start):
+    signal = multisine(ROAD, seed=9, highest=highest)
+    length = round(signal.period / step)
+    for count in (length // 20, length // 3, length):
+        signal.grid(start, step, count)
+        tracemalloc.start()
+        signal.grid(start, step, count)
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert peak < 2 * (2 * 8 * length) + 20_000
 
 
 def test_a_grid_without_a_whole_period():

@@ -25,7 +25,12 @@ _ALONE = RLock()
 
 
 def compiled(
-    function: Callable[..., Any], signature: Signature = None, *, fused: bool = False, borrowing: bool = False
+    function: Callable[..., Any],
+    signature: Signature = None,
+    *,
+    fused: bool = False,
+    borrowing: bool = False,
+    by_address: bool = False,
 ) -> Callable[..., Any]:
     """The function, compiled at once for a given signature, else at each first call with other types.
 
@@ -39,7 +44,9 @@ def compiled(
         try:
             if way() == PLAIN:
                 return _plain(function, fused, folder)
-            found: Callable[..., Any] = private().tuned(function, signature, fused, borrowing, folder)
+            found: Callable[..., Any] = private().tuned(
+                function, signature, folder, fused=fused, borrowing=borrowing, by_address=by_address
+            )
             return found
         finally:
             settings.CACHE_DIR, settings.SLP_VECTORIZE = before

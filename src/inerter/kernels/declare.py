@@ -39,14 +39,21 @@ def private() -> Any:
 
 
 class Kernel:
-    """A compiled function that Python calls. `title` tells people what it computes."""
+    """A compiled function that Python calls, or other compiled code by its address. `title` tells what it computes."""
 
     def __init__(
-        self, function: Callable[..., Any], title: str, signature: Signature, *, fused: bool, borrowing: bool
+        self,
+        function: Callable[..., Any],
+        title: str,
+        signature: Signature,
+        *,
+        fused: bool,
+        borrowing: bool,
+        by_address: bool,
     ) -> None:
         update_wrapper(self, function)
         self.function, self.title, self.signature = function, title, signature
-        self.fused, self.borrowing = fused, borrowing
+        self.options = {"fused": fused, "borrowing": borrowing, "by_address": by_address}
         self._compiled: Callable[..., Any] | None = None
         self._called: Callable[..., Any] | None = None
         self.typed = False
@@ -88,7 +95,7 @@ class Kernel:
         if self._compiled is None:
             from inerter.kernels.compiler import compiled  # noqa: PLC0415 - heavy
 
-            self._compiled = compiled(self.function, self.signature, fused=self.fused, borrowing=self.borrowing)
+            self._compiled = compiled(self.function, self.signature, **self.options)
         return self._compiled
 
     @property
@@ -102,18 +109,26 @@ def _quiet(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def kernel(
-    title: str, signature: Signature = None, *, typed: bool = False, fused: bool = False, borrowing: bool = False
+    title: str,
+    signature: Signature = None,
+    *,
+    typed: bool = False,
+    fused: bool = False,
+    borrowing: bool = False,
+    by_address: bool = False,
 ) -> Callable[[F], F]:
     """Compile for Python to call, and keep the result between processes.
 
     With a `signature`, or `typed` by annotations, it can be made ready before it is called. A signature with a type
     that is returned is the only one; other arguments than those of one without it compile the function once more.
     `fused`: a product and a sum may become one instruction, with one rounding. `borrowing`: without reference counts.
+    What is only called `by_address`, see `function_at`, is not made ready for Python, which takes half of the time of
+    a short one.
     """
 
     def declared(function: F) -> F:
         given = _annotated(function) if typed else signature
-        made = Kernel(function, title, given, fused=fused, borrowing=borrowing)
+        made = Kernel(function, title, given, fused=fused, borrowing=borrowing, by_address=by_address)
         made.typed = typed
         return cast("F", made)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from inerter.kernels.closing import DESCRIPTOR, close_twofold, pull_back, twofold_space
 from inerter.kernels.declare import kernel, part
-from inerter.kernels.linalg import copy, exponential, factor, matmul, solve, solve_transposed
+from inerter.kernels.linalg import exponential, factor, matmul, solve, solve_transposed
 from inerter.kernels.twofold import add_multiple
 
 Array = Any
@@ -213,24 +213,6 @@ def propagated_adjoint(
                 G_A[i, j] += time * (residues[k] * y[i] * z[j]).real
 
 
-@part()
-def high_passed(A: Array, B: Array, C: Array, D: Array, corner: float) -> Any:
-    """The system with each output filtered by s/(s + corner)."""
-    n, m, o = A.shape[0], B.shape[1], C.shape[0]
-    A2, B2, C2 = np.zeros((n + o, n + o)), np.zeros((n + o, m)), np.zeros((o, n + o))
-    copy(A, A2)
-    copy(B, B2)
-    copy(C, C2)
-    for i in range(o):
-        for j in range(n):
-            A2[n + i, j] = C[i, j]
-        for j in range(m):
-            B2[n + i, j] = D[i, j]
-        A2[n + i, n + i] = -corner
-        C2[i, n + i] = -corner
-    return A2, B2, C2
-
-
 @part(borrowing=True)
 def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
     """P of A P + P A' + W = 0, or of A' P + P A + W = 0, from the factors of the former."""
@@ -253,17 +235,10 @@ def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
 
 
 @part()
-def norms_space(descriptor: Array, corner: float) -> Any:
+def norms_space(descriptor: Array) -> Any:
     """Room for `norms_in`."""
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
-    order = n + o if corner > 0.0 else n
-    return (
-        twofold_space(descriptor),
-        lyapunov_space(order),
-        np.zeros((2, m, order)),
-        np.empty((5, order, order)),
-        np.empty((o, order)),
-    )
+    return twofold_space(descriptor), lyapunov_space(n), np.zeros((2, m, n)), np.empty((5, n, n)), np.empty((o, n))
 
 
 @part()
@@ -327,9 +302,7 @@ def leave(lost: Array, A: Array, B: Array, met: Array, W: Array, P: Array, rest:
 
 
 @part()
-def norms_in(
-    space: Array, p: Array, descriptor: Array, twofold: Array, arrivals: Array, corner: float, result: Array
-) -> bool:
+def norms_in(space: Array, p: Array, descriptor: Array, twofold: Array, arrivals: Array, result: Array) -> bool:
     """Fill `result` with the norm of each output; False where it may be off by more than `_ACCURATE`.
 
     What P leaves of A P + P A' + W = 0, A and B as they were before rounding, corrects all rounding at first order:
@@ -339,10 +312,7 @@ def norms_in(
     if not close_twofold(closing, p, descriptor, twofold):
         return False
     A, B, C = closing[0][0], closing[0][1], closing[0][2]
-    lost_A, lost_B, lost_C, lost_D = closing[1]
-    if corner > 0.0:
-        A, B, C = high_passed(A, B, C, closing[0][3], corner)
-        lost_A, lost_B, lost_C = high_passed(lost_A, lost_B, lost_C, lost_D, 0.0)
+    lost_A, lost_B, lost_C, _ = closing[1]
     drifts, walks = arrivals[2]
     if not lyapunov_factors(A, drifts, lyapunov):
         return False
@@ -468,18 +438,12 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
 
 
 @part()
-def gradient_in(
-    space: Array, p: Array, descriptor: Array, arrivals: Array, corner: float, weights: Array, result: Array
-) -> Array:
+def gradient_in(space: Array, p: Array, descriptor: Array, arrivals: Array, weights: Array, result: Array) -> Array:
     """Gradient over p of the weighted sum of the norms that `norms_in` has filled `result` with."""
     (closing, _, _, _, _, _), lyapunov, met, (CC, P, Q, _, _), CP = space
-    A0, B0, C0, D0, T, factors, _, _ = closing
+    A, B, C, _, T, factors, _, _ = closing
     gaps, (poles, residues, direct), _ = arrivals
-    o, m, n0 = C0.shape[0], B0.shape[1], A0.shape[0]
-    A, B, C = A0, B0, C0
-    if corner > 0.0:
-        A, B, C = high_passed(A0, B0, C0, D0, corner)
-    n = A.shape[0]
+    o, m, n = C.shape[0], B.shape[1], A.shape[0]
     CC[:, :] = 0.0
     G_C = np.zeros((o, n))
     for k in range(o):
@@ -508,37 +472,30 @@ def gradient_in(
             for i in range(n):
                 u[i] = met[0, c - 1, i] + B[i, c - 1]
             propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A, carry)
-    if corner > 0.0:  # the filter's states repeat C and D in its A and B
-        for i in range(o):
-            for j in range(m):
-                G_D[i, j] = G_B[n0 + i, j]
-            for j in range(n0):
-                G_C[i, j] += G_A[n0 + i, j]
     return pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D)
 
 
 @kernel(
     "r.m.s. norms",
     f"(float64[:,::1], {DESCRIPTOR}, UniTuple(float64[:,::1], 2), Tuple((float64[::1], Tuple((complex128[::1], "
-    "complex128[::1], float64)), Tuple((int64[::1], float64[:,::1])))), float64, float64[::1])",
+    "complex128[::1], float64)), Tuple((int64[::1], float64[:,::1])))), float64[::1])",
 )
-def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, corner: float, weights: Array) -> Any:
+def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, weights: Array) -> Any:
     """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each norm is right.
 
     The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. Norms that
     may be off are nan, or what was found, with its gradient. `twofold` as in `close_twofold`. `arrivals` = (gaps,
     (poles, residues, direct), (drifts, walks)): times between an arrival of the road and the next, the Pade approximant
-    (no poles: exact), and the states that only the road moves, if there are any, with their covariance. `corner` > 0
-    puts a high-pass filter on every output.
+    (no poles: exact), and the states that only the road moves, if there are any, with their covariance.
     """
-    space = norms_space(descriptor, corner)
+    space = norms_space(descriptor)
     count = points.shape[0]
     result, good = np.full((count, descriptor[7].shape[1]), np.nan), np.empty(count, np.bool_)
     gradients = np.full((count if weights.size > 0 else 0, points.shape[1]), np.nan)
     for i in range(count):
-        good[i] = norms_in(space, points[i], descriptor, twofold, arrivals, corner, result[i])
+        good[i] = norms_in(space, points[i], descriptor, twofold, arrivals, result[i])
         if weights.size > 0 and not np.isnan(result[i, -1]):
-            gradient = gradient_in(space, points[i], descriptor, arrivals, corner, weights, result[i])
+            gradient = gradient_in(space, points[i], descriptor, arrivals, weights, result[i])
             for j in range(gradient.size):
                 gradients[i, j] = gradient[j]
     return result, gradients, good

@@ -183,7 +183,7 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
     shape = MarchShape(n, len(used), elements, outputs, jumps, rows, sharp)
     numbers = np.array(used or (0,), np.int64)
 
-    @kernel("march", typed=True, fused=True, borrowing=True)
+    @kernel("march", typed=True, fused=True, borrowing=True, by_address=True)
     def march(lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
         return go_on(lines, knots, record, span, shape, numbers)
 

@@ -28,7 +28,13 @@ from inerter.kernels.declare import Signature
 
 
 def tuned(
-    function: Callable[..., Any], signature: Signature, fused: bool, borrowing: bool, folder: Path | None
+    function: Callable[..., Any],
+    signature: Signature,
+    folder: Path | None,
+    *,
+    fused: bool,
+    borrowing: bool,
+    by_address: bool,
 ) -> Callable[..., Any]:
     """Compiled at once for a given signature, and kept in a cache that may fail."""
     settings: Any = numba.config
@@ -36,7 +42,7 @@ def tuned(
     kept = _cache_in(folder, function)
     if empty and kept:
         tell()
-    options: dict[str, Any] = {"error_model": "numpy", "nogil": True}
+    options: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cpython_wrapper": by_address}
     if fused:  # a product and a sum in one instruction, with one rounding, and four of them side by side
         options["fastmath"] = FUSED
         settings.SLP_VECTORIZE = 1

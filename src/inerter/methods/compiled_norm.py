@@ -190,9 +190,9 @@ class CompiledQuestion:
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
 
     @property
-    def arguments(self) -> tuple[Any, Any, Any, float]:
+    def arguments(self) -> tuple[Any, Any, Any]:
         """What compiled code takes beside the points; filters are part of the descriptor."""
-        return self.descriptor, self.twofold, self.arrivals, 0.0
+        return self.descriptor, self.twofold, self.arrivals
 
     def _exact_index(self, point: Array) -> float:
         return float(self._exact_norms(point) @ self.problem.weights)

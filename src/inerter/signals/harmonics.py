@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,16 +62,18 @@ class Harmonics(Signal):
     def _by_transform(self, start: float, length: int, count: int) -> Pair:
         """One Fourier transform for a grid of `length` points a period; harmonics beyond its band fold back exactly."""
         orders = len(self.coefficient)
-        rows = self._rows * self._waves(np.array([start]))[:, 0]
-        half = np.zeros((2, length // 2 + 1), complex)
+        rows = self._rows if start == 0.0 else self._rows * self._waves(np.array([start]))[:, 0]
         if orders < length / 2:
-            half[:, 1 : orders + 1] = 0.5 * rows
+            half = np.zeros((2, orders + 1), complex)  # the transform knows that higher harmonics are zero
+            np.multiply(0.5, rows, out=half[:, 1:])
         else:
             padded = np.pad(rows, ((0, 0), (1, -(orders + 1) % length)))
             spectrum = padded.reshape(2, -1, length).sum(axis=1)
             mirrored = np.roll(spectrum[:, ::-1], 1, axis=1).conj()
-            half[:] = 0.5 * (spectrum + mirrored)[:, : length // 2 + 1]
+            half = 0.5 * (spectrum + mirrored)[:, : length // 2 + 1]
         value, slope = np.fft.irfft(half, length, norm="forward")
+        if count <= length:
+            return value[:count], slope[:count]
         return np.resize(value, count), np.resize(slope, count)
 
     def _by_blocks(self, start: float, step: float, count: int) -> Pair:
@@ -91,7 +94,7 @@ class Harmonics(Signal):
     def _orders(self) -> Array:
         return np.arange(1.0, len(self.coefficient) + 1.0)
 
-    @property
+    @cached_property
     def _rows(self) -> Complex:
         """(2, n): the coefficients of the value and of the derivative."""
         return np.array([self.coefficient, 2j * math.pi / self.period * self._orders * self.coefficient])

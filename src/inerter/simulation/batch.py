@@ -119,7 +119,7 @@ def simulate_many(
             state, after = initial_state(system, table.value[0], initial, table.slope[0]), ending_of(initial)
             integration = event_driven.start(system, table, state, names, keep=False, settled=skipped, after=after)
         integration.advance(table.time.size - 1)
-        events[i, j], status[i, j] = integration.place.events, integration.status
+        events[i, j], status[i, j] = integration.events, integration.status
         if integration.status.ok:
             squares[i, j] = integration.record.squares / (knots - skipped)
 

@@ -20,7 +20,7 @@ def energy_of(integration: Integration) -> Energy:
     names = [*(r.name for r in system.mechanism.roads), *(f.name for f in system.mechanism.forces)]
     sums = integration.motion.energy
     branches = list(zip(system.graph.branches, sums[len(names) :], strict=False))
-    knot = int(integration.place.segment)
+    knot = integration.segment
     return Energy(
         inputs={name: float(w) for name, w in zip(names, sums, strict=False)},
         stored=_stored(system, table, integration.state, knot) - _stored(system, table, integration.begun, 0),

@@ -77,11 +77,11 @@ class Integration:
 
         Raises `CancelledError` in a thread of `threads` whose work is not wanted any more.
         """
-        place = self.place
-        while self.status.ok and place.segment < stop:
+        place = self.motion.place
+        while self.status.ok and self.segment < stop:
             check_wanted()
-            place.left = _PIECES
-            until = min(stop, int(place.segment) + _SEGMENTS)
+            place["left"] = _PIECES
+            until = min(stop, self.segment + _SEGMENTS)
             run = Run(self.mechanics, self.modes, self.motion, self.room)
             code = integrate(run, self.knots, self.record, self.account, self.march, self.table.step, until)
             if code == switching.MODE_UNKNOWN:
@@ -111,18 +111,23 @@ class Integration:
         """Begin in the mode in which another integration of the same mechanism ended."""
         states = np.array(ending.mode, dtype=np.int64)
         self.mode(states)
-        self.place.mode = self.record.visited[:1] = self.modes.number[_code(states)]
+        self.motion.place["mode"] = self.record.visited[:1] = self.modes.number[_code(states)]
         self.motion.scale[:] = np.maximum(self.motion.scale, ending.scale)
 
     @property
-    def place(self) -> Any:
-        """Where it is, see `kernels.arrays.PLACE`."""
-        return self.motion.place[0]
+    def segment(self) -> int:
+        """Number of the segment between knots that was reached."""
+        return int(self.motion.place["segment"][0])  # by its array: attributes of a record take Python a microsecond
+
+    @property
+    def events(self) -> int:
+        """How many there were."""
+        return int(self.motion.place["events"][0])
 
     @property
     def now(self) -> float:
         """Time reached [s]."""
-        return float(self.table.time[self.place.segment] + self.place.clock)
+        return float(self.table.time[self.segment] + self.motion.place["clock"][0])
 
     @property
     def state(self) -> Matrix:
@@ -132,7 +137,7 @@ class Integration:
     @property
     def ending(self) -> Ending:
         """What to go on with."""
-        mode = self.modes.state[self.place.mode]
+        mode = self.modes.state[self.motion.place["mode"][0]]
         scale = np.maximum(self.motion.scale, np.abs(self.state))
         return Ending(self.system.mechanism, tuple(mode.tolist()), scale)
 
@@ -175,7 +180,10 @@ class Integration:
 
 def _code(states: NDArray[np.int64]) -> int:
     """Number of a combination of states of the elements, among all that there are."""
-    return int("".join(str(state + 1) for state in states) or "0", 3)
+    code = 0
+    for state in states.tolist():
+        code = 3 * code + state + 1
+    return code
 
 
 _FAILURES = {
@@ -291,7 +299,7 @@ def aligned(*shape: int) -> Matrix:
 
 def _motion(system: PiecewiseSystem, state: Matrix, settled: int) -> IntegrationState:
     place = np.zeros(1, PLACE)
-    place[0].mode, place[0].settled = -1, settled
+    place["mode"], place["settled"] = -1, settled
     ports = len(system.mechanism.roads) + len(system.mechanism.forces)
     return IntegrationState(
         place=place,
@@ -346,9 +354,7 @@ def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[
     na, nw = (motion.shape[1] for motion in system.motions[:2])
     mechanics = system.mechanics
     heights = (
-        outputs
-        or np.any(mechanics.balance[:, na + nw + n : na + nw + n + roads])
-        or np.any(mechanics.lengths[:, n - na :])
+        outputs or mechanics.balance[:, na + nw + n : na + nw + n + roads].any() or mechanics.lengths[:, n - na :].any()
     )
     numbers = range(4 * len(table.moving))
     used = [i for i in numbers if table.moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]

@@ -23,8 +23,8 @@ _ROUNDING = 1e-14  # of a sum, relative to its terms
 def trajectory_of(integration: Integration, steady: Repetition | None, label: str) -> Trajectory:
     system, table, reached = integration.system, integration.table, integration.table.samples
     if not integration.status.ok:
-        reached = int(np.sum(table.slot[: integration.place.segment + 1] >= 0))
-    rows = integration.record.events[: integration.place.events]
+        reached = int(np.sum(table.slot[: integration.segment + 1] >= 0))
+    rows = integration.record.events[: integration.events]
     return Trajectory(
         time=table.sampled[:reached],
         status=integration.status if not integration.status.ok else integration.warning,

@@ -78,7 +78,7 @@ def simulate(
     for part in range(1, reports + 1):
         integration.advance(segments * part // reports)
         if progress is not None:
-            progress(integration.place.segment / segments)
+            progress(integration.segment / segments)
     label = "; ".join(dict.fromkeys(s.label for s in signals if s is not None))
     return trajectory_of(integration, steady, label)
 

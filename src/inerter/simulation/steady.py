@@ -66,7 +66,7 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
     first = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
     state = initial_state(system, table.value_before[first], "rest")
     run = event_driven.start(system, table, state, keep=False)
-    run.place.segment = first
+    run.motion.place["segment"] = first
     run.advance(last)
     mismatch = np.inf
     for _ in range(_RECORDED):
@@ -112,14 +112,14 @@ def mean_squares(
 
 def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:
     """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
-    place, last = integration.place, again.time.size - 1
+    place, last = integration.motion.place, again.time.size - 1
     integration.advance(last)
     integration.knots = event_driven.knots(again)
-    place.settled = -1  # a jump at the start is one at the end of the period before
+    place["settled"] = -1  # a jump at the start is one at the end of the period before
     mismatch, periods = np.inf, 1
     while integration.status.ok and periods < most and mismatch > repeats:
         begun = integration.state
-        place.segment = place.special = place.events = 0
+        place["segment"] = place["special"] = place["events"] = 0
         integration.record.squares[:] = 0.0
         integration.advance(last)
         periods += 1

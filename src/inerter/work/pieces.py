@@ -30,6 +30,7 @@ class Piece(Generic[Item]):
 
     number: int  # which tells it from all others: some executors take equal calls for one
     items: tuple[Item, ...]
+    origin: str  # what is to make its numbers
     deaths: int = 0
     alone: bool = False  # whether nothing else is under way with it
 
@@ -44,7 +45,9 @@ class Worked(Generic[Result]):
 
 
 def worked(work: Callable[[Item], Result], piece: Piece[Item]) -> Worked[Result]:
-    """Work on all items of a piece, in the process that is to do it."""
+    """Work on all items of a piece, in the process that is to do it; on none if that would make other numbers."""
+    if piece.origin != origin():
+        return Worked((), 0.0, origin())
     begin = time.perf_counter()
     before = THREADS.set(1)  # the other cores work on other pieces
     try:
@@ -84,7 +87,7 @@ class Cutter(Generic[Item]):
         items = tuple(islice(self._items, max(size, 1)))
         if self._left is not None:
             self._left -= len(items)
-        return Piece(next(self._numbers), items) if items else None
+        return Piece(next(self._numbers), items, origin()) if items else None
 
     def take_alone(self) -> Piece[Item] | None:
         """A piece that came back twice, to be worked on while nothing else is: who is to blame is certain then."""
@@ -94,5 +97,5 @@ class Cutter(Generic[Item]):
 
     def back(self, piece: Piece[Item], deaths: int) -> None:
         """Have the items of a piece handed out again, each by itself, after so many processes have ended on it."""
-        pieces = [Piece(0, (item,), piece.deaths + deaths) for item in piece.items]
+        pieces = [Piece(0, (item,), piece.origin, piece.deaths + deaths) for item in piece.items]
         self._again = deque(sorted([*self._again, *pieces], key=lambda piece: piece.deaths))

@@ -18,7 +18,7 @@ from cyclopts import App, CycloptsError, Parameter
 from inerter import __version__
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
 from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
-from inerter.cli.reading import AS_THEY_ARE, ReadingOptions
+from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
 from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
 from inerter.writing import sweep
@@ -44,6 +44,7 @@ app = App(
 )
 
 Reading = Annotated[ReadingOptions, Parameter(name="*")]
+Searching = Annotated[SearchOptions, Parameter(name="*")]
 
 
 @app.command(
@@ -142,8 +143,7 @@ def identify(
         Path | None, Parameter(help="A file (TOML) with [record], [model], [elements] and [fit]; options overrule it.")
     ] = None,
     reading: Reading = AS_THEY_ARE,
-    seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None,
-    starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None,
+    search: Searching = AS_USUAL,
     output: Output = None,
     cluster: ClusterOptions = OWN,
     force: Force = False,
@@ -161,8 +161,7 @@ def identify(
     """
     from inerter.cli.identify import identify as command
 
-    settings = {"seed": seed, "starts": starts}
-    return command(records, model, config, output, asdict(reading), settings, cluster, force=force, as_json=json)
+    return command(records, model, config, output, asdict(reading), asdict(search), cluster, force=force, as_json=json)
 
 
 @app.command(

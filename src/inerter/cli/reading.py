@@ -1,4 +1,4 @@
-"""How files of measurements are read, as options of the command line."""
+"""How files of measurements are read and devices sought in them, as options of the command line."""
 
 from __future__ import annotations
 
@@ -46,3 +46,14 @@ class ReadingOptions:
 
 
 AS_THEY_ARE = ReadingOptions()
+
+
+@dataclass(frozen=True)
+class SearchOptions:
+    """What is said of the search; None where nothing is."""
+
+    seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None
+    starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None
+
+
+AS_USUAL = SearchOptions()

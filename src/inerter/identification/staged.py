@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from typing import TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,6 @@ from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.identify import identify
 from inerter.identification.kinds import FitFinding
 from inerter.identification.models import MODELS
-from inerter.identification.options import POINTS
 from inerter.identification.response import linear_response, model_response
 from inerter.networks.elements import Element, Free, Network, free
 from inerter.networks.elements.roles import Linear
@@ -108,6 +108,13 @@ class Staged:
         return tuple(finding.sentence for finding in self.findings)
 
 
+class SearchChanges(TypedDict, total=False):
+    """Keywords of the search for the second stage."""
+
+    seed: int
+    starts: int
+
+
 def staged(
     friction: Record,
     fit: Record,
@@ -116,10 +123,9 @@ def staged(
     inertance: float | None = None,
     shaft_inertance: float | None = None,
     model: Network | None = None,
-    seed: int = 0,
-    starts: int = POINTS,
     progress: Callable[[float], None] | None = None,
     executor: Executor | None = None,
+    **search: Unpack[SearchChanges],
 ) -> Staged:
     """The parameters of a ball-screw inerter from three short tests, one after the other.
 
@@ -133,7 +139,7 @@ def staged(
     more than the measurement's own 95 % band, or by 5 % and 3 degrees.
 
     `model` is by default the ball screw of Wang and Su (2008), Figure 6b; any other needs a friction named f, and an
-    inerter named b.
+    inerter named b. `seed` and `starts` are those of `identify`, and so is an `executor`.
 
     Raises `IdentificationError` where the friction is not identifiable or the model does not fit; `RecordError` and
     `IdentificationError` as `identify` does. Source: Wang and Su (2008), section 4.
@@ -147,9 +153,7 @@ def staged(
         )
     half = max(law.level - law.interval[0], _NARROWEST * law.level)
     within = free(max(law.level - half, 0.0), law.level + half, _FRICTION)
-    found = identify(
-        fit, _with(device, _FRICTION, within), seed=seed, starts=starts, progress=progress, executor=executor
-    )
+    found = identify(fit, _with(device, _FRICTION, within), progress=progress, executor=executor, **search)
     parameters, identifiable = dict(found.parameters), dict(found.identifiable)
     parameters[_FRICTION], identifiable[_FRICTION] = _friction(law)
     values = {name: p.best for name, p in parameters.items()}

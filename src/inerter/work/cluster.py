@@ -119,23 +119,22 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
     answer.
     """
     try:
-        from distributed import Client, Security  # noqa: PLC0415 - heavy, and an extra
-        from distributed.comm import get_address_host_port  # noqa: PLC0415
+        import distributed  # noqa: PLC0415 - heavy, and an extra
     except ImportError:
         raise WorkError('for a cluster install dask too: pip install "inerter[cluster]"') from None
     try:
-        get_address_host_port(address or "host:1")
+        distributed.comm.get_address_host_port(address or "host:1")
     except ValueError as error:
         raise StudyError(f'Got the scheduler "{address}" ({error}); expected such as tcp://HOST:8786.') from None
     if file is not None and not file.is_file():
         raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
-    security = Security(require_encryption=True, **tls) if tls else None
+    security = distributed.Security(require_encryption=True, **tls) if tls else None
     where = {"address": address} if file is None else {"scheduler_file": str(file)}
     for name in tuple(logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
             logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is told by errors
     try:
-        client = Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
+        client = distributed.Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
     except Exception as error:  # of sockets, of TLS, of addresses that are none
         raise WorkError(
             f"no scheduler of dask answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "

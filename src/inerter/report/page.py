@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import xarray as xr
@@ -14,6 +14,7 @@ from markupsafe import Markup, escape
 from inerter.figures.labels import printed, swept_element, typeset
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study, write_resolved
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
@@ -22,6 +23,7 @@ from inerter.report.question import computation, element_rows, index_rows, layou
 from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
 from inerter.writing import write_text
 
+_MOST_SWEPT = 1000  # values of a sweep on a page
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
 _REFERENCE = re.compile(r'(\bid="|href="#|url\(#)')
@@ -71,9 +73,19 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),
             computation=list(computation(study, results)),
-            study_file=write_resolved(study),
+            study_file=_study_file(study),
         )
     )
+
+
+def _study_file(study: Study) -> str:
+    """The study as it was resolved; of a great many swept values the ends, and where they all are."""
+    sweep = study.sweep
+    if sweep is None or len(sweep.values) <= _MOST_SWEPT:
+        return write_resolved(study)
+    ends = (*sweep.values[: _MOST_SWEPT // 2], *sweep.values[-_MOST_SWEPT // 2 :])
+    note = f"# {_MOST_SWEPT} of the {len(sweep.values)} values of {sweep.element}; {RESOLVED} has all.\n"
+    return note + write_resolved(replace(study, sweep=replace(sweep, values=ends)))
 
 
 def environment(*packages: str) -> Environment:

@@ -155,6 +155,7 @@ def _prefix(study: Study, method: str) -> str:
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
+    assert (case.swept is None) == (study.sweep is None), case
     vehicle = study.design(case.layout, case.swept).mechanism()
     fields: dict[str, Any] = {
         "parameters": {},

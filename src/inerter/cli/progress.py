@@ -171,11 +171,9 @@ class _Lines:
             self._say(f"{total} {self.items} to find{kept}")
         elif last is not None and done == total:
             self._say(f"all {total} {self.items} found")
-        elif time.monotonic() - self.last > _SELDOM:
+        elif last is not None and time.monotonic() - self.last > _SELDOM:
             rate = self.pace.rate(done)
-            left = (
-                f"{rate:.3g} a second, about {_duration((total - done) / rate)} left" if rate else "the first of them"
-            )
+            left = f"{rate:.3g} a second, about {_duration((total - done) / rate)} left"
             self._say(f"{done} of {total} {self.items} found{_not_ok(not_ok)}, {left}")
 
     def _say(self, text: str) -> None:

@@ -26,6 +26,7 @@ FORMAT = 2
 _LINE = re.compile(rb'(\{.*), "check": "([0-9a-f]{16})"\}')
 _CHECK = re.compile(rb'"check": "([0-9a-f]{16})"\}\n\Z')
 _LONGEST_END = 64  # bytes in which a check sum and the end of its line are
+_decoded = json.JSONDecoder().decode
 _AWAY = "Move it away, or choose another folder with -o."
 _WORDS = {
     "format": "another format",
@@ -119,7 +120,7 @@ def entries_of(lines: Iterable[bytes]) -> Iterator[Entry | None]:
         body = found[1] + b"}" if found else b""
         check = _check(body, check)
         try:
-            entry = json.loads(body) if found and found[2].decode() == check else None
+            entry = _decoded(body.decode()) if found and found[2].decode() == check else None
         except (ValueError, RecursionError):
             entry = None
         yield entry

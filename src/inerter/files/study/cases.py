@@ -23,6 +23,7 @@ from inerter.vehicle.mechanism import Mechanism
 from inerter.work.pool import KILLS
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
+_OK = StatusKind.OK.value
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 
@@ -98,7 +99,7 @@ class Outcome:
     @property
     def kind(self) -> str:
         """The kind of its status: the first of all methods that is not ok."""
-        return next((kind for kind in self.status.values() if kind != StatusKind.OK), StatusKind.OK.value)
+        return next((kind for kind in self.status.values() if kind != _OK), _OK)
 
     def to_json(self) -> dict[str, Any]:
         """A plain dictionary; `Outcome(**...)` undoes it."""

@@ -23,6 +23,7 @@ from inerter.methods.registry import is_blind
 from inerter.networks.elements import Free
 
 Array = NDArray[np.float64]
+_OK = StatusKind.OK.value
 
 
 class Gathered:
@@ -59,7 +60,7 @@ class Gathered:
         if not self.done[number]:
             self.done[number] = True
             self.count += 1
-            self.not_ok += kind != StatusKind.OK
+            self.not_ok += kind != _OK
         self.kinds.add(kind)
         self._notes.add(number, case, outcome)
         self._enter_values(number, outcome)
@@ -259,7 +260,7 @@ def _ratio_error(one: Estimate, other: Estimate) -> float:
 
 
 def _status(outcome: Outcome, kind: str) -> str:
-    return kind if kind == StatusKind.OK or not outcome.message else f"{kind}: {outcome.message}"
+    return kind if kind == _OK or not outcome.message else f"{kind}: {outcome.message}"
 
 
 def _parameters(study: Study) -> dict[str, str]:

@@ -227,7 +227,7 @@ def test_a_page_of_many_cases_is_as_small_as_any(tmp_path: Path, swift: object) 
         data = run_study(study, tmp_path / f"out{points}").data
         pages.append(report(data, study, tmp_path, ()))
         for table, index in zip(sweep_tables(data), study.indices, strict=True):
-            assert f"of {points} values, with the least and the largest of each layout" in table.caption
+            assert f"of {points} values, the extremes among them" in table.caption
             rows = one_method(data)["improvement"].sel(index=index, layout="S2")
             finite = rows[np.isfinite(rows)]
             best = f"{float(rows.k[int(np.nanargmax(rows.where(np.isfinite(rows))))]) / 1e3:.4g}"
@@ -236,6 +236,7 @@ def test_a_page_of_many_cases_is_as_small_as_any(tmp_path: Path, swift: object) 
             assert len(table.failures) == 21
             assert table.failures[-1].startswith("and ")
         assert "study.resolved.toml has all" in pages[-1]
+        assert f"The designs at all {points} values of k are in summary.csv and results.nc." in pages[-1]
         assert max(map(len, summary_table(data).splitlines())) <= 80
     assert abs(len(pages[1]) - len(pages[0])) < 0.1 * len(pages[0])
 

@@ -20,7 +20,7 @@ from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
 from inerter.report.findings import crossing_sentences, headlines
 from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
-from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
+from inerter.report.tables import design_tables, sweep_tables, trade_off_tables, where_all_are
 from inerter.writing import write_text
 
 _MOST_SWEPT = 1000  # values of a sweep on a page
@@ -62,12 +62,7 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             indices=index_rows(results),
             tables=design_tables(results) if swept is None else sweep_tables(results),
             by_method=method_tables(results),
-            crossings=[
-                printed_sentence(f"{index}: {sentence}.")
-                for index, sentence in (
-                    crossing_sentences(results, printed) if swept and results.attrs["baseline"] else []
-                )
-            ],
+            remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
             budgets=budget_tables(budgets, study),
             trade_offs=trade_off_tables(results) if swept is None else [],
             figures=list(_drawings(results, figures)),
@@ -76,6 +71,12 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             study_file=_study_file(study),
         )
     )
+
+
+def _remarks(results: xr.Dataset) -> list[str]:
+    """What goes below the tables of a sweep: where layouts cross the baseline, and where the other designs are."""
+    crossings = crossing_sentences(results, printed) if results.attrs["baseline"] else []
+    return [*(f"{index}: {sentence}." for index, sentence in crossings), *where_all_are(results)]
 
 
 def _study_file(study: Study) -> str:

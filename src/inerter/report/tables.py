@@ -29,6 +29,7 @@ from inerter.figures.labels import (
     swept_element,
     typeset,
 )
+from inerter.files.study.running import DATASET, SUMMARY
 from inerter.report.findings import best_layout
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
@@ -165,11 +166,18 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
     if _are_far(data.sizes[element]):
-        some += ", with the least and the largest of each layout; the table of results has all"
+        some += ", the extremes among them"
     caption = (
         f"Best {_title(results, index)} in {typeset(values.unit)}, over {element} in {typeset(swept.unit)}{by}{some}"
     )
     return Table(caption, [element, *names], rows, True, tuple(_failures(data, element, unit)))
+
+
+def where_all_are(results: xr.Dataset) -> list[str]:
+    """A sentence on the designs that `sweep_tables` leave out, if they are a great many."""
+    element = str(swept_element(results))
+    size = results.sizes[element]
+    return [f"The designs at all {size} values of {element} are in {SUMMARY} and {DATASET}."] if _are_far(size) else []
 
 
 def _some(data: xr.Dataset, element: str) -> list[int]:

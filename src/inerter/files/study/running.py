@@ -23,6 +23,7 @@ from inerter.files.study.results import Gathered, Pending
 from inerter.files.study.study import Study, write_resolved
 from inerter.files.study.summary import write_summary
 from inerter.kernels.prepare import Told, prepare
+from inerter.work.journal import Journal
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, pooled
 from inerter.writing import write_netcdf, write_text
@@ -132,12 +133,8 @@ def _computed(
 ) -> tuple[Gathered, Budgets, int]:
     """All cases and budgets, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
-    found, budgets = Gathered(study), Budgets()
-    for one in journals.outcomes(journal) if results.resume else ():
-        if isinstance(one, BudgetOutcome):
-            budgets[one.case] = one
-        else:
-            found.enter(one)
+    found = Gathered(study)
+    budgets = _read(journal, found) if results.resume else {}
     pending, further = found.pending(), budget_cases(study)
     if pending:
         _prepare(pool, study, compiling)
@@ -161,6 +158,17 @@ def _computed(
                 append(budgets[case].to_json())
                 tell(budgets[case])
     return found, budgets, len(pending)
+
+
+def _read(journal: Journal, found: Gathered) -> Budgets:
+    """Enter the cases of a journal; returns its budgets."""
+    budgets: Budgets = {}
+    for one in journals.outcomes(journal):
+        if isinstance(one, BudgetOutcome):
+            budgets[one.case] = one
+        else:
+            found.enter(one)
+    return budgets
 
 
 def _outcomes(study: Study, pending: Pending, pool: Pool) -> Iterator[list[Outcome]]:

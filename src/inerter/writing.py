@@ -12,7 +12,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from inerter.errors import InerterError, WorkError
 
@@ -99,8 +99,15 @@ def characters(text: str) -> str:
 
 def write_text(path: Path, text: str) -> None:
     """Write a text as a whole, in `characters`."""
-    with whole(path) as draft:
-        draft.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
+    with lines_of_text(path) as stream:
+        stream.write(text)
+
+
+@contextmanager
+def lines_of_text(path: Path) -> Iterator[TextIO]:
+    """Where to write a text, bit by bit, that is to be there as a whole; in `characters`."""
+    with whole(path) as draft, draft.open("w", encoding="utf-8", errors="backslashreplace", newline="\n") as stream:
+        yield stream
 
 
 def write_netcdf(path: Path, data: xarray.Dataset) -> None:

@@ -20,7 +20,7 @@ from inerter.errors import StudyError
 from inerter.files.common.folder import Intent, claimed
 from inerter.files.study.cases import Outcome, cases
 from inerter.files.study.checking import check_study
-from inerter.files.study.journal import finished, journal_of
+from inerter.files.study.journal import journal_of, outcomes
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import NAMES, run_study
 from inerter.methods.method import evaluate
@@ -259,11 +259,10 @@ def test_outcomes_survive_the_journal(tmp_path: Path) -> None:
     study = load_study(write(tmp_path, points=2))
     run_study(study, tmp_path / "out")
     path = tmp_path / "out" / "journal.jsonl"
-    done, budgets = finished(path, journal_of(study, path).read())
-    assert set(done) == set(cases(study))
-    assert budgets == {}
-    for case, outcome in done.items():
-        assert outcome.case == case
+    found = list(outcomes(journal_of(study, path)))
+    assert [outcome.case for outcome in found] == list(cases(study))
+    for outcome in found:
+        assert isinstance(outcome, Outcome)
         assert Outcome(**json.loads(json.dumps(outcome.to_json()))) == outcome
 
 

@@ -506,9 +506,9 @@ BAD = {
         ["got 1", "from 2 to 10000"],
     ),
     "too many points": (
-        [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 10001 } }')],
+        [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 10000001 } }')],
         "study.sweep.k.points",
-        ["got 10001"],
+        ["got 10000001"],
     ),
     "half a point": (
         [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 2.5 } }')],

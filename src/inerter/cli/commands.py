@@ -6,9 +6,10 @@ import json
 import os
 import shlex
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import islice
 from pathlib import Path
-from textwrap import wrap
+from textwrap import indent, wrap
 from typing import Any
 
 import numpy as np
@@ -69,7 +70,8 @@ def run(
         )
     _say(f"report: {folder / REPORT}")
     if as_json:
-        print(_as_json(result))
+        for text in _as_json(result):
+            print(text, end="")
     else:
         print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrapped(text)))
         print(f"\n{summary_table(result.data)}")
@@ -131,35 +133,48 @@ def _processes(jobs: int | None) -> int:
 
 def _judge(result: StudyResult) -> int:
     """Say what is not an ordinary number; the work has failed if a case has no number at all."""
-    for line in result.failures[:_MOST]:
+    for line in islice(result.failing(), _MOST):
         _say(line)
-    if len(result.failures) > _MOST:
-        _say(f"and {len(result.failures) - _MOST} more like these; {result.folder / SUMMARY} tells all")
+    if result.not_ok > _MOST:
+        _say(f"and {result.not_ok - _MOST} more like these; {result.folder / SUMMARY} tells all")
     return int(result.failed)
 
 
-def _as_json(result: StudyResult) -> str:
-    data = result.data
-    rows: list[dict[str, Any]] = []
-    errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
-    stacked = data[["value", "improvement", "status", *errors]].stack(case=list(data.value.dims))
-    for i, place in enumerate(stacked.case.values.tolist()):
-        labels = dict(zip(data.value.dims, place, strict=True))
-        design = data.sel({name: labels[name] for name in labels if name != "method"})
-        values = zip(data.parameter.values.tolist(), design.parameter_value.values.tolist(), strict=True)
-        rows.append(
-            {
-                **labels,
-                "value": json_data(stacked.value.values[i]),
-                "unit": str(design.index_unit.item()),
-                "improvement_percent": json_data(stacked.improvement.values[i]),
-                **{_JSON.get(name, name): json_data(stacked[name].values[i].item()) for name in errors},
-                "status": str(stacked.status.values[i]),
-                "parameters": {name: value for name, value in values if np.isfinite(value)},
-            }
-        )
+def _as_json(result: StudyResult) -> Iterator[str]:
+    """All results as JSON, in pieces: a list of a million designs is never held."""
     budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
-    return json.dumps({**data.attrs, "designs": rows, **budgets}, indent=2)
+    whole = json.dumps({**result.data.attrs, "designs": [None], **budgets}, indent=2)
+    before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
+    separator = "\n"
+    yield before
+    for design in _designs(result):
+        yield separator + indent(json.dumps(design, indent=2), "    ")
+        separator = ",\n"
+    yield f"{after}\n"
+
+
+def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
+    """What there is to say of each design and method."""
+    data = result.data
+    errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
+    arrays = {name: data[name].values for name in ("value", "improvement", "status", "parameter_value", *errors)}
+    labels = {str(dim): data[dim].values.tolist() for dim in data.value.dims}
+    units = dict(zip(labels["index"], data.index_unit.values.tolist(), strict=True))
+    parameters = data.parameter.values.tolist()
+    where = data.value.dims.index("method")
+    for place in np.ndindex(data.value.shape):
+        design = place[:where] + place[where + 1 :]
+        names = {dim: column[i] for (dim, column), i in zip(labels.items(), place, strict=True)}
+        values = zip(parameters, arrays["parameter_value"][design].tolist(), strict=True)
+        yield {
+            **names,
+            "value": json_data(arrays["value"][place].item()),
+            "unit": units[names["index"]],
+            "improvement_percent": json_data(arrays["improvement"][place].item()),
+            **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
+            "status": arrays["status"][design],
+            "parameters": {name: value for name, value in values if np.isfinite(value)},
+        }
 
 
 def _say(message: str) -> None:

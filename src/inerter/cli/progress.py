@@ -1,4 +1,4 @@
-"""Progress of long work, on stderr: a bar on a terminal, two lines elsewhere."""
+"""Progress of long work, on stderr: a bar on a terminal, some lines elsewhere."""
 
 from __future__ import annotations
 
@@ -26,6 +26,8 @@ from inerter.files.study.cases import Outcome
 from inerter.files.study.running import Progress as Report
 from inerter.kernels.prepare import Told
 
+_SELDOM = 60.0  # seconds between two lines on a log
+
 
 class Shown(NamedTuple):
     """What shows how far a study is."""
@@ -39,7 +41,7 @@ def progress(what: str, items: str = "designs") -> Iterator[Shown]:
     """Callbacks that show how far the work is; `items` says what there is to find."""
     if not sys.stderr.isatty():
         yield Shown(
-            lambda done, total, outcome: _line(what, items, done, total, outcome),
+            _Lines(what, items),
             lambda title, number, total: print(_kernel(what, title, number, total), file=sys.stderr, flush=True),
         )
         return
@@ -47,16 +49,20 @@ def progress(what: str, items: str = "designs") -> Iterator[Shown]:
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
+        TextColumn("{task.fields[pace]}"),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=None)
+        task = bar.add_task(what, total=None, pace="")
+        pace = _Pace()
 
-        def show(done: int, total: int, outcome: Outcome | BudgetOutcome | None) -> None:
-            name = f"{what}: {outcome.layout} {outcome.index}" if outcome else what
-            bar.update(task, completed=done, total=total, description=name)
+        def show(done: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
+            pace.begin(done)
+            name = f"{what}: {last.layout} {last.index}{_not_ok(not_ok)}" if last else what
+            told = f"{pace.rate(done):.3g}/s" if last else ""
+            bar.update(task, completed=done, total=total, description=name, pace=told)
 
         def begun(title: str, number: int, total: int) -> None:
             bar.update(task, completed=number - 1, total=total, description=_kernel(what, title, number, total))
@@ -127,9 +133,57 @@ def _kernel(what: str, title: str, number: int, total: int) -> str:
     return f"{what}: compiling kernels {number} of {total}: {title}"
 
 
-def _line(what: str, items: str, done: int, total: int, outcome: Outcome | BudgetOutcome | None) -> None:
-    if outcome is None and done < total:
-        kept = f", {done} of them done before" if done else ""
-        print(f"{what}: {total} {items} to find{kept}", file=sys.stderr, flush=True)
-    elif outcome is not None and done == total:
-        print(f"{what}: all {total} {items} found", file=sys.stderr, flush=True)
+def _not_ok(count: int) -> str:
+    return f", {count} not ok" if count else ""
+
+
+@dataclass
+class _Pace:
+    """How fast work goes on that may have begun in an earlier run."""
+
+    at: float | None = None
+    before: int = 0
+
+    def begin(self, done: int) -> None:
+        """Take the first time that this is called for the beginning."""
+        if self.at is None:
+            self.at, self.before = time.monotonic(), done
+
+    def rate(self, done: int) -> float:
+        """Items a second since the beginning."""
+        assert self.at is not None
+        return (done - self.before) / max(time.monotonic() - self.at, 1e-3)
+
+
+@dataclass
+class _Lines:
+    """A line when designs are begun, one when all are found, and one whenever a minute has gone by."""
+
+    what: str
+    items: str
+    pace: _Pace = field(default_factory=_Pace)
+    last: float = field(default_factory=time.monotonic)
+
+    def __call__(self, done: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
+        self.pace.begin(done)
+        if last is None and done < total:
+            kept = f", {done} of them done before" if done else ""
+            self._say(f"{total} {self.items} to find{kept}")
+        elif last is not None and done == total:
+            self._say(f"all {total} {self.items} found")
+        elif last is not None and time.monotonic() - self.last > _SELDOM:
+            rate = self.pace.rate(done)
+            left = f"{rate:.3g} a second, about {_duration((total - done) / rate)} left"
+            self._say(f"{done} of {total} {self.items} found{_not_ok(not_ok)}, {left}")
+
+    def _say(self, text: str) -> None:
+        self.last = time.monotonic()
+        print(f"{self.what}: {text}", file=sys.stderr, flush=True)
+
+
+def _duration(seconds: float) -> str:
+    """A time for people, in the largest unit of which there are two."""
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.0f} s"

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from inerter.errors import StudyError
+from inerter.figures.curves import thinned, thinned_band
 from inerter.figures.designs import IMPROVEMENT, WORST
 from inerter.figures.labels import (
     axis_label,
@@ -55,7 +56,7 @@ class _Sweep:
         style, few = self.styles[layout], self.values.size <= _MOST_MARKERS
         marker: dict[str, Any] = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
         finite = np.where(np.isfinite(numbers), numbers, np.nan)
-        ax.plot(self.values, finite, **style.curve() | (line or {}), **marker)
+        ax.plot(*thinned(self.values, finite), **style.curve() | (line or {}), **marker)
         if open_where is not None:
             look: dict[str, Any] = {
                 "color": style.colour,
@@ -65,11 +66,10 @@ class _Sweep:
             }
             ax.plot(self.values[open_where], finite[open_where], **marker, **look)
 
-    def band(self, ax: Axes, layout: str, numbers: Array, errors: Array) -> None:
-        """One standard error to both sides of a curve."""
-        if np.any(errors > 0.0):
-            colour = self.styles[layout].colour
-            ax.fill_between(self.values, numbers - errors, numbers + errors, color=colour, alpha=0.2, linewidth=0.0)
+    def band(self, ax: Axes, layout: str, low: Array, high: Array, alpha: float) -> None:
+        """What lies between two curves."""
+        area, colour = thinned_band(self.values, low, high), self.styles[layout].colour
+        ax.fill_between(*area, color=colour, alpha=alpha, linewidth=0.0)
 
     def finish(self, axes: Sequence[Axes]) -> None:
         """The axes of the swept values: logarithmic if that spreads them more evenly."""
@@ -117,8 +117,9 @@ def _method_line(number: int) -> dict[str, Any]:
 def _curve(sweep: _Sweep, ax: Axes, layout: str, what: str, factor: float, line: dict[str, Any]) -> None:
     row = sweep.data.sel(layout=layout)
     numbers, error = row[what].values * factor, {"value": "standard_error", "improvement": "improvement_error"}[what]
-    if error in row:
-        sweep.band(ax, layout, numbers, row[error].values * factor)
+    errors = row[error].values * factor if error in row else np.zeros(0)
+    if np.any(errors > 0.0):  # one standard error to both sides
+        sweep.band(ax, layout, numbers - errors, numbers + errors, alpha=0.2)
     sweep.draw(ax, layout, numbers, line=line)
 
 
@@ -138,7 +139,7 @@ def parameter_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> S
             numbers = row["parameter_value"].values * unit.factor
             if np.any(np.isfinite(numbers)):
                 low, high = row["parameter_low"].values * unit.factor, row["parameter_high"].values * unit.factor
-                ax.fill_between(sweep.values, low, high, color=sweep.styles[name].colour, alpha=0.15, linewidth=0.0)
+                sweep.band(ax, name, low, high, alpha=0.15)
                 sweep.draw(ax, name, numbers, open_where=row["at_bound"].values != "")
         ax.set_ylabel(axis_label(f"Best {parameter}", unit.unit))
         log_axis(ax, "y")

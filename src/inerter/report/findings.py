@@ -27,6 +27,7 @@ from inerter.methods.ties import equally_least
 
 Writer = Callable[[float, str, float], str]
 
+_MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 _NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 
 
@@ -107,11 +108,18 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
         for name in compared(results):
             found = {by: crossings(one, index, name) for by, one in ways.items()}
             unit = results[element].attrs["units"]
-            texts = [_listed([write(at, unit, e) for at, e in places]) + by for by, places in found.items() if places]
+            texts = [_places(places, unit, write) + by for by, places in found.items() if places]
             if texts:
                 said = f"{name} and {baseline} are equally good at {element} = {', '.join(texts)}"
                 sentences.append((index, said))
     return sentences
+
+
+def _places(found: list[tuple[float, float]], unit: str, write: Writer) -> str:
+    """Swept values with their errors; of many the first, and how many there are."""
+    more = len(found) - _MOST_PLACES
+    texts = [write(at, unit, error) for at, error in found[:_MOST_PLACES]]
+    return _listed([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
 def _listed(words: list[str]) -> str:

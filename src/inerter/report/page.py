@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import xarray as xr
@@ -14,15 +14,17 @@ from markupsafe import Markup, escape
 from inerter.figures.labels import printed, swept_element, typeset
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study, write_resolved
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
 from inerter.report.findings import crossing_sentences, headlines
 from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
-from inerter.report.tables import design_tables, sweep_tables, trade_off_tables
+from inerter.report.tables import design_tables, sweep_tables, trade_off_tables, where_all_are
 from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
+_MOST_SWEPT = 1000  # values of a sweep on a page
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
 _REFERENCE = re.compile(r'(\bid="|href="#|url\(#)')
@@ -61,20 +63,31 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             indices=index_rows(results),
             tables=design_tables(results) if swept is None else sweep_tables(results),
             by_method=method_tables(results),
-            crossings=[
-                printed_sentence(f"{index}: {sentence}.")
-                for index, sentence in (
-                    crossing_sentences(results, printed) if swept and results.attrs["baseline"] else []
-                )
-            ],
+            remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
             budgets=budget_tables(budgets, study),
             trade_offs=trade_off_tables(results) if swept is None else [],
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),
             computation=list(computation(study, results)),
-            study_file=write_resolved(study),
+            study_file=_study_file(study),
         )
     )
+
+
+def _remarks(results: xr.Dataset) -> list[str]:
+    """What goes below the tables of a sweep: where layouts cross the baseline, and where the other designs are."""
+    crossings = crossing_sentences(results, printed) if results.attrs["baseline"] else []
+    return [*(f"{index}: {sentence}." for index, sentence in crossings), *where_all_are(results)]
+
+
+def _study_file(study: Study) -> str:
+    """The study as it was resolved; of a great many swept values the ends, and where they all are."""
+    sweep = study.sweep
+    if sweep is None or len(sweep.values) <= _MOST_SWEPT:
+        return write_resolved(study)
+    ends = (*sweep.values[: _MOST_SWEPT // 2], *sweep.values[-_MOST_SWEPT // 2 :])
+    note = f"# {_MOST_SWEPT} of the {len(sweep.values)} values of {sweep.element}; {RESOLVED} has all.\n"
+    return note + write_resolved(replace(study, sweep=replace(sweep, values=ends)))
 
 
 def environment(*packages: str) -> Environment:

@@ -29,9 +29,11 @@ from inerter.figures.labels import (
     typeset,
     with_unit,
 )
+from inerter.files.study.running import DATASET, SUMMARY
 from inerter.report.findings import best_layout
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
+_MOST_BETWEEN = 100  # swept values between two of them
 _MOST_FAILURES = 20
 
 
@@ -156,7 +158,7 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     element = str(swept_element(results))
     data, unit = results.sel(index=index).sortby(element), results[element].attrs["units"]
     swept, values = scale(data[element].values, unit), scale(data["value"].values, index_unit(results, index))
-    points = _some(data.sizes[element])
+    points = _some(data, element)
     rows = []
     for point in points:
         here = data.isel({element: point})
@@ -169,16 +171,41 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
         rows.append(Row(typeset(f"{float(here[element]) * swept.factor:.4g}"), cells))
     names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
+    if _are_far(data.sizes[element]):
+        some += ", the extremes among them"
     caption = (
         f"Best {_title(results, index)} in {typeset(values.unit)}, over {element} in {typeset(swept.unit)}{by}{some}"
     )
     return Table(caption, [element, *names], rows, True, tuple(_failures(data, element, unit)))
 
 
-def _some(size: int) -> list[int]:
-    """Evenly spaced places in a long list, and its last."""
-    step = -(-(size - 1) // (_MOST_SWEPT - 1)) or 1
-    return sorted({*range(0, size, step), size - 1})
+def where_all_are(results: xr.Dataset) -> list[str]:
+    """A sentence on the designs that `sweep_tables` leave out, if they are a great many."""
+    element = str(swept_element(results))
+    size = results.sizes[element]
+    return [f"The designs at all {size} values of {element} are in {SUMMARY} and {DATASET}."] if _are_far(size) else []
+
+
+def _some(data: xr.Dataset, element: str) -> list[int]:
+    """Evenly spaced places in a long list, and its last; where much lies between them, the extremes too."""
+    size = data.sizes[element]
+    places = {*range(0, size, _step(size)), size - 1}
+    if _are_far(size):
+        names, what = (compared(data), "improvement") if compared(data) else (layouts(data), "value")
+        for name in names:
+            row = data[what].sel(layout=name).values
+            known = np.flatnonzero(np.isfinite(row))
+            places |= {int(known[find(row[known])]) for find in (np.argmin, np.argmax) if known.size}
+    return sorted(places)
+
+
+def _step(size: int) -> int:
+    return -(-(size - 1) // (_MOST_SWEPT - 1)) or 1
+
+
+def _are_far(size: int) -> bool:
+    """Whether so many swept values lie between two rows that a reader misses what happens there."""
+    return _step(size) > _MOST_BETWEEN
 
 
 def _number(value: float, error: float) -> str:
@@ -191,11 +218,10 @@ def _number(value: float, error: float) -> str:
 
 def _failures(data: xr.Dataset, element: str, unit: str) -> list[str]:
     """Where a status is not ok: layout, swept value and sentence; a long list is cut and says so."""
-    lines = [
-        f"{name} at {element} = {printed(float(value), unit)}: {status}"
-        for name in layouts(data)
-        for value, status in zip(data[element].values, data["status"].sel(layout=name).values.tolist(), strict=True)
-        if status != "ok"
-    ]
-    more = len(lines) - _MOST_FAILURES
-    return lines if more <= 0 else [*lines[:_MOST_FAILURES], f"and {more} more, which are in the table of results"]
+    bad = [(name, i) for name in layouts(data) for i in np.flatnonzero(data["status"].sel(layout=name).values != "ok")]
+    lines = []
+    for name, i in bad[:_MOST_FAILURES]:
+        value, status = float(data[element].values[i]), data["status"].sel(layout=name).values[i]
+        lines.append(f"{name} at {element} = {printed(value, unit)}: {status}")
+    more = len(bad) - _MOST_FAILURES
+    return lines if more <= 0 else [*lines, f"and {more} more, which are in the table of results"]

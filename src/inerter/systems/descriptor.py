@@ -25,10 +25,13 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, LinearSystemError
 from inerter.networks.elements import Free
+from inerter.networks.elements.roles import Linear
 from inerter.systems.balance import balance
+from inerter.systems.coordinates import combination
 from inerter.systems.filters import Filter
 from inerter.systems.frame import Frame, Long, split
 from inerter.systems.graph import Graph, linear_graph
+from inerter.systems.incidence import of_law, stacked
 from inerter.systems.linear import Fine, LinearSystem, Origin
 from inerter.systems.observe import Observed, observe, observed_by_default
 from inerter.systems.outputs import check_inputs, force_of, input_names
@@ -161,10 +164,10 @@ def describe(
 
 def is_held_by_springs(mechanism: Mechanism) -> bool:
     """Whether springs determine the position of every coordinate when all roads lie still."""
-    frame = split(mechanism, linear_graph(mechanism), ())
-    still = np.zeros(len(mechanism.roads))
-    rows = np.eye(len(frame.graph.nodes))[: len(mechanism.coordinates)]
-    return all(frame.displacement(row, still) is not None for row in rows)
+    graph = linear_graph(mechanism)
+    springs, _ = stacked(of_law(graph, Linear.STIFFNESS), graph)
+    rows = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
+    return all(combination(springs, row) is not None for row in rows)
 
 
 def _joined(

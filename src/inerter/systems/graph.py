@@ -53,6 +53,9 @@ class Graph:
     notes: tuple[str, ...]
 
 
+_last: tuple[Mechanism, Graph] | None = None  # several questions about one design come one after the other
+
+
 def linear_graph(mechanism: Mechanism) -> Graph:
     """The graph that linear analysis sees: friction left out, gaps closed, both told in `notes`.
 
@@ -60,6 +63,14 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
     Raises `MechanismError` if a mounted network then carries no force at all, or is rigid.
     """
+    global _last  # noqa: PLW0603 - both together, so that threads see one or the other
+    known = _last
+    if known is None or known[0] is not mechanism:
+        known = _last = mechanism, _linear_graph(mechanism)
+    return known[1]
+
+
+def _linear_graph(mechanism: Mechanism) -> Graph:
     whole, labels = _labelled(mechanism, to_analysis)
     networks: dict[str, Network] = {}
     notes: list[str] = []

@@ -14,7 +14,7 @@ from inerter.networks.elements import NAME, Element
 from inerter.networks.elements.registry import kinds_by_unit, kinds_in_unit, parse_element
 from inerter.units import format_quantity, parse_quantity, shown
 
-MOST_POINTS = 10_000
+MOST_POINTS = 10_000_000
 _LONGEST_EXPRESSION = 500
 _MOST_BRACKETS = 50  # far from the depth at which Python's stack ends
 _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,6 +23,7 @@ from inerter.vehicle.mechanism import Mechanism
 from inerter.work.pool import KILLS
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
+_OK = StatusKind.OK.value
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 
@@ -30,6 +34,39 @@ class Case:
     layout: str
     index: str
     point: int = 0
+    swept: float | None = field(default=None, compare=False)  # the value of that number
+
+
+@dataclass(frozen=True)
+class Cases:
+    """All cases of a study in the order of the results, each made when it is asked for.
+
+    The order is that of layouts, of indices, of swept values.
+    """
+
+    layouts: tuple[str, ...]
+    indices: tuple[str, ...]
+    values: tuple[float | None, ...]
+
+    def __len__(self) -> int:
+        return len(self.layouts) * len(self.indices) * len(self.values)
+
+    def __getitem__(self, number: int) -> Case:
+        design, point = divmod(number, len(self.values))
+        layout, index = divmod(design, len(self.indices))
+        return Case(self.layouts[layout], self.indices[index], point, self.values[point])
+
+    def __iter__(self) -> Iterator[Case]:
+        return map(self.__getitem__, range(len(self)))
+
+    def number(self, case: Case) -> int:
+        """Where a case stands."""
+        return self._firsts[case.layout, case.index] + case.point
+
+    @cached_property
+    def _firsts(self) -> dict[tuple[str, str], int]:
+        designs = product(self.layouts, self.indices)
+        return {design: i * len(self.values) for i, design in enumerate(designs)}
 
 
 @dataclass(frozen=True)
@@ -62,21 +99,25 @@ class Outcome:
     @property
     def kind(self) -> str:
         """The kind of its status: the first of all methods that is not ok."""
-        return next((kind for kind in self.status.values() if kind != StatusKind.OK), StatusKind.OK.value)
+        return next((kind for kind in self.status.values() if kind != _OK), _OK)
 
     def to_json(self) -> dict[str, Any]:
         """A plain dictionary; `Outcome(**...)` undoes it."""
-        return asdict(self)
+        return dict(vars(self))
 
 
-def cases(study: Study) -> list[Case]:
-    """All cases in the order of the results: layouts, indices, swept values."""
-    points = range(len(study.sweep.values)) if study.sweep else range(1)
-    return [Case(layout, index, point) for layout in study.layouts for index in study.indices for point in points]
+def cases(study: Study) -> Cases:
+    """All cases of a study."""
+    return Cases(tuple(study.layouts), study.indices, study.sweep.values if study.sweep else (None,))
+
+
+def portable(study: Study) -> Study:
+    """The study without its swept values, of which each case has its own: as small for a process as any."""
+    return replace(study, sweep=replace(study.sweep, values=())) if study.sweep else study
 
 
 def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
-    """Find the best design of a case and judge it by every method and index of the study.
+    """Find the best design of one of the `cases` and judge it by every method and index of the study.
 
     Methods that simulate use `threads`. A failure is an outcome with a status and a sentence, so that one case never
     ends a study.
@@ -115,8 +156,8 @@ def _prefix(study: Study, method: str) -> str:
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
-    swept = study.sweep.values[case.point] if study.sweep else None
-    vehicle = study.design(case.layout, swept)
+    assert (case.swept is None) == (study.sweep is None), case
+    vehicle = study.design(case.layout, case.swept).mechanism()
     fields: dict[str, Any] = {
         "parameters": {},
         "active_bounds": {},
@@ -147,7 +188,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
     bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
-    left_out = design_notes(study, vehicle.mechanism())
+    left_out = design_notes(study, vehicle)
     notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
     notes += [parts_of(note) for note in left_out]
     return Outcome(

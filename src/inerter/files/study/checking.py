@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from inerter.errors import InerterError
 from inerter.files.common.problem import at
@@ -19,15 +22,20 @@ from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
 
+_MOST_TRIED = 200  # swept values
+
 
 def check_study(study: Study) -> None:
-    """Assemble every layout for every index at every swept value, so that what is ill-posed shows before any work.
+    """Assemble every layout for every index over the swept values, so that what is ill-posed shows before any work.
+
+    Of many swept values some are tried, with the least and the largest: whether a design can be analysed rests on the
+    way it is joined rather than on its numbers, and one that cannot has a status that says so.
 
     Raises `StudyError` with a line for every layout that cannot be analysed.
     """
     problems = []
     for layout in study.layouts:
-        for swept in study.sweep.values if study.sweep else (None,):
+        for swept in _tried(study.sweep.values) if study.sweep else (None,):
             try:
                 _check_design(study, study.design(layout, swept))
             except InerterError as error:
@@ -35,6 +43,14 @@ def check_study(study: Study) -> None:
                 break
     if problems:
         raise refusal(study.path, problems)
+
+
+def _tried(values: Sequence[float]) -> Iterator[float]:
+    """All of some values; of many the ends, the extremes, and others evenly between."""
+    places = {*np.linspace(0, len(values) - 1, min(len(values), _MOST_TRIED), dtype=int).tolist()}
+    if len(places) < len(values):
+        places |= {int(np.argmin(values)), int(np.argmax(values))}
+    return (values[i] for i in sorted(places))
 
 
 def _check_design(study: Study, vehicle: Vehicle) -> None:

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
 from inerter.errors import StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.study import journal as journals
-from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv, run_budget
-from inerter.files.study.cases import Case, Outcome, cases, lost_case, run_case
+from inerter.files.study.budgets import BudgetCase, BudgetOutcome, budget_cases, budgets_csv, run_budget
+from inerter.files.study.cases import Outcome, lost_case, portable, run_case
 from inerter.files.study.checking import check_study, kernels
-from inerter.files.study.results import dataset, summary_csv
+from inerter.files.study.results import Gathered, Pending
 from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.summary import write_summary
 from inerter.kernels.prepare import Told, prepare
+from inerter.work.journal import Journal
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, pooled
 from inerter.writing import write_netcdf, write_text
@@ -29,7 +32,8 @@ RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "re
 BUDGETS = "budgets.csv"
 NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, VERSIONS, f"{FIGURES}/", REPORT)
 _ANSWERS = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)  # better at every value is an answer too
-Progress = Callable[[int, int, Outcome | BudgetOutcome | None], None]
+Budgets = dict[BudgetCase, BudgetOutcome]
+Progress = Callable[[int, int, Outcome | BudgetOutcome | None, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,17 +50,24 @@ class StudyResult:
     @property
     def failures(self) -> list[str]:
         """One line for every design whose status is not ok."""
-        lines = []
-        stacked = self.data.status.stack(case=self.data.status.dims)
-        for item in stacked:
-            if item.item() != "ok":
-                lines.append(f"{' '.join(str(part) for part in item.case.item())}: {item.item()}")
-        lines += [
-            f"budget of {found.parameter}, {found.layout} {found.index}: {found.status}: {found.message}"
-            for found in self.budgets
-            if found.status not in _ANSWERS
-        ]
-        return lines
+        return list(self.failing())
+
+    @property
+    def not_ok(self) -> int:
+        """How many lines `failures` has."""
+        designs = int(np.count_nonzero(self.data.status.values != StatusKind.OK.value))
+        return designs + sum(found.status not in _ANSWERS for found in self.budgets)
+
+    def failing(self) -> Iterator[str]:
+        """The lines of `failures`, one by one."""
+        status = self.data.status
+        labels = [status[dim].values.tolist() for dim in status.dims]
+        for place in np.argwhere(status.values != StatusKind.OK.value):
+            names = (str(column[i]) for column, i in zip(labels, place, strict=True))
+            yield f"{' '.join(names)}: {status.values[tuple(place)]}"
+        for found in self.budgets:
+            if found.status not in _ANSWERS:
+                yield f"budget of {found.parameter}, {found.layout} {found.index}: {found.status}: {found.message}"
 
 
 def run_study(
@@ -67,7 +78,7 @@ def run_study(
     executor: Executor | Pool | None = None,
     resume: bool = False,
     force: bool = False,
-    progress: Progress = lambda done, total, outcome: None,
+    progress: Progress = lambda done, total, last, not_ok: None,
     compiling: Told | None = None,
     finish: Callable[[StudyResult, Path], object] = lambda result, folder: None,
 ) -> StudyResult:
@@ -77,13 +88,14 @@ def run_study(
     than one, a script that calls this needs the line `if __name__ == "__main__":`, because processes are started
     afresh and import it. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) works in their place, and
     goes on afterwards. Results do not depend on it. `progress` is told
-    how many designs and budgets are done, how many there are, and the last one. `finish` may add files to the results,
+    whenever some are done how many designs and budgets are, how many there are, the last one, and how many have a
+    status that is not ok. `finish` may add files to the results,
     in the folder that it is given. What the work needs of compiled code is compiled first, if it is not yet;
     `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
 
-    Every finished case is in the journal at once. With `resume`, cases in the journal are not computed again, and the
-    results are the same, byte for byte, as those of an undisturbed run. With `force`, the results that the folder holds
-    stay until these are whole.
+    Every finished case is in the journal at once, or those that were handed out together when the last of them is done.
+    With `resume`, cases in the journal are not computed again, and the results are the same, byte for byte, as those of
+    an undisturbed run. With `force`, the results that the folder holds stay until these are whole.
 
     Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, if it holds what is not
     from this study, or if another run is writing to it, and then nothing has been changed; `WorkError` if the disk is
@@ -91,17 +103,17 @@ def run_study(
     """
     check_study(study)
     with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
-        done, budgets, computed = _computed(study, results, pool, progress, compiling)
+        gathered, budgets, computed = _computed(study, results, pool, progress, compiling)
         found = tuple(budgets[case] for case in budget_cases(study))
-        data = dataset(study, done)
+        data = gathered.dataset()
         write_text(results.draft / RESOLVED, write_resolved(study))
         write_text(results.draft / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
         if found:
             write_text(results.draft / BUDGETS, budgets_csv(found))
-        write_text(results.draft / SUMMARY, summary_csv(study, data))
+        write_summary(results.draft / SUMMARY, study, data)
         write_netcdf(results.draft / DATASET, data)
         results.publish()
-        kinds = (*(outcome.kind for outcome in done.values()), *(budget.status for budget in found))
+        kinds = {*gathered.kinds, *(budget.status for budget in found)}
         result = StudyResult(results.folder, study, data, computed, found, StatusKind.FAILED in kinds)
         finish(result, results.draft)
     return result
@@ -118,34 +130,52 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
 
 def _computed(
     study: Study, results: Results, pool: Pool, progress: Progress, compiling: Told | None
-) -> tuple[journals.Done, journals.Budgets, int]:
+) -> tuple[Gathered, Budgets, int]:
     """All cases and budgets, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
-    before = journal.read() if results.resume else []
-    done, budgets = journals.finished(journal.path, before)
-    everything, further = cases(study), budget_cases(study)
-    pending = [case for case in everything if case not in done]
+    found = Gathered(study)
+    budgets = _read(journal, found) if results.resume else {}
+    pending, further = found.pending(), budget_cases(study)
     if pending:
         _prepare(pool, study, compiling)
-    total, computed = len(everything) + len(further), len(pending)
-    progress(len(done) + len(budgets), total, None)
+    total = len(found.cases) + len(further)
+
+    def tell(last: Outcome | BudgetOutcome | None) -> None:
+        troubled = sum(budget.status not in _ANSWERS for budget in budgets.values())
+        progress(found.count + len(budgets), total, last, found.not_ok + troubled)
+
+    tell(None)
     results.list_journal(journals.NAME)
-    with journal.appending(before) as append:
-        for outcome in _outcomes(study, pending, pool):
-            append(outcome.to_json())
-            done[outcome.case] = outcome
-            progress(len(done) + len(budgets), total, outcome)
+    with journal.appending(results.resume) as append:
+        for several in _outcomes(study, pending, pool):
+            append(*(outcome.to_json() for outcome in several))
+            for outcome in several:
+                found.enter(outcome)
+            tell(several[-1])
         for case in further:
             if case not in budgets:
-                budgets[case] = run_budget(study, case, done, pool.jobs)
+                budgets[case] = run_budget(study, case, found.designs, pool.jobs)
                 append(budgets[case].to_json())
-                progress(len(done) + len(budgets), total, budgets[case])
-    return done, budgets, computed
+                tell(budgets[case])
+    return found, budgets, len(pending)
 
 
-def _outcomes(study: Study, pending: Sequence[Case], pool: Pool) -> Iterator[Outcome]:
-    here = partial(run_case, study, threads=pool.jobs)
-    return pool.spread(partial(run_case, study), pending, here, partial(lost_case, study))
+def _read(journal: Journal, found: Gathered) -> Budgets:
+    """Enter the cases of a journal; returns its budgets."""
+    budgets: Budgets = {}
+    for one in journals.outcomes(journal):
+        if isinstance(one, BudgetOutcome):
+            budgets[one.case] = one
+        else:
+            found.enter(one)
+    return budgets
+
+
+def _outcomes(study: Study, pending: Pending, pool: Pool) -> Iterator[list[Outcome]]:
+    """Outcomes as they are done, those that come together in one list."""
+    small = portable(study)
+    here = partial(run_case, small, threads=pool.jobs)
+    return pool.batches(partial(run_case, small), pending, here, partial(lost_case, small))
 
 
 def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:

@@ -227,14 +227,14 @@ def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
 def _run(tasks: list[Task], results: Results, pool: Pool, progress: Progress) -> dict[tuple[str, str], Numbers]:
     """The numbers of all tasks; each is in the journal as soon as it is there."""
     journal = Journal(results.place / JOURNAL, {"paper": PAPER.name})
-    before = journal.read() if results.resume else []
+    before = journal.read() if results.resume else ()
     found = {(entry["part"], entry["name"]): entry["numbers"] for entry in before}
     pending = [task for task in tasks if task.key not in found]
     pending = pending[::2] + pending[1::2]  # neighbours are alike: two processes would compile the same
     if tasks:
         progress("simulations", len(tasks) - len(pending), len(tasks))
     results.list_journal(JOURNAL)
-    with journal.appending(before) as append:
+    with journal.appending(results.resume) as append:
         for i, ((part, name), numbers) in enumerate(pool.spread(work, pending), 1):
             found[part, name] = numbers
             append({"part": part, "name": name, "numbers": numbers})
@@ -242,5 +242,5 @@ def _run(tasks: list[Task], results: Results, pool: Pool, progress: Progress) ->
     return {task.key: found[task.key] for task in sorted(tasks, key=lambda task: _ORDER.index(task.part))}
 
 
-def _named(progress: Progress, name: str) -> Callable[[int, int, object], None]:
-    return lambda done, total, outcome: progress(name, done, total)
+def _named(progress: Progress, name: str) -> Callable[[int, int, object, int], None]:
+    return lambda done, total, last, not_ok: progress(name, done, total)

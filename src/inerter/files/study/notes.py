@@ -1,0 +1,62 @@
+"""What methods left out of the designs of a study, told once however many cases say it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from inerter.files.study.cases import Case, Outcome
+from inerter.methods.note import text_of
+
+Part = str | float
+_Words = tuple[str | None, ...]  # of a note, with None for its numbers
+
+
+@dataclass
+class _Alike:
+    """Notes that differ in their numbers alone: where the first stands, the ends of each number, and the layouts."""
+
+    first: tuple[int, int]
+    low: list[Part]
+    high: list[Part]
+    layouts: set[str] = field(default_factory=set)
+
+    def add(self, place: tuple[int, int], note: Sequence[Part]) -> None:
+        self.first = min(self.first, place)
+        for i, part in enumerate(note):
+            if not isinstance(part, str):
+                self.low[i], self.high[i] = min(self.low[i], part), max(self.high[i], part)
+
+
+@dataclass
+class Notes:
+    """The notes of all outcomes that were added, in any order; what is kept grows with their words only."""
+
+    _alike: dict[_Words, _Alike] = field(default_factory=dict)
+
+    def add(self, number: int, case: Case, outcome: Outcome) -> None:
+        """Take note of what is said of the case of that number."""
+        for i, note in enumerate(outcome.notes):
+            words = tuple(part if isinstance(part, str) else None for part in note)
+            alike = self._alike.get(words)
+            if alike is None:
+                alike = self._alike[words] = _Alike((number, i), [*note], [*note])
+            else:
+                alike.add((number, i), note)
+            alike.layouts.add(case.layout)
+
+    def texts(self, layouts: Sequence[str]) -> list[str]:
+        """Each note with the layouts that it concerns, in the order of the cases."""
+        return [
+            f"{', '.join(name for name in layouts if name in alike.layouts)}: {_ranged(alike)}"
+            for alike in sorted(self._alike.values(), key=lambda alike: alike.first)
+        ]
+
+
+def _ranged(alike: _Alike) -> str:
+    """One note for several that differ in their numbers."""
+    texts = []
+    for ends in zip(alike.low, alike.high, strict=True):
+        low, high = (text_of((end,)) for end in ends)
+        texts.append(low if low == high else f"{low} to {high}")
+    return "".join(texts)

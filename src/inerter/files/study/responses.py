@@ -1,0 +1,65 @@
+"""Frequency responses of the designs that a study finds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from inerter.errors import LinearSystemError, MechanismError
+from inerter.files.study.cases import Case
+from inerter.files.study.study import Study
+from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.methods.registry import is_blind
+from inerter.norms.response import frequency_response
+from inerter.systems.descriptor import close
+
+Array = NDArray[np.float64]
+
+
+def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dataset:
+    """Gain of every weighted output of every index over frequency, for the parameters that were found for each case."""
+    designs = {
+        (case.layout, case.index): study.design(case.layout).with_values(values) for case, values in found.items()
+    }
+    conventions = CONVENTIONS[study.conventions]
+    systems: dict[tuple[str, str], Any] = {}
+    for (layout, index), vehicle in designs.items():
+        mechanism = vehicle.mechanism()
+        try:
+            problem = linear_problem(mechanism, study.index(index).question(mechanism), conventions)
+            systems[layout, index] = problem, problem.system(close(problem.descriptor, {}))
+        except (MechanismError, LinearSystemError):  # friction or a gap alone holds a part
+            if all(map(is_blind, study.methods)):
+                raise
+    omega = _frequencies([system.A for _, system in systems.values()])
+    data = xr.Dataset(coords={"omega": ("omega", omega, {"units": "rad/s", "long_name": "angular frequency"})})
+    for index in study.indices:
+        mine = {layout: entry for (layout, i), entry in systems.items() if i == index}
+        if not mine:
+            continue
+        question = next(iter(mine.values()))[0].question
+        weights = np.array([abs(output.weight) for output in question.outputs])
+        gains = np.full((len(study.layouts), weights.size, omega.size), np.nan)
+        for layout, (problem, system) in mine.items():
+            response = frequency_response(system, omega, problem.pade_order)[:, :, 0]
+            gains[list(study.layouts).index(layout)] = weights[:, None] * np.abs(response).T
+        own = f"({question.unit})" if "/" in question.unit else question.unit
+        unit = question.unit if question.road is None else f"{own}/(m/s)"
+        attributes = {"units": unit, "long_name": study.index(index).response}
+        data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
+        names = [o.output if o.weight == 1.0 else f"{o.output} x {o.weight:g} m" for o in question.outputs]
+        data = data.assign_coords({f"output_{index}": names})
+    return data
+
+
+def _frequencies(matrices: list[Array]) -> Array:
+    """Angular frequencies from a decade below the slowest resonance to a decade above the fastest."""
+    poles = np.concatenate([np.linalg.eigvals(A) for A in matrices]) if matrices else np.array([1.0])
+    resonances = np.abs(poles[np.abs(poles.imag) > 0.3 * np.abs(poles)])
+    sizes = resonances if resonances.size else np.abs(poles)[np.abs(poles) > 0.0]
+    low, high = (sizes.min(), sizes.max()) if sizes.size else (1.0, 1.0)
+    return np.geomspace(low / 10.0, high * 10.0, 601)

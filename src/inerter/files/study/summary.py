@@ -1,0 +1,79 @@
+"""The table of a study's results: one row a design and method."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from inerter.files.study.cases import cases
+from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
+from inerter.files.study.study import Study
+from inerter.writing import lines_of_text
+
+_AT_ONCE = 10_000  # designs that are made plain numbers together
+
+
+def write_summary(path: Path, study: Study, data: xr.Dataset) -> None:
+    """Each design and method: what it is, its value, how much better than the baseline, and its parameters."""
+    with lines_of_text(path) as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(_header(study, data))
+        writer.writerows(_rows(study, data))
+
+
+def _header(study: Study, data: xr.Dataset) -> list[str]:
+    sweep = study.sweep
+    parameters = zip(data.parameter.values.tolist(), data.parameter_unit.values.tolist(), strict=True)
+    units = zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True)
+    return [
+        *("layout", "index", "method"),
+        *([f"{sweep.element} [{sweep.unit}]"] if sweep else []),
+        *("value", "unit", "improvement_percent", "standard_error", "status"),
+        *(f"{name}_percent" if name in PERCENT else name for name in _more(study)),
+        *(f"{name} [{unit}]" for name, unit in parameters),
+        *("at_bound", "starts", "agreed"),
+        *(f"{name} of this design [{unit}]" for name, unit in units),
+    ]
+
+
+def _more(study: Study) -> list[str]:
+    return list(UNCERTAIN) if is_uncertain(study) else []
+
+
+def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
+    sweep, everything, more = study.sweep, cases(study), _more(study)
+    parameters = data.parameter.values.tolist()
+    units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
+    by_method = {name for name in data.data_vars if "method" in data[name].dims}
+    arrays = {
+        str(name): by_case(data, str(name)) for name in data.data_vars if {"layout", "index"} <= {*data[name].dims}
+    }
+    for start in range(0, len(everything), _AT_ONCE):
+        part = {name: array[start : start + _AT_ONCE].tolist() for name, array in arrays.items()}
+        for i in range(len(part["status"])):
+            case, design = everything[start + i], {name: column[i] for name, column in part.items()}
+            ends = zip(parameters, design["at_bound"], strict=True)
+            at_bound = ";".join(f"{name}:{end}" for name, end in ends if end)
+            for m, method in enumerate(study.evaluate):
+                row = {name: value[m] if name in by_method else value for name, value in design.items()}
+                yield [
+                    case.layout,
+                    case.index,
+                    method,
+                    *([_number(case.swept)] if sweep else []),
+                    *(_number(row["value"]), units[case.index], _number(row["improvement"])),
+                    *(_number(row["standard_error"]), row["status"]),
+                    *(_number(row[name]) if name in PERCENT else row[name] for name in more),
+                    *map(_number, row["parameter_value"]),
+                    *(at_bound, row["starts"], row["agreed"]),
+                    *map(_number, row["other_value"]),
+                ]
+
+
+def _number(value: Any) -> str:
+    """The shortest text that reads back as the same number; empty for a number that there is not."""
+    return "" if value != value else repr(value)

@@ -56,7 +56,11 @@ def run(
 
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
     items = "designs and budgets" if loaded.budgets else "designs"
-    with interruptible(lambda: kept), workers(cluster, jobs) as executor, progress(study.stem, items) as shown:
+    with (
+        interruptible(lambda: kept),
+        workers(cluster, jobs) as executor,
+        progress(study.stem, items, executor) as shown,
+    ):
         result = run_study(
             loaded,
             folder,

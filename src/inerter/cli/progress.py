@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -25,6 +26,7 @@ from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
 from inerter.files.study.running import Progress as Report
 from inerter.kernels.prepare import Told
+from inerter.work.cluster import slots
 
 _SELDOM = 60.0  # seconds between two lines on a log
 
@@ -37,11 +39,11 @@ class Shown(NamedTuple):
 
 
 @contextmanager
-def progress(what: str, items: str = "designs") -> Iterator[Shown]:
-    """Callbacks that show how far the work is; `items` says what there is to find."""
+def progress(what: str, items: str = "designs", executor: Executor | None = None) -> Iterator[Shown]:
+    """Callbacks that show how far the work is; `items` says what there is to find, `executor` who looks for it."""
     if not sys.stderr.isatty():
         yield Shown(
-            _Lines(what, items),
+            _Lines(what, items, executor),
             lambda title, number, total: print(_kernel(what, title, number, total), file=sys.stderr, flush=True),
         )
         return
@@ -61,7 +63,7 @@ def progress(what: str, items: str = "designs") -> Iterator[Shown]:
         def show(done: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
             pace.begin(done)
             name = f"{what}: {last.layout} {last.index}{_not_ok(not_ok)}" if last else what
-            told = f"{pace.rate(done):.3g}/s" if last else ""
+            told = f"{pace.rate(done):.3g}/s{_hands(executor)}" if last else ""
             bar.update(task, completed=done, total=total, description=name, pace=told)
 
         def begun(title: str, number: int, total: int) -> None:
@@ -133,6 +135,12 @@ def _kernel(what: str, title: str, number: int, total: int) -> str:
     return f"{what}: compiling kernels {number} of {total}: {title}"
 
 
+def _hands(executor: Executor | None) -> str:
+    """How many pieces a cluster works on at the same time, which may change."""
+    count = 0 if executor is None else slots(executor)
+    return "" if executor is None else f", {count} thread{'' if count == 1 else 's'} at work"
+
+
 def _not_ok(count: int) -> str:
     return f", {count} not ok" if count else ""
 
@@ -161,6 +169,7 @@ class _Lines:
 
     what: str
     items: str
+    executor: Executor | None = None
     pace: _Pace = field(default_factory=_Pace)
     last: float = field(default_factory=time.monotonic)
 
@@ -174,7 +183,7 @@ class _Lines:
         elif last is not None and time.monotonic() - self.last > _SELDOM:
             rate = self.pace.rate(done)
             left = f"{rate:.3g} a second, about {_duration((total - done) / rate)} left"
-            self._say(f"{done} of {total} {self.items} found{_not_ok(not_ok)}, {left}")
+            self._say(f"{done} of {total} {self.items} found{_not_ok(not_ok)}, {left}{_hands(self.executor)}")
 
     def _say(self, text: str) -> None:
         self.last = time.monotonic()

@@ -23,6 +23,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -108,11 +109,12 @@ async def proxies(latency: float, pairs: list[tuple[int, int]]) -> None:
     """What comes to the first port of each pair goes to the second, and the answer back."""
 
     async def connect(port: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        try:
-            there, to = await asyncio.open_connection("127.0.0.1", port)
-        except OSError:
-            writer.close()
-            return
+        while True:
+            try:
+                there, to = await asyncio.open_connection("127.0.0.1", port)
+                break
+            except OSError:  # it is about to listen
+                await asyncio.sleep(0.1)
         await asyncio.gather(forward(reader, to, latency), forward(there, writer, latency))
 
     for listening, port in pairs:
@@ -173,38 +175,58 @@ def timed(work: Callable[[], object]) -> float:
     return time.perf_counter() - begin
 
 
-def wall(study: it.Study, **where: Any) -> float:
-    with TemporaryDirectory() as folder:
-        return timed(lambda: it.run_study(study, Path(folder) / "out", **where))
+@dataclass(frozen=True)
+class Run:
+    seconds: float
+    worked: float  # seconds that workers were at work, all together
+
+
+def run_of(study: it.Study, **where: Any) -> Run:
+    worked = list[float]()
+    learn = pieces.Cutter.learn
+
+    def learn_and_count(self: Any, piece: Any, seconds: float) -> None:
+        worked.append(seconds)
+        learn(self, piece, seconds)
+
+    pieces.Cutter.learn = learn_and_count  # type: ignore[method-assign]
+    try:
+        with TemporaryDirectory() as folder:
+            return Run(timed(lambda: it.run_study(study, Path(folder) / "out", **where)), sum(worked))
+    finally:
+        pieces.Cutter.learn = learn  # type: ignore[method-assign]
 
 
 def study_part(rounds: int) -> None:
-    study = study_of(POINTS)
+    study, few = study_of(POINTS), study_of(2)
     with ExitStack() as stack:
-        one, two = Cluster(stack, 1), Cluster(stack, 2)
-        slow = Cluster(stack, 2, LATENCY)
-        runs: dict[str, Callable[[], float]] = {
-            "own processes, 1": lambda: wall(study, jobs=1),
-            "own processes, 2": lambda: wall(study, jobs=2),
-            "dask, 1 worker": lambda: wall(study, executor=one.executor),
-            "dask, 2 workers": lambda: wall(study, executor=two.executor),
-            "dask, 2 workers, 50 ms a message": lambda: wall(study, executor=slow.executor),
-        }
-        few = study_of(2)
+        one, two, slow = Cluster(stack, 1), Cluster(stack, 2), Cluster(stack, 2, LATENCY)
         for cluster in (one, two, slow):  # workers have nothing loaded yet
-            print(f"two designs on workers that are cold: {wall(few, executor=cluster.executor):.1f} s")
-        times: dict[str, list[float]] = {name: [] for name in runs}
+            print(f"two designs on workers that are cold: {run_of(few, executor=cluster.executor).seconds:.1f} s")
+        places: dict[str, dict[str, Any]] = {
+            "own processes, 1": {"jobs": 1},
+            "own processes, 2": {"jobs": 2},
+            "dask, 1 worker": {"executor": one.executor},
+            "dask, 2 workers": {"executor": two.executor},
+            "dask, 2 workers, 50 ms a message": {"executor": slow.executor},
+        }
+        runs: dict[str, list[Run]] = {name: [] for name in places}
         for _ in range(rounds):
-            for name, run in runs.items():
-                times[name].append(run())
-                print(f"   {name}: {times[name][-1]:.1f} s", flush=True)
-    best = {name: min(found) for name, found in times.items()}
+            for name, where in places.items():
+                run = run_of(study, **where)
+                runs[name].append(run)
+                print(f"   {name}: {run.seconds:.1f} s, of which workers worked {run.worked:.1f} s", flush=True)
+    best = {name: min(found, key=lambda run: run.seconds) for name, found in runs.items()}
     for name, alone in (
         ("own processes, 2", "own processes, 1"),
         ("dask, 2 workers", "dask, 1 worker"),
         ("dask, 2 workers, 50 ms a message", "dask, 1 worker"),
     ):
-        print(f"{name}: {best[name]:.1f} s, one {best[alone]:.1f} s: {best[alone] / best[name]:.2f} times as fast")
+        busy = max(run.worked / (2.0 * run.seconds) for run in runs[name])
+        print(
+            f"{name}: {best[name].seconds:.1f} s, one {best[alone].seconds:.1f} s: "
+            f"{best[alone].seconds / best[name].seconds:.2f} times as fast; workers at work for {100.0 * busy:.0f} %"
+        )
 
 
 def waiting_part(rounds: int) -> None:

@@ -9,11 +9,13 @@ import re
 import shlex
 import shutil
 from collections.abc import Callable
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
 import pytest
 from campaigns import sampled
+from distributed import SSHCluster
 from pages import NUMBER, PAGES, ROOT, assert_figures, blocks, commands, printed, rounds_to, run, table, text_of
 
 import inerter as it
@@ -165,6 +167,18 @@ def test_output_is_shown_where_there_is_some() -> None:
 def test_configurations_are_sound(block, tmp_path: Path) -> None:
     (tmp_path / "rig.toml").write_text(block.code, encoding="utf-8")
     assert load_identification(tmp_path / "rig.toml").models()
+
+
+def test_blocks_for_other_machines_are_sound() -> None:
+    """They cannot run here, but they are Python, and start functions and modules that are there."""
+    shown = blocks("cluster.md", "py")
+    assert len(shown) > 3
+    for block in shown:
+        compile(block.code, f"cluster.md:{block.line}", "exec")
+    ssh = next(block.code for block in shown if "SSHCluster" in block.code)
+    given = set(re.findall(r"^        (\w+)=", ssh, re.MULTILINE))
+    assert given == {"worker_options", "remote_python"}
+    assert given < set(signature(SSHCluster).parameters)
 
 
 def test_scripts_of_the_benchmarks_are_there() -> None:

@@ -12,6 +12,7 @@ import sys
 import time
 import tracemalloc
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -280,13 +281,15 @@ def test_progress_tells_how_many_are_not_ok_and_how_long_it_takes(
     clock = iter([0.0, 0.0, 50.0, 100.0, *[100.0] * 20])
     monkeypatch.setattr("inerter.cli.progress.time.monotonic", lambda: next(clock))
     outcome = drawn(study, cases(study)[0])
-    with progress("many") as shown:
+    with ThreadPoolExecutor(3) as threads, progress("many", executor=threads) as shown:
         shown.cases(500, 1000, None, 0)
         shown.cases(600, 1000, outcome, 2)
         shown.cases(700, 1000, outcome, 3)
     lines = capsys.readouterr().err.splitlines()
     assert lines[0] == "many: 1000 designs to find, 500 of them done before"
-    assert re.fullmatch(r"many: \d+ of 1000 designs found, [23] not ok, 2 a second, about \S+ \w+ left", lines[1])
+    assert re.fullmatch(
+        r"many: \d+ of 1000 designs found, [23] not ok, 2 a second, about \S+ \w+ left, 3 threads at work", lines[1]
+    )
 
 
 def test_the_band_of_a_long_sweep_covers_what_all_points_cover() -> None:

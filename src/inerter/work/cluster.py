@@ -62,7 +62,7 @@ def deaths(error: Exception) -> int:
 
 
 def check(executor: Executor) -> None:
-    """Raises `WorkError` if the workers of a cluster do not answer, or would not give the numbers of this process."""
+    """Raises `WorkError` if a cluster has no workers, or its processes would not give the numbers of this one."""
     client = _client(executor)
     if client is None:
         return
@@ -74,21 +74,31 @@ def check(executor: Executor) -> None:
                 f"the scheduler has no workers, and none came within {_FIRST:.0f} s. Start some, such as: "
                 f"dask worker {client.scheduler_info()['address']} --nthreads 1"
             ) from None
-    for address, answer in client.run(told, on_error="return").items():
+    for place, answer in _answers(client):
         if isinstance(answer, BaseException):
-            raise WorkError(f"the worker {address} cannot load this package ({answer}). {INSTALL}")
+            raise WorkError(f"{place} cannot load this package ({answer}). {INSTALL}")
         version, numerics = answer
         if version != VERSION:
-            raise WorkError(f"the worker {address} has inerter {version}, and this is {VERSION}. {INSTALL}")
+            raise WorkError(f"{place} has inerter {version}, and this is {VERSION}. {INSTALL}")
         if numerics != origin():
             raise WorkError(
-                f"the worker {address} has other sources of inerter {version}, or other libraries that make the "
-                f"numbers (numpy, scipy, numba). {INSTALL}"
+                f"{place} has other sources of inerter {version}, or other libraries that make the numbers (numpy, "
+                f"scipy, numba). {INSTALL}"
             )
 
 
+def _answers(client: Client) -> Iterator[tuple[str, Any]]:
+    """What the scheduler, which unpacks work before it passes it on, and the workers say of themselves, or an error."""
+    try:
+        yield "the scheduler", client.run_on_scheduler(told)
+    except Exception as error:  # whatever kept it from loading this
+        yield "the scheduler", error
+    for address, answer in client.run(told, on_error="return").items():
+        yield f"the worker {address}", answer
+
+
 def told() -> tuple[str, str]:
-    """What a worker says of itself: its version of this package, and what makes its numbers."""
+    """What a process says of itself: its version of this package, and what makes its numbers."""
     return VERSION, origin()
 
 

@@ -26,7 +26,8 @@ _SHORT = 3.0  # seconds: to start processes takes about as long
 _AT_ONCE = 0.1  # seconds for which results of this process are kept back, to come together
 _KEPT = "What was computed is kept; continue with --resume"
 _GONE = f"the executor that the work was handed to has ended, or lost its connection. {_KEPT} when it is there again."
-_AHEAD = 2  # pieces for each process: the one that it works on, and the next
+_AHEAD = 2  # pieces for each process of ours: the one that it works on, and the next
+_AFAR = 8  # for each of another executor, where pieces and results may be on their way for as long as a piece takes
 
 
 class Pool:
@@ -155,9 +156,9 @@ class Pool:
         self, work: Callable[[Item], Result], cutter: Cutter[Item], under_way: dict[Future[Any], Piece[Item]]
     ) -> None:
         executor = self._given or self._processes()
-        slots = max(self.slots, 1)
+        slots, ahead = max(self.slots, 1), _AHEAD if self._given is None else _AFAR
         try:
-            while len(under_way) < _AHEAD * slots and (piece := cutter.take(slots)):
+            while len(under_way) < ahead * slots and (piece := cutter.take(slots)):
                 under_way[executor.submit(worked, work, piece)] = piece
             if not under_way and (piece := cutter.take_alone()):
                 under_way[executor.submit(worked, work, piece)] = piece

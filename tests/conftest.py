@@ -16,15 +16,16 @@ from inerter.kernels.declare import Kernel
 from inerter.kernels.prepare import prepare
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have a process for each core already
-settings.register_profile(
-    "reproducible",
-    derandomize=True,
-    deadline=None,
-    database=None,
-    max_examples=100,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
-settings.load_profile("reproducible")
+for name, count in (("short", 40), ("long", 100)):  # --hypothesis-profile=long tries more examples
+    settings.register_profile(
+        name,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        max_examples=count,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    )
+settings.load_profile("short")
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

@@ -15,6 +15,7 @@ from troubled_rig import Device, Sensors, Tones, measured
 import inerter as it
 from inerter.cli.main import call
 from inerter.files.identification import running as identification_run
+from inerter.identification import explaining
 from inerter.identification.identifiability import Identifiability, Verdict
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
@@ -177,7 +178,12 @@ def rattled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_a_faulty_sensor_is_named_in_the_first_line(rattled: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_faulty_sensor_is_named_in_the_first_line(
+    rattled: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of three hypotheses, since each is a fit."""
+    whole, tried = explaining.hypotheses, {"delay", "gain", "filtered force"}
+    monkeypatch.setattr(explaining, "hypotheses", lambda problem: [h for h in whole(problem) if h.name in tried])
     folder = rattled / "out"
     arguments = [str(rattled / "late.csv"), "--config", str(rattled / "rig.toml"), "-o", str(folder)]
     assert call(["identify", *arguments]) == 1

@@ -90,6 +90,7 @@ def test_a_cache_that_cannot_be_written_is_told_and_done_without(
     assert "Traceback" not in err
 
 
+@pytest.mark.campaign
 def test_nobody_at_home(temporary: Path) -> None:
     out, err = compile_with(None, temporary)
     assert out == "42.0\n"

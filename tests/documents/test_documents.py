@@ -246,6 +246,7 @@ def test_how_far_harmonic_balance_is_off() -> None:
         assert balanced.status.ok == (float(friction) <= 400.0)
 
 
+@pytest.mark.campaign
 def test_statistical_linearisation_finds_as_good_a_design_as_simulation() -> None:
     """Nearly, on the same roads."""
     assert "is as good on these roads, within 0.03 %" in text_of("methods.md")

@@ -126,7 +126,7 @@ def test_every_element_is_placed_once_in_order_and_boxes_do_not_meet(network):
     check_places(drawing)
 
 
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(networks((Spring, Damper, Inerter), depth=3), st.floats(0.5, 2.0))
 def test_what_touches_in_the_drawing_is_the_network(network, s):
     assert conductance(schematic(network), s) == pytest.approx(network.admittance(s).real, rel=1e-6)

@@ -237,7 +237,7 @@ def courses(seeds: range, steps: int, folder: Path, monkeypatch: pytest.MonkeyPa
 def test_what_is_a_users_stays(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], identified: Identified
 ) -> None:
-    assert courses(range(3), 16, tmp_path, monkeypatch, capsys, identified) == []
+    assert courses(range(2), 16, tmp_path, monkeypatch, capsys, identified) == []
 
 
 @pytest.mark.marathon

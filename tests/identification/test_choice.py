@@ -61,6 +61,7 @@ def test_an_element_too_many_is_seldom_chosen():
     assert found.count(truth) >= 7
 
 
+@pytest.mark.campaign
 def test_a_damper_is_found_where_there_is_one():
     device = it.Inerter(113.0) | it.Damper(200.0)
     found = it.choose(record_of(device, 7), ["ideal", "ideal-viscous"], starts=8)
@@ -161,11 +162,9 @@ def test_what_is_not_identifiable_is_said():
         friction_law("record")
 
 
-def test_residuals_of_a_fit_show_a_damper_that_it_lacks():
-    device = SHAFT - (it.Inerter(113.0) | it.Friction(10.0) | it.Damper(100.0))
+@pytest.mark.parametrize("lacking", sampled([True, False], [True]))
+def test_residuals_of_a_fit_show_a_damper_that_it_lacks(lacking):
+    damped = SHAFT - (it.Inerter(113.0) | it.Friction(10.0) | it.Damper(100.0))
     model = SHAFT - (it.Inerter(it.free(50.0, 200.0, name="b")) | it.Friction(it.free(0.0, 50.0, name="f")))
-    record = record_of(device, 0, 0.7)
-    lacking = it.identify(record, model, starts=8)
-    whole = it.identify(record_of(SHAFT - FLYWHEEL, 0, 0.7), model, starts=8)
-    assert friction_law(lacking).law == "viscous"
-    assert friction_law(whole).law in ("coulomb", "not identifiable")
+    fit = it.identify(record_of(damped if lacking else SHAFT - FLYWHEEL, 0, 0.7), model, starts=8)
+    assert friction_law(fit).law in (("viscous",) if lacking else ("coulomb", "not identifiable"))

@@ -102,7 +102,7 @@ def test_compiled_norms_and_gradients_with_random_filters(seed):
     assert checked >= 3
 
 
-@pytest.mark.parametrize("case", sampled(["Wk", "one each", "late axle"], ["Wk", "late axle"]))
+@pytest.mark.parametrize("case", sampled(["Wk", "one each", "late axle"], ["Wk"]))
 def test_the_norm_is_the_integral_of_both_responses(case):
     """By quadrature of |H|^2 |F|^2 over frequency, with dynamic stiffness in place of states; and the gradient."""
     c, b = Damper(free(1e3, 1e5, "c")), Inerter(free(10.0, 2e3, "b"))
@@ -151,17 +151,17 @@ def test_designs_are_searched_with_the_filter():
         assert there >= best.value
 
 
-def test_indices_with_and_without_filters_are_valued_side_by_side():
+@pytest.mark.parametrize("conventions", sampled(CONVENTIONS, ["exact"]))
+def test_indices_with_and_without_filters_are_valued_side_by_side(conventions):
     design = paper_half_car(k | Damper(free(1e3, 1e5, "c")) - Inerter(200.0), k | Damper(4e3))
     band = Filter([5.0, 0.0], [1.0, 5.0, 400.0])
     indices = [J1, Weighed(J1, WK), Weighed(J1, (WK, band)), Weighed(J1, (band, None)), J3, Weighed(J3, WK), J5]
     points = {"c": np.array([2e3, 5e3])}
-    for conventions in CONVENTIONS:
-        method = it.Norm(conventions)
-        together = it.evaluate_many(design, indices, points, method)
-        for row, c in zip(together, points["c"].tolist(), strict=True):
-            alone = [it.evaluate(design.with_values({"c": c}), index, method).value for index in indices]
-            assert row == pytest.approx(alone, rel=1e-8)
+    method = it.Norm(conventions)
+    together = it.evaluate_many(design, indices, points, method)
+    for row, c in zip(together, points["c"].tolist(), strict=True):
+        alone = [it.evaluate(design.with_values({"c": c}), index, method).value for index in indices]
+        assert row == pytest.approx(alone, rel=1e-8)
 
 
 def test_what_a_body_does_over_a_road_is_finite_behind_a_filter_that_is_zero_at_rest():
@@ -231,23 +231,28 @@ def test_with_little_friction_all_methods_are_the_norm(index):
         assert simulated.value == pytest.approx(norm, rel=1e-4)
 
 
-def test_peak_gains_pass_through_a_filter():
-    """A notch takes the resonance away; with friction, as harmonic balance and simulation both have it."""
-    notch = Filter([1.0, 1.0, 15.0**2], [1.0, 20.0, 15.0**2])
-    plain, load = paper_quarter_car(k | Damper(4e3) - Inerter(100.0)), it.LoadCarrying(amplitude=1000.0)
-    for passed in (notch, WK, Filter([0.1, 1.0], [1.0, 1.0])):
-        asked = Weighed(load, passed)
-        expected = rational.index_value(plain.mechanism(), asked)
-        assert it.evaluate(plain, asked, it.Norm()).value == pytest.approx(expected, rel=1e-9)
-        opened_up = paper_quarter_car(k | Damper(free(1e3, 1e5, "c")) - Inerter(100.0))
-        assert it.evaluate_many(opened_up, asked, {"c": 4e3}, it.Norm())[0, 0] == pytest.approx(expected, rel=1e-8)
-        little = paper_quarter_car(k | Damper(4e3) - (Inerter(100.0) | Friction(0.01)))
-        assert it.evaluate(little, asked, it.StatisticalLinearisation()).value == pytest.approx(expected, rel=1e-4)
-        assert it.evaluate(little, asked, it.ExpectedValue()).value == pytest.approx(expected, rel=1e-4)
-        assert it.evaluate(little, asked, it.ApproximateLinear()).value == pytest.approx(expected, rel=2e-3)
+NOTCH = Filter([1.0, 1.0, 15.0**2], [1.0, 20.0, 15.0**2])  # takes the resonance away
+LOAD = it.LoadCarrying(amplitude=1000.0)
+PASSED = {"notch": NOTCH, "Wk": WK, "lead": Filter([0.1, 1.0], [1.0, 1.0])}
+
+
+@pytest.mark.parametrize("name", sampled(PASSED, ["notch"]))
+def test_peak_gains_pass_through_a_filter(name):
+    plain, asked = paper_quarter_car(k | Damper(4e3) - Inerter(100.0)), Weighed(LOAD, PASSED[name])
+    expected = rational.index_value(plain.mechanism(), asked)
+    assert it.evaluate(plain, asked, it.Norm()).value == pytest.approx(expected, rel=1e-9)
+    opened_up = paper_quarter_car(k | Damper(free(1e3, 1e5, "c")) - Inerter(100.0))
+    assert it.evaluate_many(opened_up, asked, {"c": 4e3}, it.Norm())[0, 0] == pytest.approx(expected, rel=1e-8)
+    little = paper_quarter_car(k | Damper(4e3) - (Inerter(100.0) | Friction(0.01)))
+    assert it.evaluate(little, asked, it.StatisticalLinearisation()).value == pytest.approx(expected, rel=1e-4)
+    assert it.evaluate(little, asked, it.ExpectedValue()).value == pytest.approx(expected, rel=1e-4)
+    assert it.evaluate(little, asked, it.ApproximateLinear()).value == pytest.approx(expected, rel=2e-3)
+
+
+def test_with_friction_harmonic_balance_and_simulation_filter_peak_gains_alike():
     rubbing = paper_quarter_car(k | Damper(4e3) - (Inerter(100.0) | Friction(100.0)))
-    simulated = it.evaluate(rubbing, Weighed(load, notch), it.ExpectedValue())
-    balanced = it.evaluate(rubbing, Weighed(load, notch), it.StatisticalLinearisation())
+    simulated = it.evaluate(rubbing, Weighed(LOAD, NOTCH), it.ExpectedValue())
+    balanced = it.evaluate(rubbing, Weighed(LOAD, NOTCH), it.StatisticalLinearisation())
     assert simulated.status.ok
     assert simulated.value == pytest.approx(balanced.value, rel=0.03)
 

@@ -117,7 +117,7 @@ def test_none_is_the_norm_and_a_huge_one_is_a_rigid_link(name):
         assert small == pytest.approx([value(free, index)] * 2, rel=1e-5)
 
 
-@pytest.mark.parametrize("name", sampled(LAYOUTS, ["S3", "a chain"]))
+@pytest.mark.parametrize("name", sampled(LAYOUTS, ["S3"]))
 def test_no_jump_from_none_to_stuck(name):
     forces = np.geomspace(1.0, 1e5, 60)
     for index in (J1, J3, J5):
@@ -210,7 +210,7 @@ def by_hand(car, omega, force, amplitude):
     return at(10.0**high)[1]
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(networks(depth=2, most=4), elements(), logarithmic(1.0, 1e4), st.booleans())
 def test_peaks_of_random_networks_by_bisection_between_nodes(inner, other, force, series):
     rubbing = inner - (other | Friction(force)) if series else inner | Friction(force)
@@ -237,7 +237,7 @@ def test_two_side_by_side_add_up_and_of_two_end_to_end_the_weaker_counts(index, 
     assert value(behind, index) == pytest.approx(value(weaker, index), rel=1e-6)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(networks(depth=2, most=4), elements(), logarithmic(1.0, 1e4), logarithmic(1.0, 1e4), st.booleans())
 def test_random_networks_meet_their_own_equation(inner, other, force, second, series):
     """Every damper of the notes, put in explicitly, gives the index."""

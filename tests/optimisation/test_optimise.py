@@ -104,7 +104,7 @@ def test_no_evolution_finds_less_for_a_half_car_with_four_free_values(index):
     assert best.value <= float(evolved.fun) * (1.0 + 1e-7)
 
 
-@family(["S2", "S3"], ("S2", J3), ("S3", J5))
+@family(["S2", "S3"], ("S2", J3))
 def test_twenty_seeds_find_one_value(name, index):
     values = [optimise(paper_quarter_car(STRUTS[name]), index, Norm(), seed=seed).value for seed in range(20)]
     assert max(values) <= min(values) * (1.0 + AGREE[index])

@@ -42,7 +42,7 @@ def test_friction_moves_the_optimum_and_no_simplex_finds_less():
     at_linear = value(car, start, J1, method)
     assert best.status.ok
     assert best.value <= at_linear * (1.0 + 1e-12)
-    assert best.value == pytest.approx(simplex(car, J1, method, [start, [4e3, 150.0]]), rel=1e-3)
+    assert best.value == pytest.approx(simplex(car, J1, method, [[4e3, 150.0]]), rel=1e-3)
     assert best.value == it.evaluate(best.design, J1, method).value
     assert best.design == car.with_values(best.parameters)
     assert best.over_linear == it.compare(best.design, linear.design, J1, method)

@@ -16,7 +16,7 @@ METHODS = ["norm", "statistical-linearisation", "expected-value", "approximate-l
 ANY_VALUE = st.one_of(st.floats(1e-12, 1e12), st.sampled_from([math.inf, math.nan]))
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(st.lists(NAMES, min_size=1, max_size=6, unique=True), ANY_VALUE, st.booleans(), st.text(max_size=200))
 def test_tables_fit_a_terminal(names, value, swept, message):
     results = (sweep if swept else designs)(names, baseline=names[0])
@@ -170,7 +170,7 @@ def test_the_best_layout_has_the_least_finite_value():
     assert best_layout(with_value(results, math.nan, layout="S3", index="J1"), "J1") == "S2"
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(st.permutations([2, 3, 3, 9]), st.floats(-1e-15, 1e-15), st.sampled_from([1e-9, 8.333e-6, 1e5]))
 def test_of_equally_good_layouts_the_simplest_is_named_and_the_others_are_told(counts, rounding, value):
     """Whatever rounding makes of equal values: the fewest elements first, then as in the file."""

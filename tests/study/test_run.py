@@ -50,7 +50,7 @@ sweep = { k = { from = "10 kN/m", to = "90 kN/m", points = POINTS } }
 """
 
 
-def write(folder: Path, points: int = 5) -> Path:
+def write(folder: Path, points: int = 3) -> Path:
     path = folder / "study.toml"
     path.write_text(SWEEP.replace("POINTS", str(points)), encoding="utf-8")
     return path
@@ -91,7 +91,7 @@ def test_summary_holds_the_values_of_the_designs(tmp_path: Path) -> None:
     result = run_study(study, tmp_path / "out")
     with (tmp_path / "out" / "summary.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    assert len(rows) == len(cases(study)) == result.computed == 20
+    assert len(rows) == len(cases(study)) == result.computed == 12
     for row in rows[::3]:
         values = {
             name: float(row[f"{name} [{unit}]"])
@@ -126,7 +126,7 @@ def test_resolved_study_gives_the_same_results(tmp_path: Path) -> None:
     assert (tmp_path / "one" / "summary.csv").read_bytes() == (tmp_path / "two" / "summary.csv").read_bytes()
 
 
-INTERRUPTED = [(how, *size) for how in (signal.SIGINT, signal.SIGKILL) for size in ((8, 1), (60, 2))]
+INTERRUPTED = [(how, *size) for how in (signal.SIGINT, signal.SIGKILL) for size in ((4, 1), (60, 2))]
 
 
 @pytest.mark.parametrize(("how", "points", "processes"), sampled(INTERRUPTED, INTERRUPTED[:1]))

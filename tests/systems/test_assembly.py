@@ -74,7 +74,7 @@ def random_frequencies(rng, count=10):
     return 2 * np.pi * 10 ** rng.uniform(-2, 3, count)
 
 
-@pytest.mark.parametrize("chunk", sampled(range(10), range(2)))
+@pytest.mark.parametrize("chunk", sampled(range(10), [0]))
 def test_five_hundred_random_networks_in_both_cars(chunk):
     for seed in range(50 * chunk, 50 * chunk + 50):
         rng = np.random.default_rng(seed)
@@ -85,7 +85,7 @@ def test_five_hundred_random_networks_in_both_cars(chunk):
             assert difference(solved(system, omega), car.mechanism(), system.inputs, outputs, omega) < 1e-9, seed
 
 
-@pytest.mark.parametrize("chunk", range(4))
+@pytest.mark.parametrize("chunk", sampled(range(4), [0, 1]))
 def test_random_networks_in_random_cars_by_the_public_frequency_response(chunk):
     for seed in range(1000 + 25 * chunk, 1000 + 25 * chunk + 25):
         rng = np.random.default_rng(seed)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from pickle import dumps, loads
 from typing import Any
 
+import numpy as np
 import pytest
 from study_text import study_text
 
 import inerter as it
-from inerter.work.pool import pooled
+from inerter.work.pool import KILLS, pooled
 
 STUDY = study_text(
     'indices = ["J1", "J3"]\noptimise = "norm"\nbudgets = ["b"]',
@@ -48,6 +50,35 @@ def test_an_executor_of_ones_own_gives_the_same_results(tmp_path: Path) -> None:
     assert {"summary.csv", "results.nc", "budgets.csv"} <= written
     for name in written:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "other" / name).read_bytes(), name
+
+
+class Deadly(Elsewhere):
+    """Where the process ends of whoever works on one of the cases."""
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **settings: Any) -> Future[Any]:
+        if "layout='S2', index='J3'" not in repr(arguments[1].items):
+            return super().submit(function, *arguments, **settings)
+        self.run += 1
+        future: Future[Any] = Future()
+        future.set_exception(BrokenProcessPool("a process ended"))
+        return future
+
+
+def test_a_case_that_ends_its_processes_has_a_status_and_the_rest_completes(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    study, executor = it.load_study(tmp_path / "study.toml"), Deadly()
+    whole = it.run_study(study, tmp_path / "whole").data
+    found = it.run_study(study, tmp_path / "out", executor=executor)
+    assert found.failed
+    assert executor.run == 3 + KILLS
+    lost = found.data.sel(layout="S2", index="J3")
+    assert str(lost.status.item()).startswith(f"failed: {KILLS} processes ended while they worked on it")
+    assert np.isnan(lost.value).all()
+    others = [("S1", "J1"), ("S1", "J3"), ("S2", "J1")]
+    for layout, index in others:
+        one, same = (data.sel(layout=layout, index=index).value.values for data in (found.data, whole))
+        assert np.isfinite(one).all()
+        assert np.array_equal(one, same)
 
 
 def test_what_the_journal_has_is_not_run_again(tmp_path: Path) -> None:

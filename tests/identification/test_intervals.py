@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -27,7 +26,7 @@ class Explicit:
     measured: np.ndarray
     count: int
     whitenings: tuple = (SimpleNamespace(weight=np.ones(TIME.size)),)
-    pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1))
+    experiments: tuple = ()
 
     @property
     def space(self):

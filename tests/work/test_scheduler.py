@@ -37,6 +37,6 @@ def test_a_scheduler_without_the_package_is_refused(tmp_path: Path) -> None:
         scheduler,
         worker,
         Client(scheduler_file=str(tmp_path / "there.json"), timeout="60s", set_as_default=False) as client,
-        pytest.raises(WorkError, match="the scheduler does not have this package"),
+        pytest.raises(WorkError, match="the scheduler cannot load this package"),
     ):
         Pool(executor=client.get_executor(pure=False))

@@ -16,7 +16,7 @@ import numpy as np
 
 from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
-from inerter.cli.options import Cluster
+from inerter.cli.options import OWN, Cluster
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
@@ -39,7 +39,7 @@ def run(
     study: Path,
     output: Path | None,
     jobs: int | None,
-    cluster: Cluster,
+    cluster: Cluster = OWN,
     *,
     resume: bool,
     force: bool,
@@ -102,7 +102,7 @@ def reproduce(
     only: tuple[str, ...],
     output: Path | None,
     jobs: int | None,
-    cluster: Cluster,
+    cluster: Cluster = OWN,
     *,
     resume: bool,
     force: bool,

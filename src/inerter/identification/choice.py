@@ -22,10 +22,12 @@ from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
 from inerter.identification.solving import SolvedFit, part
+from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.finding import Finding
 from inerter.records.record import Record
+from inerter.simulation.event_driven import KERNELS
 from inerter.vehicle.rig import Rig
 from inerter.work.running import running_on
 
@@ -108,7 +110,8 @@ def choose(
     if not asked.check > 0.0:
         raise IdentificationError(f"Candidates are compared on the part kept for the check, got {asked.check!r}.")
     selection = _Selection(records, asked, len(given) + (2 if models is None else 0), progress)
-    with running_on(executor):
+    with running_on(executor) as pool:
+        prepare_on(pool, KERNELS)
         selection.enter(given)
         if models is None:
             first = _chosen(ranking(selection.fits))

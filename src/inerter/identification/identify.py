@@ -16,10 +16,12 @@ from inerter.identification.given import checked_records, model_of
 from inerter.identification.models import mounted
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
 from inerter.identification.solving import SolvedFit, part, solve
+from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Network
 from inerter.networks.elements.roles import Linear
 from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
+from inerter.simulation.event_driven import KERNELS
 from inerter.vehicle.rig import Rig
 from inerter.work.running import running_on
 
@@ -57,7 +59,8 @@ def identify(
     records that cannot be used.
     """
     asked = options.changed(**changes)
-    with running_on(executor):
+    with running_on(executor) as pool:
+        prepare_on(pool, KERNELS)
         fit = fit_of(solution_of(records, model_of(model), asked, part(progress, 0.0, _SOLVED)))
     if progress is not None:
         progress(1.0)

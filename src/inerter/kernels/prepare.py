@@ -6,13 +6,17 @@ import os
 import subprocess
 import sys
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
 from threading import Lock, Thread
+from typing import TYPE_CHECKING
 
 from inerter.kernels.cache import is_kept, told
 from inerter.kernels.declare import TUNED, Kernel, way
+
+if TYPE_CHECKING:
+    from inerter.work.pool import Pool
 
 Told = Callable[[str, int, int], None]  # title of the kernel that is begun, its number from 1, how many there are
 _ALONE = Lock()
@@ -34,6 +38,12 @@ def prepare(kernels: Iterable[Kernel], progress: Told | None = None) -> None:
             if missing:
                 _compile(missing, progress)
             _SEEN.update(wanted)
+
+
+def prepare_on(pool: Pool | None, kernels: Sequence[Kernel], progress: Told | None = None) -> None:
+    """The same where work is done: once on each machine of a cluster, else here, for all processes of this machine."""
+    if pool is None or not pool.on_each_node(prepare, kernels):
+        prepare(kernels, progress)
 
 
 def _compile(missing: list[Kernel], progress: Told | None) -> None:

@@ -14,11 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
+from inerter.kernels.prepare import prepare_on
 from inerter.norms.hinf import Peak
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.work.pool import Pool
 from inerter.work.running import mapped, running_on
 
 Array = NDArray[np.float64]
@@ -171,7 +173,9 @@ def evaluate(vehicle: Vehicle, index: Index, method: Method, *, executor: Execut
         raise DesignError(
             f"The design still has free values: {free}. Fix them with with_values(...), or use optimise(...)."
         )
-    with running_on(executor):
+    with running_on(executor) as pool:
+        if executor is not None:
+            _prepare(pool, vehicle, [index], method)
         return method.estimate(vehicle, index)
 
 
@@ -198,10 +202,18 @@ def evaluate_many(
     points = check_points(vehicle, values)
     if executor is None:
         return method.estimate_many(vehicle, several, points)
-    with running_on(executor):
+    with running_on(executor) as pool:
+        _prepare(pool, vehicle, several, method)
         rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
         parts = np.array_split(rows, -(-len(rows) // _TOGETHER)) if len(rows) else [rows]
         return np.concatenate(mapped(partial(_estimated, vehicle, several, tuple(points), method), parts))
+
+
+def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[Index], method: Method) -> None:
+    """Compile what an estimate calls where it will be called, before several processes would do so at once."""
+    if isinstance(method, Compiled):
+        mechanism = vehicle.mechanism()
+        prepare_on(pool, [k for i in indices for k in method.kernels(i.question(mechanism), search=False)])
 
 
 def _estimated(vehicle: Vehicle, indices: Sequence[Index], names: Sequence[str], method: Method, rows: Array) -> Array:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import SimulationError, Status
+from inerter.kernels.prepare import prepare_on
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import DrivenMany, InputTable, assign, check_driven, check_holds, tabulate, whole_steps
@@ -100,7 +101,8 @@ def simulate_many(
         raise SimulationError(f"The part that does not count, {settled:g} s, must be shorter than {duration:g} s.")
     if executor is not None:
         same = {"outputs": names, "duration": duration, "step": step, "settled": settled, "initial": initial}
-        with running_on(executor):
+        with running_on(executor) as there:
+            prepare_on(there, event_driven.KERNELS)
             return _handed_out(cars, groups, count, {**same, "speed": speed}, progress)
     squares = np.full((len(cars), count, len(names)), np.nan)
     events, status = np.zeros((len(cars), count), np.int64), np.empty((len(cars), count), dtype=object)

@@ -24,15 +24,15 @@ _POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
 
 
 @contextmanager
-def running_on(executor: Executor | Pool | None) -> Iterator[None]:
+def running_on(executor: Executor | Pool | None) -> Iterator[Pool | None]:
     """Work inside that comes apart runs on this; on what is said already, or on threads of this process, without."""
     if executor is None:
-        yield
+        yield pool_here()
         return
     with pooled(executor=executor) as pool:
         before = _POOL.set(pool)
         try:
-            yield
+            yield pool
         finally:
             _POOL.reset(before)
 

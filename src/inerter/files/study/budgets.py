@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.files.study.cases import FAILURES, Case, Outcome
+from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.study import Study, elements_used
 from inerter.networks.elements import Free
@@ -69,23 +69,10 @@ def budget_cases(study: Study) -> list[BudgetCase]:
     ]
 
 
-def run_budget(study: Study, case: BudgetCase, outcomes: Mapping[Case, Outcome], threads: int = 1) -> BudgetOutcome:
+def run_budget(study: Study, outcomes: Mapping[Case, Outcome], case: BudgetCase, threads: int = 1) -> BudgetOutcome:
     """The budget of the design that was found. A failure is an outcome with a status and a sentence."""
     element, method = study.elements[case.parameter], budget_method(study)
     at_most = element.may_vanish
-
-    def outcome(found: Budget | None, status: str, message: str) -> BudgetOutcome:
-        known = found is not None and bool(np.isfinite(found.value))
-        return BudgetOutcome(
-            *(case.layout, case.index, case.parameter, element.unit, method, at_most),
-            value=found.value if found and known else None,
-            standard_error=found.standard_error if found and known else None,
-            interval=found.interval if found and known else None,
-            crossings=[crossing.value for crossing in found.crossings] if found else [],
-            status=status,
-            message=message,
-        )
-
     try:
         with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             design, baseline = (
@@ -97,8 +84,26 @@ def run_budget(study: Study, case: BudgetCase, outcomes: Mapping[Case, Outcome],
             bounds = None if at_most else (present / _DOWN, present * _UP)
             found = budget(design, baseline, index, parameter=case.parameter, method=how, bounds=bounds)
     except FAILURES as error:
-        return outcome(None, StatusKind.FAILED.value, str(error))
-    return outcome(found, found.status.kind.value, found.status.message)
+        return _outcome(study, case, None, StatusKind.FAILED.value, str(error))
+    return _outcome(study, case, found, found.status.kind.value, found.status.message)
+
+
+def lost_budget(study: Study, case: BudgetCase) -> BudgetOutcome:
+    """What is known of a budget whose processes have ended, each time that it was tried."""
+    return _outcome(study, case, None, StatusKind.FAILED.value, ENDED)
+
+
+def _outcome(study: Study, case: BudgetCase, found: Budget | None, status: str, message: str) -> BudgetOutcome:
+    element, known = study.elements[case.parameter], found is not None and bool(np.isfinite(found.value))
+    return BudgetOutcome(
+        *(case.layout, case.index, case.parameter, element.unit, budget_method(study), element.may_vanish),
+        value=found.value if found and known else None,
+        standard_error=found.standard_error if found and known else None,
+        interval=found.interval if found and known else None,
+        crossings=[crossing.value for crossing in found.crossings] if found else [],
+        status=status,
+        message=message,
+    )
 
 
 def design_value(study: Study, outcome: Outcome, element: str) -> float:

@@ -24,6 +24,7 @@ from inerter.work.pool import KILLS
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
 _OK = StatusKind.OK.value
+ENDED = f"{KILLS} processes ended while they worked on it, perhaps for want of memory"
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 
@@ -131,7 +132,7 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
 
 def lost_case(study: Study, case: Case) -> Outcome:
     """What is known of a case whose processes have ended, each time that it was tried."""
-    return _failed(study, case, f"{KILLS} processes ended while they worked on it, perhaps for want of memory")
+    return _failed(study, case, ENDED)
 
 
 def _failed(study: Study, case: Case, why: str) -> Outcome:

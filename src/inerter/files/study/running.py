@@ -16,13 +16,13 @@ import xarray as xr
 from inerter.errors import StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.study import journal as journals
-from inerter.files.study.budgets import BudgetCase, BudgetOutcome, budget_cases, budgets_csv, run_budget
+from inerter.files.study.budgets import BudgetCase, BudgetOutcome, budget_cases, budgets_csv, lost_budget, run_budget
 from inerter.files.study.cases import Outcome, lost_case, portable, run_case
 from inerter.files.study.checking import check_study, kernels
 from inerter.files.study.results import Gathered, Pending
 from inerter.files.study.study import Study, write_resolved
 from inerter.files.study.summary import write_summary
-from inerter.kernels.prepare import Told, prepare
+from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, pooled
@@ -152,11 +152,10 @@ def _computed(
             for outcome in several:
                 found.enter(outcome)
             tell(several[-1])
-        for case in further:
-            if case not in budgets:
-                budgets[case] = run_budget(study, case, found.designs, pool.jobs)
-                append(budgets[case].to_json())
-                tell(budgets[case])
+        for ready in _budgets(study, found, [case for case in further if case not in budgets], pool):
+            append(*(budget.to_json() for budget in ready))
+            budgets |= {budget.case: budget for budget in ready}
+            tell(ready[-1])
     return found, budgets, len(pending)
 
 
@@ -178,10 +177,14 @@ def _outcomes(study: Study, pending: Pending, pool: Pool) -> Iterator[list[Outco
     return pool.batches(partial(run_case, small), pending, here, partial(lost_case, small))
 
 
+def _budgets(study: Study, found: Gathered, pending: list[BudgetCase], pool: Pool) -> Iterator[list[BudgetOutcome]]:
+    """Budgets as they are done, those that come together in one list."""
+    run = partial(run_budget, portable(study), found.designs)
+    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_budget, study))
+
+
 def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:
     """Compile what the work calls, where it is done, before several processes would do so at once."""
-    wanted = kernels(study)
     if pool.is_cluster and compiling is not None:
         compiling("on each machine of the cluster", 1, 1)
-    if not pool.on_each_node(prepare, wanted):
-        prepare(wanted, compiling)
+    prepare_on(pool, kernels(study), compiling)

@@ -8,14 +8,18 @@ from typing import Any
 import pytest
 
 
-def sampled(members: Iterable[Any], always: Collection[Any]) -> list[Any]:
-    """Parameters of which these are always tested, and the others in a campaign; a tuple is several parameters."""
+def sampled(members: Iterable[Any], always: Collection[Any], seldom: Collection[Any] = ()) -> list[Any]:
+    """Parameters of which some are tested always, some `seldom`, in a marathon, and the others in a campaign.
+
+    A tuple is several parameters.
+    """
     members = list(members)
-    assert all(member in members for member in always)
+    assert all(member in members for member in [*always, *seldom])
+    other = {True: pytest.mark.marathon, False: pytest.mark.campaign}
     return [
         pytest.param(
             *(member if isinstance(member, tuple) else (member,)),
-            marks=[] if member in always else [pytest.mark.campaign],
+            marks=[] if member in always else [other[member in seldom]],
         )
         for member in members
     ]

@@ -22,6 +22,7 @@ HEAVY = {
 LIBRARIES = HEAVY | {"numpy", "scipy", "pydantic", "pint"}
 COMMAND = """
 import sys, json
+sys.modules["dask"] = None  # as without the extra for clusters: where dask is, pint loads it, and jinja2 with it
 from inerter.cli.main import call
 code = call(sys.argv[1:])
 sys.stdout.flush()

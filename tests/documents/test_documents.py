@@ -87,7 +87,9 @@ def nothing(folder: Path) -> None:
 
 
 IDENTIFY = "inerter identify fit.csv --model ball-screw --force-bandwidth"
-SHOWN = f'{IDENTIFY} "300 Hz" --force-range "100 kgf"'
+FITTED = f'{IDENTIFY} "300 Hz"'
+SHOWN = f'{FITTED} --force-range "100 kgf"'
+SLOW = 'inerter identify friction.csv --model ball-screw --force-bandwidth "80 Hz"'
 WHOLE = "inerter reproduce wang-su-2008 -o paper"
 COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter run examples/quarter-car.toml": nothing,
@@ -100,9 +102,9 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter identify bench.csv --model ball-screw": a_record,
     "inerter identify slow.tdms fast.tdms --model ball-screw --unit force=kgf -o bench": two_records,
     "inerter identify bench.csv --config rig.toml --force": a_configuration,
-    f'{IDENTIFY} "300 Hz"': a_fit_test,
+    FITTED: a_fit_test,
     SHOWN: a_fit_test,
-    'inerter identify friction.csv --model ball-screw --force-bandwidth "80 Hz"': a_friction_test,
+    SLOW: a_friction_test,
     'inerter identify fit.csv --model choose --force-bandwidth "300 Hz" --trim 0:2': a_fit_test,
     "inerter reproduce wang-su-2008 --only linear": nothing,
     "inerter reproduce wang-su-2008 --only rig": nothing,
@@ -117,6 +119,9 @@ BRIEF = [
 ]
 
 
+SELDOM = [WHOLE, FITTED, SLOW]  # whose parts, or what is much the same, is a campaign
+
+
 def test_every_command_of_the_pages_is_run() -> None:
     """Those that only name one say which: their help is there."""
     names = {f"inerter {name}" for name in app}
@@ -127,8 +132,7 @@ def test_every_command_of_the_pages_is_run() -> None:
 @pytest.mark.parametrize(
     "command",
     [
-        *sampled([command for command in COMMANDS if command != WHOLE], BRIEF),
-        pytest.param(WHOLE, marks=pytest.mark.marathon),  # whose parts are a campaign
+        *sampled(COMMANDS, BRIEF, SELDOM),
     ],
 )
 def test_a_command_does_what_the_page_shows(command: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -151,7 +155,7 @@ def test_what_a_slow_record_tells(folder: Path) -> None:
     said = re.search(words, text_of("identification.md"))
     assert said is not None
     a_friction_test(folder)
-    assert call(shlex.split('identify friction.csv --model ball-screw --force-bandwidth "80 Hz"')) == 0
+    assert call(shlex.split(SLOW)[1:]) == 0
     found = json.loads((folder / "friction-results" / "fit.json").read_text())["parameters"]
     low, high = found["f"]["interval"]
     assert_figures(said[1], [50.0 * (high - low) / found["f"]["value"]], "f")

@@ -49,7 +49,10 @@ def judged(number: int) -> tuple[bool, bool]:
     return not (fit.status.ok and missed(fit, case.truth)), named
 
 
-@pytest.mark.parametrize(("number", "duration"), sampled([(9, 1.5), (0, 5.0), (5, 5.0), (8, 5.0)], [(9, 1.5)]))
+NAMED = [(9, 1.5), (0, 5.0), (5, 5.0), (8, 5.0)]
+
+
+@pytest.mark.parametrize(("number", "duration"), sampled(NAMED, NAMED[:1], NAMED[1:3]))
 def test_a_fault_is_named_and_no_wrong_interval_is_given_without_a_warning(number: int, duration: float) -> None:
     """Stribeck friction, a late displacement, lost samples and a drift."""
     case = replace(troubled(number), duration=duration)

@@ -83,7 +83,7 @@ def without_words(data: Any) -> Any:
     return [without_words(value) for value in data] if isinstance(data, list) else data
 
 
-@pytest.fixture(scope="module", params=sampled(["late", "late-few", "sound", "saturated"], ["late-few"]))
+@pytest.fixture(scope="module", params=sampled(["late", "late-few", "sound", "saturated"], ["late-few"], ["late"]))
 def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A record: of sensors without fault, of a late displacement, or of a load cell at its limit.
 

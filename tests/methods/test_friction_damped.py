@@ -32,7 +32,7 @@ def test_what_friction_damps_is_simulated_on_roads_that_resolve_it():
     check(drawn(0), roads=8)
 
 
-@pytest.mark.parametrize("first", in_parts(range(0, 200, 10), 2))
+@pytest.mark.parametrize("first", in_parts(range(0, 200, 10), 1))
 def test_what_friction_damps_in_many_random_cars(first):
     refused = sum(check(drawn(number)) for number in range(first, first + 10))
     assert refused <= 6  # of 20 values: those whose lightest motion takes minutes to decay

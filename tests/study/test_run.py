@@ -245,7 +245,7 @@ def test_resume_and_force_exclude_each_other(tmp_path: Path) -> None:
         run_study(load_study(write(tmp_path)), tmp_path / "out", resume=True, force=True)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_numbers_beyond_reason_are_outcomes_not_crashes(tmp_path: Path) -> None:
     path = write(tmp_path, points=2)
     path.write_text(path.read_text().replace('"100 N s/m", to = "100 kN s/m"', '"1e-300 N s/m", to = "1e300 N s/m"'))

@@ -17,6 +17,7 @@ import json
 import multiprocessing
 import operator
 import os
+import resource
 import socket
 import subprocess
 import sys
@@ -175,10 +176,17 @@ def timed(work: Callable[[], object]) -> float:
     return time.perf_counter() - begin
 
 
+def cpu_used() -> float:
+    """Seconds of CPU of this process and of those that it has started and that have ended."""
+    used = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
 @dataclass(frozen=True)
 class Run:
     seconds: float
-    worked: float  # seconds that workers were at work, all together
+    worked: float  # seconds that workers were at work on pieces, all together
+    cpu: float  # seconds of CPU of this process and its own, their start included
 
 
 def run_of(study: it.Study, **where: Any) -> Run:
@@ -192,7 +200,9 @@ def run_of(study: it.Study, **where: Any) -> Run:
     pieces.Cutter.learn = learn_and_count  # type: ignore[method-assign]
     try:
         with TemporaryDirectory() as folder:
-            return Run(timed(lambda: it.run_study(study, Path(folder) / "out", **where)), sum(worked))
+            before = cpu_used()
+            seconds = timed(lambda: it.run_study(study, Path(folder) / "out", **where))
+            return Run(seconds, sum(worked), cpu_used() - before)
     finally:
         pieces.Cutter.learn = learn  # type: ignore[method-assign]
 
@@ -215,7 +225,10 @@ def study_part(rounds: int) -> None:
             for name, where in places.items():
                 run = run_of(study, **where)
                 runs[name].append(run)
-                print(f"   {name}: {run.seconds:.1f} s, of which workers worked {run.worked:.1f} s", flush=True)
+                print(
+                    f"   {name}: {run.seconds:.1f} s; pieces {run.worked:.1f} s; CPU here {run.cpu:.1f} s",
+                    flush=True,
+                )
     best = {name: min(found, key=lambda run: run.seconds) for name, found in runs.items()}
     for name, alone in (
         ("own processes, 2", "own processes, 1"),

@@ -35,7 +35,7 @@ def main(only: tuple[str, ...]) -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
         with Pool(jobs) as pool:
-            found = paper.reproduce(folder, only=only, jobs=pool, progress=progress)
+            found = paper.reproduce(folder, only=only, executor=pool, progress=progress)
             computed = time.perf_counter()
             write_reproduction(found, folder, pool)
         written = time.perf_counter()

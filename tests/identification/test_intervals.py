@@ -28,6 +28,7 @@ class Explicit:
     count: int
     whitenings: tuple = (SimpleNamespace(weight=np.ones(TIME.size)),)
     pool: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1))
+    experiments: tuple = ()
 
     @property
     def space(self):

@@ -53,7 +53,7 @@ class Rows(Mapping[str, Row], Generic[Row]):
         if isinstance(row, type) and "__dataclass_fields__" not in vars(row):
             raise RowError(f"{name} is no {self._what}: it is no dataclass. Write @dataclass(frozen=True) above it.")
         self._rows[key] = row
-        _changed(row)
+        _changed(row, _classes.add)
         return row
 
     def remove(self, row: Row) -> None:
@@ -61,7 +61,7 @@ class Rows(Mapping[str, Row], Generic[Row]):
         key = getattr(row, self._key)
         if self._rows.get(key) is row:
             del self._rows[key]
-        _changed(row)
+            _changed(row, _classes.discard)
 
     def __getitem__(self, key: str) -> Row:
         load()
@@ -98,16 +98,16 @@ def made_of_rows(make: Callable[[], Made]) -> Callable[[], Made]:
 
 _lock = RLock()
 _changes = 0
-_modules: set[str] = set()  # of the rows that are classes
+_classes: set[type] = set()  # the rows that are classes
 _loading = False
 _failure: RowError | None = None
 
 
-def _changed(row: object) -> None:
+def _changed(row: object, keep: Callable[[type], None]) -> None:
     global _changes  # noqa: PLW0603 -- tables are what changes while the package runs
     _changes += 1
     if isinstance(row, type):
-        _modules.add(row.__module__)
+        keep(row)
 
 
 def load() -> None:
@@ -138,7 +138,7 @@ def plugins() -> dict[str, str]:
 
 def sources() -> list[Path]:
     """Where the code is that adds rows, but our own: folders of packages, or files of modules that stand alone."""
-    modules = {entry.module for entry in _entries()} | _modules
+    modules = {entry.module for entry in _entries()} | {row.__module__ for row in _classes}
     names = {name.partition(".")[0] for name in modules} - {__package__}
     return sorted({Path(place) for name in names for place in _places(name)})
 

@@ -112,7 +112,6 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     WHOLE: nothing,
 }
 BRIEF = [
-    "inerter simulate examples/backlash_rattle.toml",
     "inerter simulate my-car.toml --window 2:4",
     "inerter rig examples/rig_fit.toml -o fit.csv",
     "inerter rig examples/rig_friction.toml -o friction.csv",

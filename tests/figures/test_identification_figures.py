@@ -125,6 +125,7 @@ def test_the_legend_names_the_measurement_first():
     assert len(words) == 3
 
 
+@pytest.mark.campaign
 def test_the_same_figure_gives_the_same_bytes(tmp_path):
     first, second = (figures.draw(FIGURES["fit"](), tmp_path / name, "figure-9") for name in "12")
     assert [path.suffix for path in first] == [".svg", ".pdf", ".png"]

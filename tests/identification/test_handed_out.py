@@ -34,8 +34,8 @@ def problem(record: Record) -> FitProblem:
 
 def test_an_identification_on_other_processes_is_the_same(record: Record) -> None:
     with Processes(2) as processes:
-        there = it.identify(record, "ball-screw", starts=8, executor=processes)
-    here = it.identify(record, "ball-screw", starts=8)
+        there = it.identify(record, "friction", starts=8, executor=processes)
+    here = it.identify(record, "friction", starts=8)
     assert repr(there.parameters) == repr(here.parameters)
     assert there.simulations == here.simulations > 100
     assert there.misfit == here.misfit

@@ -79,6 +79,7 @@ def test_starts_cover_orders_of_magnitude_of_what_may_be_zero() -> None:
     assert np.mean(gaps > 3e-4) > 0.1
 
 
+@pytest.mark.campaign
 def test_hops_never_lead_to_a_worse_fit() -> None:
     problem = problem_of(rattle(), BALL_SCREW)
     start = problem.space.placed({**RATTLING, "gap": 1.2e-4, "cs": 7000.0})
@@ -128,9 +129,8 @@ def test_a_device_that_nobody_can_predict_has_no_parameters() -> None:
     assert all(np.isnan(parameter.value) for parameter in fit.parameters.values())
 
 
-@pytest.mark.parametrize(
-    "model", [FLYWHEEL, pytest.param(BALL_SCREW, marks=pytest.mark.campaign)], ids=["flywheel", "ball screw"]
-)
+@pytest.mark.campaign
+@pytest.mark.parametrize("model", [FLYWHEEL, BALL_SCREW], ids=["flywheel", "ball screw"])
 def test_progress_never_goes_back(model: it.Network) -> None:
     """Also where a record asks for further searches."""
     told: list[float] = []

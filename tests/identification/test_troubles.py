@@ -154,6 +154,7 @@ def test_known_noise_is_what_a_residual_is_judged_by(duration: float, monkeypatc
     assert fit.misfit.worst > 3.0
 
 
+@pytest.mark.campaign
 def test_simulations_are_counted_once(monkeypatch: pytest.MonkeyPatch) -> None:
     runs = []
     run = Experiment.run

@@ -63,6 +63,7 @@ def test_a_gap_is_searched_without_statistical_linearisation():
     assert best.over_linear.difference.value <= 0.0
 
 
+@pytest.mark.campaign
 def test_load_carrying_is_searched_too():
     car = paper_quarter_car(k | c - (Inerter(1000.0) | Friction(100.0)))
     index, method = LoadCarrying(1000.0), ExpectedValue()

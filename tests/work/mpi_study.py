@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 
-from mpi4py import MPI
-from mpi4py.futures import MPIPoolExecutor
-
 import inerter as it
 
 if __name__ == "__main__":
+    from mpi4py import MPI  # an extra, which tests that are collected do without
+    from mpi4py.futures import MPIPoolExecutor
+
     with MPIPoolExecutor() as ranks:
         found = it.run_study(it.load_study(sys.argv[1]), sys.argv[2], executor=ranks)
     print(f"{found.computed} cases on {MPI.COMM_WORLD.Get_size()} ranks")

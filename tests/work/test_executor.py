@@ -44,7 +44,7 @@ def test_an_executor_of_ones_own_gives_the_same_results(tmp_path: Path) -> None:
     one = it.run_study(study, tmp_path / "one")
     other = it.run_study(study, tmp_path / "other", executor=executor)
     assert one.computed == other.computed == 4
-    assert executor.run == 4
+    assert executor.run == 4 + 2  # cases and budgets
     assert one.data.identical(other.data)
     written = {path.name for path in (tmp_path / "one").iterdir()} - {".inerter", "journal.jsonl"}
     assert {"summary.csv", "results.nc", "budgets.csv"} <= written
@@ -70,7 +70,7 @@ def test_a_case_that_ends_its_processes_has_a_status_and_the_rest_completes(tmp_
     whole = it.run_study(study, tmp_path / "whole").data
     found = it.run_study(study, tmp_path / "out", executor=executor)
     assert found.failed
-    assert executor.run == 3 + KILLS
+    assert executor.run == (3 + KILLS) + (1 + KILLS)  # cases and budgets
     lost = found.data.sel(layout="S2", index="J3")
     assert str(lost.status.item()).startswith(f"failed: {KILLS} processes ended while they worked on it")
     assert np.isnan(lost.value).all()

@@ -18,10 +18,10 @@ from campaigns import sampled
 from clusters import PATIENCE, Cluster, cluster, kill, results
 
 import inerter as it
+from inerter.cli.cluster import connected
 from inerter.cli.main import call
 from inerter.errors import WorkError
 from inerter.files.rig.loading import load_rig
-from inerter.work.cluster import connected
 from inerter.work.pool import Pool
 from inerter.work.processes import Processes
 

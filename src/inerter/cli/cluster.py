@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from pathlib import Path
 
 from inerter.cli.options import Cluster
-from inerter.errors import StudyError
+from inerter.errors import StudyError, WorkError
 from inerter.work import cluster as clusters
+
+_ANSWER = "10s"  # within which a scheduler must
 
 
 @contextmanager
@@ -29,10 +33,45 @@ def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None
         raise StudyError("Got --jobs and a scheduler; leave --jobs out: the cluster has as many processes as it has.")
     tls = {"tls_ca_file": asked.tls_ca_file, "tls_client_cert": asked.tls_cert, "tls_client_key": asked.tls_key}
     given = {name: str(path) for name, path in tls.items() if path is not None}
-    with clusters.connected(asked.scheduler, asked.scheduler_file, given) as executor:
+    with connected(asked.scheduler, asked.scheduler_file, given) as executor:
         clusters.check(executor)
         print(f"inerter: {_told(clusters.places(executor))}", file=sys.stderr, flush=True)
         yield executor
+
+
+@contextmanager
+def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
+    """An executor on the cluster of a scheduler that is already there, by its address or the file that it wrote.
+
+    `tls` are fields of dask's `Security`.
+
+    Raises `StudyError` for an address that is none, `WorkError` if dask is not installed or the scheduler does not
+    answer.
+    """
+    try:
+        import distributed
+    except ImportError:
+        raise WorkError('for a cluster install dask too: pip install "inerter[cluster]"') from None
+    try:
+        distributed.comm.get_address_host_port(address or "host:1")
+    except ValueError as error:
+        raise StudyError(f'Got the scheduler "{address}" ({error}); expected such as tcp://HOST:8786.') from None
+    if file is not None and not file.is_file():
+        raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
+    security = distributed.Security(require_encryption=True, **tls) if tls else None
+    where = {"address": address} if file is None else {"scheduler_file": str(file)}
+    for name in tuple(logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is told by errors
+    try:
+        client = distributed.Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
+    except Exception as error:  # of sockets, of TLS, of addresses that are none
+        raise WorkError(
+            f"no scheduler of dask answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "
+            "is this its address, and does it want TLS?"
+        ) from None
+    with client:
+        yield client.get_executor(pure=False)
 
 
 def _told(places: Sequence[clusters.Place]) -> str:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor
-from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from inerter.errors import StudyError, WorkError
+from inerter.errors import WorkError
 from inerter.work.origin import VERSION, origin
 
 if TYPE_CHECKING:
@@ -22,7 +19,6 @@ if TYPE_CHECKING:
 
 INSTALL = "Install the same versions in all places."
 _FRESH = 2.0  # seconds for which a number of workers is taken as it was
-_ANSWER = "10s"  # within which a scheduler must
 _FIRST = 60.0  # seconds within which the first worker must be there
 _counted: WeakKeyDictionary[Executor, tuple[float, int]] = WeakKeyDictionary()
 
@@ -117,41 +113,6 @@ def places(executor: Executor) -> tuple[Place, ...]:
     client = _client(executor)
     found = _workers(client).values() if client is not None else ()
     return tuple(Place(info["host"], info["nthreads"]) for info in found)
-
-
-@contextmanager
-def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
-    """An executor on the cluster of a scheduler that is already there, by its address or the file that it wrote.
-
-    `tls` are fields of dask's `Security`.
-
-    Raises `StudyError` for an address that is none, `WorkError` if dask is not installed or the scheduler does not
-    answer.
-    """
-    try:
-        import distributed  # noqa: PLC0415 - heavy, and an extra
-    except ImportError:
-        raise WorkError('for a cluster install dask too: pip install "inerter[cluster]"') from None
-    try:
-        distributed.comm.get_address_host_port(address or "host:1")
-    except ValueError as error:
-        raise StudyError(f'Got the scheduler "{address}" ({error}); expected such as tcp://HOST:8786.') from None
-    if file is not None and not file.is_file():
-        raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
-    security = distributed.Security(require_encryption=True, **tls) if tls else None
-    where = {"address": address} if file is None else {"scheduler_file": str(file)}
-    for name in tuple(logging.root.manager.loggerDict):
-        if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
-            logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is told by errors
-    try:
-        client = distributed.Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
-    except Exception as error:  # of sockets, of TLS, of addresses that are none
-        raise WorkError(
-            f"no scheduler of dask answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "
-            "is this its address, and does it want TLS?"
-        ) from None
-    with client:
-        yield client.get_executor(pure=False)
 
 
 def _workers(client: Client) -> dict[str, dict[str, Any]]:

@@ -262,7 +262,7 @@ def test_workers_of_another_kind_are_refused(tmp_path: Path) -> None:
     study = study_file(tmp_path, 12, 8)
     for name, says in (
         ("other", "has other sources of inerter"),
-        ("none", "cannot load this package (ModuleNotFoundError"),
+        ("none", "cannot load this package ("),
     ):
         (tmp_path / name / "cluster").mkdir()
         with cluster(tmp_path / name / "cluster", 1, PYTHONPATH=str(tmp_path / name)) as made:

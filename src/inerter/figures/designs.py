@@ -163,7 +163,8 @@ def _show_peaks(ax: Axes, frequency: Array, curves: Array) -> None:
         return
     floor = min(highest) / _WINDOW
     inside = frequency[np.any(curves > floor, axis=0)]
-    ax.set_xlim(inside.min(), inside.max())
+    shown = inside if inside.size > 1 else frequency
+    ax.set_xlim(shown.min(), shown.max())
     ax.set_ylim(floor, 1.5 * max(highest))
     log_axis(ax, "x")
     log_axis(ax, "y")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -171,7 +172,8 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: boo
     folder.mkdir(parents=True, exist_ok=True)
     wanted = {"svg": True, "pdf": pdf, "png": png}
     files = [folder / f"{name}.{kind}" for kind, asked in wanted.items() if asked]
-    with styled():
+    with styled(), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "constrained_layout not applied")  # no room between labels of 300 digits
         figure.draw_without_rendering()  # the layout is found once for all files
         figure.set_layout_engine(None)  # "none" would have each file drawn twice
         for file in files:

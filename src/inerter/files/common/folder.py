@@ -68,8 +68,9 @@ class Results:
         """Say that the file of that name, which grows in the `place`, is ours."""
         top = self.top or self
         own = (self.place / name).relative_to(top.place).as_posix()
-        self.place.mkdir(exist_ok=True)
+        top.place.mkdir(exist_ok=True)
         (listing(top.place) or Listing()).with_files({own: Entry(self.intent.by, journal=True)}).write(top.place)
+        self.place.mkdir(exist_ok=True)  # a folder that is on no list could not be gone on with
 
     def publish(self) -> None:
         """Move everything that was drafted to its place, or nothing where a file that is not ours is in the way."""

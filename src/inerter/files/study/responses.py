@@ -45,7 +45,8 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
         weights = np.array([abs(output.weight) for output in question.outputs])
         gains = np.full((len(study.layouts), weights.size, omega.size), np.nan)
         for layout, (problem, system) in mine.items():
-            response = frequency_response(system, omega, problem.pade_order)[:, :, 0]
+            with np.errstate(over="ignore", invalid="ignore"):
+                response = frequency_response(system, omega, problem.pade_order)[:, :, 0]
             gains[list(study.layouts).index(layout)] = weights[:, None] * np.abs(response).T
         own = f"({question.unit})" if "/" in question.unit else question.unit
         unit = question.unit if question.road is None else f"{own}/(m/s)"

@@ -108,9 +108,9 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
             stack.enter_context(patch(place, by))
 
         change("inerter.files.study.running.run_case", outcome)
-        change("inerter.figures.study.draw_study", drawn("improvement.svg", "improvement.png"))
+        change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
         change(
-            "inerter.report.page.write_report",
+            "inerter.cli.commands.write_report",
             lambda results, study, figures, path, budgets: write_text(path, "page\n"),
         )
         change("inerter.cli.simulation.draw_simulation", drawn("simulation.svg", "simulation.png"))

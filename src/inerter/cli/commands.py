@@ -17,22 +17,21 @@ import numpy as np
 from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
 from inerter.cli.options import OWN, Cluster
-from inerter.cli.pages import pages
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
-from inerter.files.common.folder import REPORT
+from inerter.figures.study import draw_study
+from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
-from inerter.files.study.study import Study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
 from inerter.report.json_data import json_data
+from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
 
 _MOST = 20  # designs that are told one by one
-_MOST_SENT = 1000  # swept values of results that another process draws
 _JSON = {"improvement_error": "improvement_error_percent"}
 
 
@@ -51,12 +50,15 @@ def run(
     folder = output or Path(f"{study.stem}-results")
     processes = _processes(jobs)
 
+    def show(result: StudyResult, into: Path) -> None:
+        draw_study(result.data, into / FIGURES)
+        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
+
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
     items = "designs and budgets" if loaded.budgets else "designs"
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,
-        pages(beside=processes > 1 and _is_small(loaded)) as write,
         progress(study.stem, items, executor) as shown,
     ):
         result = run_study(
@@ -68,7 +70,7 @@ def run(
             force=force,
             progress=shown.cases,
             compiling=shown.kernels,
-            finish=lambda found, into: write(found.data, loaded, found.budgets, into),
+            finish=show,
         )
     _say(f"report: {folder / REPORT}")
     if as_json:
@@ -81,11 +83,6 @@ def run(
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
     return _judge(result)
-
-
-def _is_small(study: Study) -> bool:
-    """Whether its results are soon sent to another process."""
-    return study.sweep is None or len(study.sweep.values) <= _MOST_SENT
 
 
 def papers() -> int:

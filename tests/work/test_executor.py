@@ -14,6 +14,7 @@ import pytest
 from study_text import study_text
 
 import inerter as it
+from inerter.errors import WorkError
 from inerter.work.pool import KILLS, pooled
 
 STUDY = study_text(
@@ -79,6 +80,15 @@ def test_a_case_that_ends_its_processes_has_a_status_and_the_rest_completes(tmp_
         one, same = (data.sel(layout=layout, index=index).value.values for data in (found.data, whole))
         assert np.isfinite(one).all()
         assert np.array_equal(one, same)
+
+
+def test_what_a_study_keeps_is_told_when_its_executor_has_ended(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    study, threads = it.load_study(tmp_path / "study.toml"), ThreadPoolExecutor(1)
+    threads.shutdown()
+    with pytest.raises(WorkError, match=r"executor .* has ended, .* is kept; continue with --resume\.$"):
+        it.run_study(study, tmp_path / "out", executor=threads)
+    assert it.run_study(study, tmp_path / "out", resume=True).computed == 4
 
 
 def test_what_the_journal_has_is_not_run_again(tmp_path: Path) -> None:

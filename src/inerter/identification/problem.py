@@ -21,7 +21,8 @@ from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
 from inerter.vehicle.rig import Rig
-from inerter.work.running import Item, Result, mapped, over_threads
+from inerter.work.pieces import Item, Result
+from inerter.work.running import mapped, over_threads
 
 Matrix = NDArray[np.float64]
 _FEWEST = 100  # samples that are compared

@@ -99,12 +99,19 @@ def told() -> tuple[str, str]:
 
 
 def on_each_node(executor: Executor, function: Callable[..., object], *args: object) -> bool:
-    """Call a function once on each machine of a cluster, and wait; False for an executor that is none."""
+    """Call a function once on each machine of a cluster, and wait; False for an executor that is none.
+
+    Raises `WorkError` if it cannot be called there.
+    """
     client = _client(executor)
     if client is None:
         return False
     first = {info["host"]: address for address, info in reversed(_workers(client).items())}
-    client.gather([client.submit(function, *args, workers=[w], pure=False) for w in first.values()])
+    at = {"allow_other_workers": True, "pure": False}  # should that one end, another does it
+    try:
+        client.gather([client.submit(function, *args, workers=[worker], **at) for worker in first.values()])
+    except Exception as error:  # workers that end, a scheduler that is gone, whatever they lack
+        raise WorkError(f"the machines of the cluster could not be made ready ({error}).") from None
     return True
 
 

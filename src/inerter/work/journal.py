@@ -18,7 +18,7 @@ from pathlib import Path
 from shutil import copyfileobj
 from typing import Any
 
-from inerter.errors import StudyError
+from inerter.errors import StudyError, WorkError
 from inerter.work.origin import VERSION, origin
 from inerter.writing import whole
 
@@ -90,7 +90,10 @@ class Journal:
                     del lines[: journal.write(lines)]
                 os.fsync(journal.fileno())
 
-            yield append
+            try:
+                yield append
+            except WorkError as error:
+                raise WorkError(f"{error} What was computed is kept; continue with --resume.") from error.__cause__
 
     def _header(self) -> Entry:
         return {"format": FORMAT, "inerter": VERSION, **self.about, "numbers": origin()}

@@ -24,8 +24,7 @@ from inerter.work.processes import Processes
 KILLS = 3  # processes that an item may end
 _SHORT = 3.0  # seconds: to start processes takes about as long
 _AT_ONCE = 0.1  # seconds for which results of this process are kept back, to come together
-_KEPT = "What was computed is kept; continue with --resume"
-_GONE = f"the executor that the work was handed to has ended, or lost its connection. {_KEPT} when it is there again."
+_GONE = "the executor that the work was handed to has ended, or lost its connection."
 _AHEAD = 2  # pieces for each process of ours: the one that it works on, and the next
 _AFAR = 8  # for each of another executor, where pieces and results may be on their way for as long as a piece takes
 
@@ -96,8 +95,8 @@ class Pool:
     ) -> Iterator[list[Result]]:
         """Results of `work` on each of `items` as they are ready, those that come together in one list.
 
-        Items are taken as they are needed. As long as it would take to start processes, they are worked on in
-        this one, by `here` if that is another way to the same.
+        Items are taken as they are needed. As long as it would take to start processes, they are worked on in this one,
+        by `here` if that is another way to the same.
 
         A piece of work whose process ends is handed out again. If `KILLS` processes have ended on an item, its result
         is what `lost` says. Where calls of this are abandoned, what is not begun is not begun any more.
@@ -190,7 +189,7 @@ def _result(future: Future[Worked[Result]], call: object) -> tuple[int, list[Res
     if found.origin != origin():
         raise WorkError(
             "a process of the executor has another version of inerter, or of the libraries that make its numbers. "
-            f"{cluster.INSTALL} {_KEPT}."
+            f"{cluster.INSTALL}"
         )
     return 0, list(found.results), found.seconds
 
@@ -211,7 +210,7 @@ def _lost(item: Item, lost: Callable[[Item], Result] | None) -> Result:
         return lost(item)
     raise WorkError(
         f"{KILLS} processes have ended while they worked on the same piece, {str(item)[:80]}, perhaps for want of "
-        f"memory. {_KEPT}, and fewer processes (-j 1)."
+        "memory. Fewer processes need less of it."
     )
 
 

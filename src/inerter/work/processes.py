@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from multiprocessing.connection import wait as wait_for_end
 from multiprocessing.process import BaseProcess
 from typing import Any
@@ -58,7 +59,7 @@ class Processes(Executor):
 
         Raises `WorkError` if no process can be started.
         """
-        assert not keywords
+        call = partial(call, **keywords) if keywords else call
         self._singles = [single for single in self._singles if not single.broken]
         least = min(self._singles, key=lambda single: len(single.under_way), default=None)
         if least is None or (least.under_way and len(self._singles) < self.jobs):

@@ -13,13 +13,11 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Generic, TypeVar
+from typing import Generic
 
-from inerter.work.pieces import THREADS
+from inerter.work.pieces import THREADS, Item, Result
 from inerter.work.pool import Pool, pooled
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
 _POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
 
 

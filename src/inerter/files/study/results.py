@@ -46,7 +46,7 @@ class Gathered:
         self._uncertain = is_uncertain(study)
         self._parameters = _parameters(study)
         self._data = _labelled(study, self._parameters)
-        self._columns = {name: list(self._parameters).index(name) for name in self._parameters}
+        self._columns = {name: i for i, name in enumerate(self._parameters)}
         self._arrays = {str(name): by_case(self._data, str(name)) for name in self._data.data_vars}
 
     def pending(self) -> Pending:

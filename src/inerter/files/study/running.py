@@ -87,11 +87,10 @@ def run_study(
     `folder` may be a part of results that are being written. `jobs` is a number of processes of our own: with more
     than one, a script that calls this needs the line `if __name__ == "__main__":`, because processes are started
     afresh and import it. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) works in their place, and
-    goes on afterwards. Results do not depend on it. `progress` is told
-    whenever some are done how many designs and budgets are, how many there are, the last one, and how many have a
-    status that is not ok. `finish` may add files to the results,
-    in the folder that it is given. What the work needs of compiled code is compiled first, if it is not yet;
-    `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
+    goes on afterwards. Results do not depend on it. `progress` is told whenever some are done how many designs and
+    budgets are, how many there are, the last one, and how many have a status that is not ok. `finish` may add files to
+    the results, in the folder that it is given. What the work needs of compiled code is compiled first, if it is not
+    yet; `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
 
     Every finished case is in the journal at once, or those that were handed out together when the last of them is done.
     With `resume`, cases in the journal are not computed again, and the results are the same, byte for byte, as those of
@@ -186,5 +185,5 @@ def _budgets(study: Study, found: Gathered, pending: list[BudgetCase], pool: Poo
 def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:
     """Compile what the work calls, where it is done, before several processes would do so at once."""
     if pool.is_cluster and compiling is not None:
-        compiling("on each machine of the cluster", 1, 1)
+        compiling("those that machines of the cluster lack", 1, 1)
     prepare_on(pool, kernels(study), compiling)

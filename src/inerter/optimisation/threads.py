@@ -10,6 +10,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from functools import cache
 
+import scipy.linalg  # noqa: F401 -- SciPy's own BLAS: loaded after the limit was set, it would keep its threads
 from threadpoolctl import ThreadpoolController
 
 

@@ -94,6 +94,18 @@ def check(study: Path, /) -> int:
     return command(study)
 
 
+@app.command(help_epilogue="Example: inerter schema > study.schema.json")
+def schema() -> int:
+    """Print the JSON Schema of study files, with which editors complete and check them.
+
+    An editor that knows TOML (those with Taplo do) reads it where the first line
+    of a study file is  #:schema ./study.schema.json
+    """
+    from inerter.cli.describing import schema as command
+
+    return command()
+
+
 @app.command(
     help_epilogue="""Examples:
   inerter simulate examples/backlash_rattle.toml

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
+from inspect import getdoc
 from operator import or_
 from typing import Annotated, Any, Literal
 
@@ -13,7 +14,6 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
-    PlainValidator,
     Tag,
     create_model,
     model_validator,
@@ -22,8 +22,17 @@ from pydantic import (
 from inerter.errors import RowError
 from inerter.fields import Field as Quantity
 from inerter.fields import fields_of, mounts_of
-from inerter.files.common.entries import Amount, amount, check_order, element_name, expression, layout_name, positive
-from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
+from inerter.files.common.entries import (
+    AMOUNT,
+    EXPRESSION,
+    Amount,
+    check_order,
+    element_name,
+    layout_name,
+    positive,
+)
+from inerter.files.common.kind_entry import KindEntry, kind_entry, kind_schema, names_kind
+from inerter.files.common.schema import NEVER, Says, checked
 from inerter.rows import made_of_rows
 from inerter.vehicle.registry import VEHICLES
 
@@ -41,14 +50,14 @@ class Shape(BaseModel):
 
 
 Shapes = Mapping[tuple[str, ...], type[Shape]]
-AmountText = Annotated[Amount, PlainValidator(amount)]
+AmountText = Annotated[Amount, AMOUNT]
 
 
 class Range(Shape):
     """A free value: an optimiser chooses it between two bounds."""
 
-    lower: AmountText = Field(alias="from", examples=['from = "100 N s/m"'])
-    upper: AmountText = Field(alias="to", examples=['to = "100 kN s/m"'])
+    lower: AmountText = Field(alias="from", description="The least it may be.", examples=['from = "100 N s/m"'])
+    upper: AmountText = Field(alias="to", description="The most it may be.", examples=['to = "100 kN s/m"'])
 
     @model_validator(mode="after")
     def _ordered(self) -> Range:
@@ -58,10 +67,12 @@ class Range(Shape):
 
 def of_quantities(fields: Iterable[Quantity]) -> dict[str, Any]:
     """Keys for quantities that must be given."""
-    return {
-        field.key: (Annotated[float, positive(field.unit)], Field(examples=[f'{field.key} = "{field.example}"']))
-        for field in fields
-    }
+    return {field.key: (Annotated[float, positive(field.unit)], Field(**of_field(field))) for field in fields}
+
+
+def of_field(field: Quantity) -> dict[str, Any]:
+    """What its key says of a quantity: a sentence, and an example."""
+    return {"description": field.sentence, "examples": [f'{field.key} = "{field.example}"']}
 
 
 def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Shapes]:
@@ -73,14 +84,18 @@ def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Sh
         return f"<{model}>" if isinstance(model, str) and f"<{model}>" in made else ANY
 
     shapes = {**made, ANY: unknown}
-    return one_of_shapes(shapes, tag), {("vehicle", name): shape for name, shape in shapes.items()}
+    known = {**made, ANY: Annotated[unknown, Says(lambda: NEVER)]}
+    return one_of_shapes(known, tag), {("vehicle", name): shape for name, shape in shapes.items()}
 
 
 def _vehicle_shape(model: str) -> type[Shape]:
     keys = of_quantities(fields_of(VEHICLES[model]))
     if "model" in keys:
         raise RowError(f"{model} has a quantity 'model', a key that [vehicle] has already. Choose another name.")
-    return create_model(f"Vehicle {model}", __base__=Shape, **{**keys, "model": (Literal[model], ...)})
+    what = Field(description="The kind of vehicle.", examples=[f'model = "{model}"'])
+    about = (getdoc(VEHICLES[model]) or model).partition("\n\n")[0]
+    keys = {"model": (Literal[model], what), **keys}
+    return create_model(f"Vehicle {model}", __base__=Shape, __doc__=about, **keys)
 
 
 def one_of_shapes(shapes: Mapping[str, Any], tag: Callable[[Any], str]) -> Any:
@@ -90,8 +105,8 @@ def one_of_shapes(shapes: Mapping[str, Any], tag: Callable[[Any], str]) -> Any:
 
 ElementEntry = Annotated[
     Annotated[Range, Tag("<range>")]
-    | Annotated[Amount, PlainValidator(amount), Tag("<fixed>")]
-    | Annotated[KindEntry, PlainValidator(kind_entry), Tag("<kind>")],
+    | Annotated[Amount, AMOUNT, Tag("<fixed>")]
+    | Annotated[KindEntry, checked(kind_entry, kind_schema), Tag("<kind>")],
     Discriminator(lambda value: "<kind>" if names_kind(value) else "<range>" if isinstance(value, dict) else "<fixed>"),
 ]
 
@@ -113,15 +128,18 @@ def layouts() -> tuple[Any, Shapes]:
             return "<strut>"
         return max(tables, key=lambda name: len(set(entry) & set(tables[name].model_fields)))
 
-    strut = Annotated[str, PlainValidator(expression)]
+    strut = Annotated[str, EXPRESSION]
     each: Any = one_of_shapes({**tables, "<strut>": strut}, tag)
     every: Any = dict.__class_getitem__((LayoutName, each))
     example = 'a section [layouts] with lines such as S1 = "k | c"'
-    entry = Annotated[every, Field(min_length=1, examples=[example])]
+    entry = Annotated[every, Field(min_length=1, examples=[example], description="How elements are joined.")]
     return entry, {("layouts", "*", name): shape for name, shape in tables.items()}
 
 
 def _mounts_shape(mounts: tuple[str, ...]) -> type[Shape]:
-    text = Annotated[str, PlainValidator(expression)]
-    keys: dict[str, Any] = {mount: (text, Field(examples=[f'{mount} = "k | c"'])) for mount in mounts}
+    text = Annotated[str, EXPRESSION]
+    keys: dict[str, Any] = {
+        mount: (text, Field(description=f"The network at {mount}.", examples=[f'{mount} = "k | c"']))
+        for mount in mounts
+    }
     return create_model(f"Mounts {' '.join(mounts)}", __base__=Shape, **keys)

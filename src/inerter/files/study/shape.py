@@ -21,19 +21,21 @@ from inerter.fields import Field as Quantity
 from inerter.fields import fields_of
 from inerter.files.common.entries import (
     MOST_POINTS,
+    SHARE,
+    SWEEP_LIST,
+    SWEPT,
+    TEXT,
     Amount,
     check_order,
     one_of,
     one_sweep,
     positive,
-    share,
     some_names,
     some_of,
-    sweep_list,
-    swept_amount,
-    text,
     whole,
+    word,
 )
+from inerter.files.common.schema import checked, words_schema
 from inerter.files.common.shape import (
     ROAD,
     ElementEntry,
@@ -42,6 +44,7 @@ from inerter.files.common.shape import (
     Shape,
     Shapes,
     layouts,
+    of_field,
     of_quantities,
     vehicle_shapes,
 )
@@ -56,16 +59,18 @@ _MOST_ROADS = 100_000
 SPACINGS = ("linear", "log")
 
 
-SweptText = Annotated[Amount, PlainValidator(swept_amount)]
+SweptText = Annotated[Amount, SWEPT]
 
 
 class SweepRange(Shape):
     """Values of one element from one end to the other."""
 
-    lower: SweptText = Field(alias="from", examples=['from = "10 kN/m"'])
-    upper: SweptText = Field(alias="to", examples=['to = "300 kN/m"'])
-    points: Annotated[int, whole(2, MOST_POINTS)] = Field(examples=["points = 30"])
-    spacing: Annotated[str, PlainValidator(one_of("a spacing", SPACINGS))] = "linear"
+    lower: SweptText = Field(alias="from", description="The first value.", examples=['from = "10 kN/m"'])
+    upper: SweptText = Field(alias="to", description="The last value.", examples=['to = "300 kN/m"'])
+    points: Annotated[int, whole(2, MOST_POINTS)] = Field(description="How many values.", examples=["points = 30"])
+    spacing: Annotated[str, word("a spacing", SPACINGS)] = Field(
+        default="linear", description="Equal steps, or equal ratios.", examples=['spacing = "log"']
+    )
 
     @model_validator(mode="after")
     def _ordered(self) -> SweepRange:
@@ -76,7 +81,7 @@ class SweepRange(Shape):
 
 
 SweepEntry = Annotated[
-    Annotated[SweepRange, Tag("<range>")] | Annotated[tuple[Amount, ...], PlainValidator(sweep_list), Tag("<list>")],
+    Annotated[SweepRange, Tag("<range>")] | Annotated[tuple[Amount, ...], SWEEP_LIST, Tag("<list>")],
     Discriminator(lambda value: "<range>" if isinstance(value, dict) else "<list>"),
 ]
 
@@ -113,28 +118,67 @@ def _search(value: Any) -> str:
 class Settings(Shape):
     """What is asked of the layouts, and how it is answered; beside these there are the settings of indices."""
 
-    indices: Annotated[tuple[str, ...], some_of("an index", INDICES)] = Field(examples=['indices = ["J1", "J3", "J5"]'])
-    conventions: Annotated[str, PlainValidator(one_of("a set of conventions", CONVENTIONS))] = "exact"
-    optimise: Annotated[str | None, PlainValidator(_search)] = None
-    evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = (DEFAULT,)
-    baseline: Annotated[str | None, PlainValidator(text)] = None
-    sweep: Annotated[dict[str, SweepEntry], AfterValidator(one_sweep)] | None = Field(
-        default=None, examples=['sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }']
+    indices: Annotated[tuple[str, ...], some_of("an index", INDICES)] = Field(
+        description="What is asked of each layout.", examples=['indices = ["J1", "J3", "J5"]']
     )
-    seed: Annotated[int, whole(0, 2**63 - 1)] = 0
-    realisations: Annotated[int | None, whole(2, _MOST_ROADS)] = None
-    relative_error: Annotated[float | None, PlainValidator(share)] = None
-    budgets: Annotated[tuple[str, ...], some_names("f")] = ()
+    conventions: Annotated[str, word("a set of conventions", CONVENTIONS)] = Field(
+        default="exact",
+        description="How numbers are made: exactly, or as in the paper of 2008.",
+        examples=['conventions = "paper2008"'],
+    )
+    optimise: Annotated[str | None, checked(_search, lambda: words_schema(methods_that(searches)))] = Field(
+        default=None,
+        description="The method whose value is made smallest; needed if anything is free.",
+        examples=['optimise = "norm"'],
+    )
+    evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = Field(
+        default=(DEFAULT,),
+        description="The methods that judge the designs; tables and figures are about the first.",
+        examples=['evaluate = ["norm", "expected-value"]'],
+    )
+    baseline: Annotated[str | None, TEXT] = Field(
+        default=None,
+        description="The layout that the others are compared with; the first if left out.",
+        examples=['baseline = "S1"'],
+    )
+    sweep: Annotated[dict[str, SweepEntry], AfterValidator(one_sweep)] | None = Field(
+        default=None,
+        description="One element with a fixed value takes these in turn.",
+        examples=['sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }'],
+    )
+    seed: Annotated[int, whole(0, 2**63 - 1)] = Field(
+        default=0, description="Of the search and of the random roads.", examples=["seed = 1"]
+    )
+    realisations: Annotated[int | None, whole(2, _MOST_ROADS)] = Field(
+        default=None,
+        description="Random roads of the methods that average; their own choice if left out.",
+        examples=["realisations = 20"],
+    )
+    relative_error: Annotated[float | None, SHARE] = Field(
+        default=None,
+        description="As many roads as make the standard error that part of the value.",
+        examples=["relative_error = 0.002"],
+    )
+    budgets: Annotated[tuple[str, ...], some_names("f")] = Field(
+        default=(),
+        description="Elements: for which values of each is a layout better than the baseline?",
+        examples=['budgets = ["f"]'],
+    )
 
 
 class StudyFile(Shape):
     """The whole file, but for what is made of quantities and rows."""
 
-    title: Annotated[str | None, PlainValidator(text)] = None
+    title: Annotated[str | None, TEXT] = Field(
+        default=None, description="A line for reports; the name of the file if left out.", examples=['title = "My car"']
+    )
     vehicle: Any
     road: Any
     elements: dict[ElementName, ElementEntry] = Field(
-        min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
+        min_length=1,
+        description="What struts are made of, by names of your own. The unit tells the element: N/m spring, "
+        "N s/m damper, kg inerter, N dry friction, m gap. A value is fixed, or free between two bounds.",
+        examples=['a section [elements] with lines such as k = "120 kN/m"'],
     )
     layouts: Any
     study: Any
@@ -154,14 +198,36 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     vehicle, vehicles = vehicle_shapes(_cars(), AnyCar)
     cars = " or ".join(map(shown, _cars()))
     layout, tables = layouts()
-    section: dict[str, Any] = {"methods": (method, Field(default_factory=method))} if own else {}
+    section: dict[str, Any] = (
+        {"methods": (method, Field(default_factory=method, description="Settings of methods, a table for each."))}
+        if own
+        else {}
+    )
     file = create_model(
         "StudyFile",
         __base__=StudyFile,
-        vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {cars}"])),
-        road=(RoadShape, Field(examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'])),
-        layouts=(layout, ...),
-        study=(settings, Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])),
+        vehicle=(
+            vehicle,
+            Field(
+                description="What the struts are mounted in: its model decides which other keys there are.",
+                examples=[f"a section [vehicle] with model = {cars}"],
+            ),
+        ),
+        road=(
+            RoadShape,
+            Field(
+                description="What the vehicle drives on, and how fast.",
+                examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'],
+            ),
+        ),
+        layouts=(layout, Field(description="How elements are joined: | side by side, - end to end.")),
+        study=(
+            settings,
+            Field(
+                description="What is asked of the layouts, and how it is answered.",
+                examples=['a section [study] with indices = ["J1", "J3", "J5"]'],
+            ),
+        ),
         **section,
     )
     return file, {
@@ -197,7 +263,7 @@ def _if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
     return {
         field.key: (
             Annotated[float | None, positive(field.unit)],
-            Field(default=None, examples=[f'{field.key} = "{field.example}"']),
+            Field(default=None, **of_field(field)),
         )
         for field in fields
     }

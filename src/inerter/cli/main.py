@@ -94,6 +94,25 @@ def check(study: Path, /) -> int:
     return command(study)
 
 
+@app.command(
+    help_epilogue="""Examples:
+  inerter explain                      all keys
+  inerter explain road.speed
+  inerter explain sweep"""
+)
+def explain(key: str | None = None, /) -> int:
+    """Tell what a key of study files means: its unit, its default, an example.
+
+    Parameters
+    ----------
+    key
+        Its place, such as road.speed, or the end of that; a section; a word such as J1. All keys if left out.
+    """
+    from inerter.cli.describing import explain as command
+
+    return command(key)
+
+
 @app.command(help_epilogue="Example: inerter schema > study.schema.json")
 def schema() -> int:
     """Print the JSON Schema of study files, with which editors complete and check them.

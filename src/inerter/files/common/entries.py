@@ -20,7 +20,13 @@ _LONGEST_EXPRESSION = 500
 _MOST_BRACKETS = 50  # far from the depth at which Python's stack ends
 TEXT_SCHEMA: dict[str, Any] = {"type": "string", "minLength": 1, "maxLength": 200}
 SHARE_SCHEMA: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
-EXPRESSION_SCHEMA: dict[str, Any] = {"type": "string", "minLength": 1, "maxLength": _LONGEST_EXPRESSION}
+EXPRESSION_SCHEMA: dict[str, Any] = {
+    "type": "string",
+    "minLength": 1,
+    "maxLength": _LONGEST_EXPRESSION,
+    "description": "A network: | puts parts side by side, - end to end and binds tighter.",
+    "examples": ['S3 = "k | c - b"'],
+}
 _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")
 
 
@@ -94,7 +100,14 @@ def swept_amount(text: Any) -> Amount:
     return _amount(text, kinds_in_unit())
 
 
-AMOUNT = checked(amount, lambda: quantity_schema(*kinds_by_unit(), least="not negative"))
+AMOUNT = checked(
+    amount,
+    lambda: {
+        **quantity_schema(*kinds_by_unit(), least="not negative"),
+        "description": "An element, which the unit tells, with its value; or a table with the ends of a free value.",
+        "examples": [f'{kind.symbol} = "{kind.example}"' for kind in kinds_by_unit().values()],
+    },
+)
 SWEPT = checked(swept_amount, lambda: quantity_schema(*kinds_in_unit(), least="not negative"))
 
 
@@ -256,6 +269,8 @@ SWEEP_LIST = checked(
     sweep_list,
     lambda: {
         **list_schema(quantity_schema(*kinds_in_unit(), least="not negative")),
+        "description": "Its values, one by one, or from one end to the other.",
+        "examples": ['k = ["60 kN/m", "120 kN/m", "240 kN/m"]'],
         "minItems": 2,
         "maxItems": MOST_POINTS,
     },

@@ -11,7 +11,7 @@ from pydantic import BaseModel, PlainValidator
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 UNIT = "x-unit"  # a keyword of our own, which validators pass over: the SI unit of a quantity
-NEVER = {"not": {}}  # an alternative that no entry has
+NEVER: dict[str, Any] = {"not": {}}  # an alternative that no entry has
 USUAL = {  # units of each kind as they are often written; others are not refused
     "N/m": ("N/m", "kN/m", "MN/m", "N/mm", "kN/mm", "lbf/in"),
     "N s/m": ("N s/m", "kN s/m", "MN s/m", "N s/mm", "kN s/mm"),

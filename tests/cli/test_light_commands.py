@@ -63,7 +63,7 @@ def test_help_loads_no_library_of_numbers(arguments: tuple[str, ...]) -> None:
     assert not loaded_by(*arguments) & LIBRARIES
 
 
-@pytest.mark.parametrize("arguments", [("schema",), ("explain", "road.speed")])
+@pytest.mark.parametrize("arguments", [("schema",), ("explain", "road.speed"), ("new", "-o", "-")])
 def test_what_tells_of_files_is_light(arguments: tuple[str, ...]) -> None:
     assert not loaded_by(*arguments) & (HEAVY | {"pint"})
 

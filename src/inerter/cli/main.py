@@ -96,6 +96,33 @@ def check(study: Path, /) -> int:
 
 @app.command(
     help_epilogue="""Examples:
+  inerter new                          writes quarter-car.toml
+  inerter new half-car -o my-car.toml
+  inerter new full-car -o -            prints it"""
+)
+def new(
+    vehicle: str = "quarter-car",
+    /,
+    *,
+    output: Annotated[
+        Path | None,
+        Parameter(name=["--output", "-o"], allow_leading_hyphen=True, help="The file to write, or - to print it."),
+    ] = None,
+) -> int:
+    """Write a study file to start from, with a remark beside every key. It never replaces a file.
+
+    Parameters
+    ----------
+    vehicle
+        The model of the vehicle, such as quarter-car or half-car; inerter explain vehicle.model has all.
+    """
+    from inerter.cli.new import new as command
+
+    return command(vehicle, output)
+
+
+@app.command(
+    help_epilogue="""Examples:
   inerter explain                      all keys
   inerter explain road.speed
   inerter explain sweep"""

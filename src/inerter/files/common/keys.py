@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from inerter.files.common.schema import UNIT, USUAL
@@ -52,7 +52,20 @@ def found(keys: Iterable[Key], wanted: str) -> list[Key]:
     parts = wanted.strip().strip("[]").split(".")
     every = list(keys)
     whole = [key for key in every if _ends(key, parts) and key.place.count(".") == len(parts) - 1]
-    return whole or [key for key in every if _ends(key, parts)]
+    return _merged(whole or [key for key in every if _ends(key, parts)])
+
+
+def _merged(keys: Iterable[Key]) -> list[Key]:
+    """Keys of several models as one where they say the same."""
+    alike: dict[tuple[str, ...], list[Key]] = {}
+    for key in keys:
+        alike.setdefault((key.place, key.sentence, key.unit), []).append(key)
+    return [
+        replace(
+            same[0], of=" or ".join(key.of for key in same), words=tuple(word for key in same for word in key.words)
+        )
+        for same in alike.values()
+    ]
 
 
 def _ends(key: Key, parts: list[str]) -> bool:

@@ -87,7 +87,7 @@ SweepEntry = Annotated[
 
 
 def _car(value: Any) -> str:
-    cars = tuple(_cars())
+    cars = tuple(models())
     if isinstance(value, str) and value in VEHICLES and value not in cars:
         raise ValueError(
             f"Got {shown(value)}, which has no road to be judged on; expected {' or '.join(map(shown, cars))}. "
@@ -96,7 +96,7 @@ def _car(value: Any) -> str:
     return one_of("a vehicle model", cars)(value)
 
 
-def _cars() -> list[str]:
+def models() -> list[str]:
     """The models that are judged on a road."""
     return [model for model, kind in VEHICLES.items() if kind.moved == "road"]
 
@@ -195,8 +195,8 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
     settings = create_model("Settings", __base__=Settings, **_if_given(index_settings().values()))
     method, own = _method_shapes()
-    vehicle, vehicles = vehicle_shapes(_cars(), AnyCar)
-    cars = " or ".join(map(shown, _cars()))
+    vehicle, vehicles = vehicle_shapes(models(), AnyCar)
+    cars = " or ".join(map(shown, models()))
     layout, tables = layouts()
     section: dict[str, Any] = (
         {"methods": (method, Field(default_factory=method, description="Settings of methods, a table for each."))}

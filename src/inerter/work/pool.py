@@ -170,13 +170,17 @@ class _Start:
 
     begin: Callable[[], list[Future[Any]]] | None  # None: there are to be none
     left: int | None  # items, if it is known
+    loading: float = 0.0  # seconds that the first item took, with all that it loads
     starting: list[Future[Any]] = field(default_factory=list)
 
     def is_over(self, done: int, seconds: float) -> bool:
         """Whether processes are ready, which are started if work takes as long."""
         if self.starting or self.begin is None:
             return any(future.done() for future in self.starting)
-        rest = seconds / done * (self.left - done) if self.left is not None and seconds > _TOLD else 0.0
+        if done == 1:
+            self.loading = seconds
+        worked = seconds - self.loading
+        rest = worked / (done - 1) * (self.left - done) if self.left is not None and worked > _TOLD else 0.0
         if seconds > _SHORT or rest > 2.0 * _SHORT:
             self.starting = self.begin()
         return False

@@ -78,6 +78,7 @@ from inerter.signals.harmonics import multisine as multisine
 from inerter.signals.harmonics import sine as sine
 from inerter.signals.records import held_noise as held_noise
 from inerter.signals.records import profile as profile
+from inerter.signals.road import ROAD_CLASSES as ROAD_CLASSES
 from inerter.signals.road import Road as Road
 from inerter.signals.signal import Signal as Signal
 from inerter.signals.transients import bump as bump

@@ -91,6 +91,7 @@ from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
+from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate

@@ -78,6 +78,7 @@ from inerter.signals.harmonics import multisine as multisine
 from inerter.signals.harmonics import sine as sine
 from inerter.signals.records import held_noise as held_noise
 from inerter.signals.records import profile as profile
+from inerter.signals.road import ROAD_CLASSES as ROAD_CLASSES
 from inerter.signals.road import Road as Road
 from inerter.signals.signal import Signal as Signal
 from inerter.signals.transients import bump as bump
@@ -91,6 +92,7 @@ from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
+from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate

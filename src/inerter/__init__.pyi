@@ -93,6 +93,8 @@ from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
+from inerter.vehicle.absorber import Absorber as Absorber
+from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate
@@ -106,6 +108,7 @@ from inerter.vehicle.mechanism import Weighted as Weighted
 from inerter.vehicle.quarter_car import QuarterCar as QuarterCar
 from inerter.vehicle.registry import VEHICLES as VEHICLES
 from inerter.vehicle.rig import Rig as Rig
+from inerter.vehicle.seat import Seat as Seat
 from inerter.vehicle.vehicle import VehicleModel as VehicleModel
 from inerter.work.pool import pooled as pooled
 

@@ -30,10 +30,13 @@ from inerter.files.common.entries import (
     element_name,
     layout_name,
     positive,
+    word,
 )
 from inerter.files.common.kind_entry import KindEntry, kind_entry, kind_schema, names_kind
+from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import NEVER, Says, checked
 from inerter.rows import made_of_rows
+from inerter.signals.road import ROAD_CLASSES
 from inerter.vehicle.registry import VEHICLES
 
 ROAD = (
@@ -47,6 +50,25 @@ class Shape(BaseModel):
     """A table of a study file; keys that it does not know are errors."""
 
     model_config = ConfigDict(extra="forbid")
+
+
+class RoadTable(Shape):
+    """A table [road] may say the class of a road in place of its roughness."""
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("roughness"))
+    letter: Annotated[str | None, word("a class of ISO 8608", ROAD_CLASSES)] = Field(
+        default=None, alias="class", description="Of ISO 8608, in place of a roughness.", examples=['class = "C"']
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_a_class(cls, table: Any) -> Any:
+        if not isinstance(table, dict) or "class" not in table:
+            return table
+        if "roughness" in table:
+            raise EntryError(got="both roughness and class", expected="one of the two")
+        known = ROAD_CLASSES.get(str(table["class"]), ROAD_CLASSES["A"])  # of another one, that is what is told
+        return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
 
 
 Shapes = Mapping[tuple[str, ...], type[Shape]]

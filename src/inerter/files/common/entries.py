@@ -11,8 +11,8 @@ from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element
-from inerter.networks.elements.registry import kinds_by_unit, kinds_in_unit, parse_element
-from inerter.units import format_quantity, parse_quantity, shown
+from inerter.networks.elements.registry import kinds_by_unit, parse_element
+from inerter.units import format_quantity, parse_quantity, shown, unit_in
 
 MOST_POINTS = 10_000_000
 _LONGEST_EXPRESSION = 500
@@ -85,9 +85,10 @@ def amount(text: Any) -> Amount:
     return _amount(text, kinds_by_unit())
 
 
-def swept_amount(text: Any) -> Amount:
-    """The value of an element that is named elsewhere."""
-    return _amount(text, kinds_in_unit())
+def quantity_text(text: Any) -> str:
+    """A number with a unit, whose kind of quantity is known when the place is that it is for."""
+    unit_in(text)
+    return str(text)
 
 
 def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
@@ -215,24 +216,10 @@ def check_order(lower: Amount, upper: Amount) -> None:
         raise EntryError(got=ends, expected="from less than to", hint=remedy)
 
 
-def sweep_list(values: Any) -> tuple[Amount, ...]:
+def quantity_list(values: Any) -> tuple[str, ...]:
     """The values of a sweep, one by one."""
     if not isinstance(values, list) or not 2 <= len(values) <= MOST_POINTS:
         got = f"a list of {len(values)}" if isinstance(values, list) else shown(values)
         example = 'k = { from = "10 kN/m", to = "300 kN/m", points = 30 } or k = ["10 kN/m", "20 kN/m"]'
         raise EntryError(got=got, expected=f"2 to {MOST_POINTS} values, as in {example}")
-    amounts = tuple(swept_amount(value) for value in values)
-    if len({a.unit for a in amounts}) > 1:
-        units = ", ".join(sorted({a.unit for a in amounts}))
-        raise EntryError(got=f"values of unlike units, {units}", expected="one")
-    if len(set(amounts)) < len(amounts):
-        raise EntryError(got="the same value more than once", expected="each once")
-    return amounts
-
-
-def one_sweep(sweep: dict[str, Any]) -> dict[str, Any]:
-    """Two swept elements would be a grid, which is not one line in a figure."""
-    if len(sweep) != 1:
-        got = ", ".join(shown(name) for name in sweep) or "none"
-        raise EntryError(got=f"{len(sweep)} swept elements ({got})", expected="exactly one")
-    return sweep
+    return tuple(map(quantity_text, values))

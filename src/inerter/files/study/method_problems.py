@@ -25,13 +25,14 @@ from inerter.units import shown
 
 
 def method_problems(study: Study) -> Iterator[Problem]:
-    """One line for each."""
+    """One line for each; a setting that is swept counts as given."""
+    yield from _budget_problems(study)
+    study = study.at([sweep.values[0] for sweep in study.sweeps])
     yield from _road_problems(study)
     yield from _index_problems(study)
     yield from _own_problems(study)
     yield from _force_problems(study)
     yield from _gap_problems(study)
-    yield from _budget_problems(study)
 
 
 def budget_method(study: Study) -> str:
@@ -126,7 +127,7 @@ def _simulating() -> str:
 
 def _budget_problems(study: Study) -> Iterator[Problem]:
     place = ("study", "budgets")
-    if study.budgets and study.sweep is not None:
+    if study.budgets and study.sweeps:
         yield at(place, fault="given beside a sweep", expected="one of the two")
     if study.budgets and study.baseline is None:
         yield at(place, fault="there is but one layout", expected="another to compare it with, or no budgets")

@@ -26,12 +26,16 @@ SWEEP = (
     'sweep = { "vehicle.sprung_mass" = ["300 kg", "200 kg", "400 kg"], '
     'k = { from = "30 kN/m", to = "90 kN/m", points = 2 } }'
 )
+ELEMENTS = """k = "60 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+b = { from = "1 kg", to = "2000 kg" }"""
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
     path = tmp_path_factory.mktemp("map") / "map.toml"
-    path.write_text(study_text(f'indices = ["J1", "J3"]\noptimise = "norm"\n{SWEEP}'), encoding="utf-8")
+    text = study_text(f'indices = ["J1", "J3"]\noptimise = "norm"\n{SWEEP}', elements=ELEMENTS)
+    path.write_text(text, encoding="utf-8")
     return load_study(path)
 
 

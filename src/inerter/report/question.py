@@ -40,10 +40,11 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     rows = [("Model", study.model.replace("-", " "))]
     rows += [(capital(f.in_words), _told(study, f"vehicle.{f.key}")) for f in fields_of(VEHICLES[study.model])]
     rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
-    for symbol in study.indices:
+    for name in study.indices:
+        symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
-        given = [field for field in fields_of(INDICES[symbol]) if field.key in study.settings and field != amplitude]
-        rows += [(f"{capital(f.in_words)} of {symbol}", _given(study.settings[f.key], f.unit)) for f in given]
+        given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
+        rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
         rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
@@ -101,10 +102,10 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    forced = {symbol: field for symbol in INDICES if (field := amplitude_of(symbol)) and field.key in study.settings}
-    for symbol in [asked for asked in forced if asked in study.indices] or forced:
-        amplitude = _given(study.settings[forced[symbol].key], forced[symbol].unit)
-        yield f"The sinusoidal force of {symbol} has an amplitude of {amplitude}."
+    for name in study.indices:
+        field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
+        if field is not None and field.key in settings:
+            yield f"The sinusoidal force of {name} has an amplitude of {_given(settings[field.key], field.unit)}."
 
 
 def _told(study: Study, place: str) -> str:

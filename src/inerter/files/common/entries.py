@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, NamedTuple
 
-from pydantic import PlainValidator
+from pydantic import PlainValidator, ValidationInfo
 
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
@@ -123,23 +123,34 @@ def some_of(what: str, known: Collection[str]) -> PlainValidator:
     return _list_of(one_of(what, known), lambda: next(iter(known)))
 
 
+def some_of_file(what: str, known: Callable[[Mapping[str, Any]], Collection[str]]) -> PlainValidator:
+    """A list of at least one of the words that are `known` in a file, none of them twice."""
+
+    def check(values: Any, info: ValidationInfo) -> tuple[str, ...]:
+        words = known(info.context or {})
+        return _check_list(values, one_of(what, words), lambda: next(iter(words)))
+
+    return PlainValidator(check)
+
+
 def some_names(example: str) -> PlainValidator:
     """A list of at least one name, none of them twice; whether they are known is seen later."""
     return _list_of(text, lambda: example)
 
 
 def _list_of(one: Callable[[Any], str], example: Callable[[], str]) -> PlainValidator:
-    def check(values: Any) -> tuple[str, ...]:
-        if not isinstance(values, list) or not values:
-            got = "an empty list" if values == [] else shown(values)
-            raise EntryError(got=got, expected=f"a list of one or more, such as [{shown(example())}]")
-        checked = tuple(one(value) for value in values)
-        twice = next((value for value in checked if checked.count(value) > 1), None)
-        if twice is not None:
-            raise EntryError(got=f"{shown(twice)} more than once", expected="each at most once")
-        return checked
+    return PlainValidator(lambda values: _check_list(values, one, example))
 
-    return PlainValidator(check)
+
+def _check_list(values: Any, one: Callable[[Any], str], example: Callable[[], str]) -> tuple[str, ...]:
+    if not isinstance(values, list) or not values:
+        got = "an empty list" if values == [] else shown(values)
+        raise EntryError(got=got, expected=f"a list of one or more, such as [{shown(example())}]")
+    checked = tuple(one(value) for value in values)
+    twice = next((value for value in checked if checked.count(value) > 1), None)
+    if twice is not None:
+        raise EntryError(got=f"{shown(twice)} more than once", expected="each at most once")
+    return checked
 
 
 def whole(lower: int, upper: int) -> PlainValidator:

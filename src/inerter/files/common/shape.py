@@ -64,6 +64,17 @@ def of_quantities(fields: Iterable[Quantity]) -> dict[str, Any]:
     }
 
 
+def if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
+    """Keys for quantities that may be left out."""
+    return {
+        field.key: (
+            Annotated[float | None, positive(field.unit)],
+            Field(default=None, examples=[f'{field.key} = "{field.example}"']),
+        )
+        for field in fields
+    }
+
+
 def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Shapes]:
     """The table [vehicle] of any of these models, and its shapes by place; `unknown` is that of any other model."""
     made = {f"<{model}>": _vehicle_shape(model) for model in models}

@@ -13,6 +13,7 @@ from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
 from inerter.files.study.method_problems import method_problems
+from inerter.files.study.own_indices import own_index, own_index_problems
 from inerter.files.study.shape import StudyFile, shapes
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import sweeps_of
@@ -38,6 +39,7 @@ def load_study(path: str | Path) -> Study:
         *layout_problems(study.model, study.elements, study.layouts),
         *sweep_problems,
         *_setting_problems(study),
+        *own_index_problems(study.indices, study.own_indices),
         *method_problems(study),
     ]
     if not problems:
@@ -72,6 +74,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         realisations=settings.realisations,
         relative_error=settings.relative_error,
         settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
+        own_indices={name: own_index(entry) for name, entry in shape.indices.items()},
         method_settings=_method_settings(shape),
         budgets=settings.budgets,
     )

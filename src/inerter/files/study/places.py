@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inerter.fields import Field, fields_of
 from inerter.files.common.shape import ROAD
-from inerter.indices.registry import index_settings
+from inerter.indices.registry import INDICES, index_settings
 from inerter.methods.registry import method_settings
 from inerter.networks.elements import Element, Free, Value
 from inerter.vehicle.registry import VEHICLES
@@ -167,6 +167,21 @@ def _put_setting(study: Study, key: str, number: float) -> Study:
     return replace(study, settings={**study.settings, key: number})
 
 
+def _index_numbers(study: Study) -> dict[str, Number]:
+    return {
+        f"{name}.{f.key}": Number(f.unit, f"{f.in_words} of {name}", own.settings.get(f.key))
+        for name, own in study.own_indices.items()
+        for f in fields_of(INDICES[own.symbol])
+    }
+
+
+def _put_index(study: Study, key: str, number: float) -> Study:
+    name, _, setting = key.partition(".")
+    own = study.own_indices[name]
+    changed = replace(own, settings={**own.settings, setting: number})
+    return replace(study, own_indices={**study.own_indices, name: changed})
+
+
 def _method_numbers(study: Study) -> dict[str, Number]:
     return {
         f"{name}.{f.key}": Number(f.unit, f"{f.in_words} of {name}", study.method_settings.get(name, {}).get(f.key))
@@ -185,6 +200,7 @@ _SECTIONS = {
     "vehicle": _Section(_vehicle_numbers, _put_vehicle),
     "road": _Section(_road_numbers, _put_road),
     _ELEMENTS: _Section(_element_numbers, _put_element),
+    "indices": _Section(_index_numbers, _put_index),
     "study": _Section(_setting_numbers, _put_setting),
     "methods": _Section(_method_numbers, _put_method),
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Annotated, Any
 
 from pydantic import (
@@ -16,17 +15,16 @@ from pydantic import (
 )
 
 from inerter.errors import RowError
-from inerter.fields import Field as Quantity
 from inerter.fields import fields_of
 from inerter.files.common.entries import (
     MOST_POINTS,
     one_of,
-    positive,
     quantity_list,
     quantity_text,
     share,
     some_names,
     some_of,
+    some_of_file,
     text,
     whole,
 )
@@ -37,12 +35,14 @@ from inerter.files.common.shape import (
     Range,
     Shape,
     Shapes,
+    if_given,
     layouts,
     of_quantities,
     vehicle_shapes,
 )
+from inerter.files.study.own_indices import index_shapes, indices_of
 from inerter.files.study.places import by_place
-from inerter.indices.registry import INDICES, index_settings
+from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
 from inerter.rows import made_of_rows
@@ -103,7 +103,9 @@ def _search(value: Any) -> str:
 class Settings(Shape):
     """What is asked of the layouts, and how it is answered; beside these there are the settings of indices."""
 
-    indices: Annotated[tuple[str, ...], some_of("an index", INDICES)] = Field(examples=['indices = ["J1", "J3", "J5"]'])
+    indices: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = Field(
+        examples=['indices = ["J1", "J3", "J5"]']
+    )
     conventions: Annotated[str, PlainValidator(one_of("a set of conventions", CONVENTIONS))] = "exact"
     optimise: Annotated[str | None, PlainValidator(_search)] = None
     evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = (DEFAULT,)
@@ -127,6 +129,7 @@ class StudyFile(Shape):
         min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
     )
     layouts: Any
+    indices: Any
     study: Any
 
 
@@ -139,8 +142,9 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     taken = sorted(index_settings().keys() & Settings.model_fields.keys())
     if taken:
         raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
-    settings = create_model("Settings", __base__=Settings, **_if_given(index_settings().values()))
+    settings = create_model("Settings", __base__=Settings, **if_given(index_settings().values()))
     method, own = _method_shapes()
+    index, kinds = index_shapes()
     vehicle, vehicles = vehicle_shapes(_cars(), AnyCar)
     cars = " or ".join(map(shown, _cars()))
     layout, tables = layouts()
@@ -151,6 +155,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {cars}"])),
         road=(RoadShape, Field(examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'])),
         layouts=(layout, ...),
+        indices=(index, Field(default_factory=dict)),
         study=(settings, Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])),
         **section,
     )
@@ -158,6 +163,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         (): file,
         **vehicles,
         ("road",): RoadShape,
+        **kinds,
         ("elements", "*", "<range>"): Range,
         **tables,
         ("study",): settings,
@@ -169,7 +175,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
 def _method_shapes() -> tuple[type[Shape], Shapes]:
     """The section [methods], with a table for each method that has settings of its own, and its shapes by place."""
     own = {
-        name: create_model(f"Method {name}", __base__=Shape, **_if_given(fields))
+        name: create_model(f"Method {name}", __base__=Shape, **if_given(fields))
         for name, kind in METHODS.items()
         if (fields := fields_of(kind))
     }
@@ -180,14 +186,3 @@ def _method_shapes() -> tuple[type[Shape], Shapes]:
     section = create_model("Methods", __base__=Shape, **tables)
     places: dict[tuple[str, ...], type[Shape]] = {("methods", name): shape for name, shape in own.items()}
     return section, {("methods",): section, **places} if own else {}
-
-
-def _if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
-    """Keys for quantities that may be left out."""
-    return {
-        field.key: (
-            Annotated[float | None, positive(field.unit)],
-            Field(default=None, examples=[f'{field.key} = "{field.example}"']),
-        )
-        for field in fields
-    }

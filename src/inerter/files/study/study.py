@@ -14,7 +14,9 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_toml
+from inerter.files.study.own_indices import OwnIndex
 from inerter.files.study.places import Place, with_numbers
+from inerter.indices.names import index_names
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
 from inerter.methods.method import Method
@@ -61,6 +63,7 @@ class Study:
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
+    own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
     budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
@@ -69,9 +72,19 @@ class Study:
         """All methods that it uses."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
 
-    def index(self, symbol: str) -> Index:
-        """The index of that symbol as the study asks it."""
-        return make_index(symbol, self.road, self.settings)
+    def symbol(self, name: str) -> str:
+        """The symbol of the index that the study calls so."""
+        own = self.own_indices.get(name)
+        return own.symbol if own else index_names()[name]
+
+    def index(self, name: str) -> Index:
+        """The index that the study calls so, as it asks it."""
+        return make_index(self.symbol(name), self.road, self.settings_of(name))
+
+    def settings_of(self, name: str) -> dict[str, float]:
+        """The settings of that index by their keys: its own, else those of the study; others are among them."""
+        own = self.own_indices.get(name)
+        return {**self.settings, **own.settings} if own else self.settings
 
     def method(self, name: str, threads: int = 1) -> Method:
         """The method of that name as the study asks it; one that simulates shares its roads over `threads`, which
@@ -122,6 +135,7 @@ class Study:
             "road": in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD}),
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
+            **({"indices": own} if (own := {n: index.entry() for n, index in self.own_indices.items()}) else {}),
             "study": self._settings(),
             **({"methods": own} if (own := self._of_methods()) else {}),
         }

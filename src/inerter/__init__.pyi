@@ -99,6 +99,8 @@ from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
+from inerter.trade_off.front import Front as Front
+from inerter.trade_off.pareto import pareto as pareto
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate

@@ -16,7 +16,7 @@ from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES, amplitude_of
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
-from inerter.networks.elements import Free
+from inerter.networks.elements import Free, Tied
 from inerter.units import format_quantity
 from inerter.vehicle.registry import VEHICLES
 
@@ -118,6 +118,8 @@ def _told(study: Study, place: str) -> str:
     value = number.value
     if isinstance(value, Free):
         return f"free, {_given(value.lower, number.unit)} to {_given(value.upper, number.unit)}"
+    if isinstance(value, Tied):
+        return f"tied, {value}"
     return "" if value is None else _given(value, number.unit)
 
 

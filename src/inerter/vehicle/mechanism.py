@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from inerter.checks import check_positive, is_number
 from inerter.errors import DesignError, MechanismError
-from inerter.networks.elements import NAME, Free, Network, check_network
+from inerter.networks.elements import NAME, Free, Network, Tied, check_network
 from inerter.networks.transform import name_free_values, with_values
 
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
@@ -246,7 +246,7 @@ def check_values(mechanism: Mechanism) -> None:
     """Raises `MechanismError` for an element or inertia that is so small or large that others are lost beside it."""
     for mount in mechanism.mounts():
         for element in mount.network.elements():
-            if not isinstance(element.value, Free):
+            if not isinstance(element.value, Free | Tied):
                 _check_size("value", element.label, element.value, element.unit)
     for coordinate in mechanism.coordinates:
         _check_size("inertia", coordinate.name, coordinate.inertia, "kg m^2" if coordinate.angle else "kg")

@@ -33,6 +33,7 @@ from inerter.files.common.shape import (
     ElementEntry,
     ElementName,
     Range,
+    RoadTable,
     Shape,
     Shapes,
     if_given,
@@ -93,7 +94,7 @@ class AnyCar(Shape):
     model: Annotated[str, PlainValidator(_car)] = Field(examples=['model = "quarter-car"'])
 
 
-RoadShape = create_model("RoadShape", __base__=Shape, **of_quantities(ROAD))
+RoadShape = create_model("RoadShape", __base__=RoadTable, **of_quantities(ROAD))
 
 
 def _search(value: Any) -> str:

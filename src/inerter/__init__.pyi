@@ -40,6 +40,8 @@ from inerter.indices.tyre_load import TyreLoad as TyreLoad
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare
+from inerter.methods.conditions import Condition as Condition
+from inerter.methods.conditions import Conditions as Conditions
 from inerter.methods.excitation import MultisineExcitation as MultisineExcitation
 from inerter.methods.excitation import NoiseExcitation as NoiseExcitation
 from inerter.methods.expected_value import ExpectedValue as ExpectedValue
@@ -49,6 +51,7 @@ from inerter.methods.method import evaluate as evaluate
 from inerter.methods.method import evaluate_many as evaluate_many
 from inerter.methods.norm import Norm as Norm
 from inerter.methods.registry import METHODS as METHODS
+from inerter.methods.static_stiffness import static_stiffness as static_stiffness
 from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
 from inerter.networks.catalogue import LAYOUTS as LAYOUTS
 from inerter.networks.elements import Damper as Damper
@@ -58,7 +61,9 @@ from inerter.networks.elements import Gap as Gap
 from inerter.networks.elements import Inerter as Inerter
 from inerter.networks.elements import Network as Network
 from inerter.networks.elements import Spring as Spring
+from inerter.networks.elements import Tied as Tied
 from inerter.networks.elements import free as free
+from inerter.networks.elements import tied as tied
 from inerter.networks.elements.drawing import Line as Line
 from inerter.networks.elements.registry import ELEMENTS as ELEMENTS
 from inerter.networks.elements.roles import Guard as Guard
@@ -70,6 +75,10 @@ from inerter.norms.h2 import h2_norm as h2_norm
 from inerter.norms.hinf import hinf_norm as hinf_norm
 from inerter.optimisation.budget import Budget as Budget
 from inerter.optimisation.budget import budget as budget
+from inerter.optimisation.limits import Limit as Limit
+from inerter.optimisation.limits import at_least as at_least
+from inerter.optimisation.limits import at_most as at_most
+from inerter.optimisation.limits import equal as equal
 from inerter.optimisation.optimise import Optimum as Optimum
 from inerter.optimisation.optimise import optimise as optimise
 from inerter.papers.paper import Paper as Paper
@@ -85,6 +94,7 @@ from inerter.signals.harmonics import multisine as multisine
 from inerter.signals.harmonics import sine as sine
 from inerter.signals.records import held_noise as held_noise
 from inerter.signals.records import profile as profile
+from inerter.signals.road import ROAD_CLASSES as ROAD_CLASSES
 from inerter.signals.road import Road as Road
 from inerter.signals.signal import Signal as Signal
 from inerter.signals.transients import bump as bump
@@ -92,12 +102,16 @@ from inerter.signals.transients import chirp as chirp
 from inerter.signals.transients import step as step
 from inerter.simulation.batch import Batch as Batch
 from inerter.simulation.batch import simulate_many as simulate_many
+from inerter.simulation.histories import simulate_to_files as simulate_to_files
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.arrivals import Arrival as Arrival
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
+from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
+from inerter.vehicle.absorber import Absorber as Absorber
+from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate
@@ -111,6 +125,7 @@ from inerter.vehicle.mechanism import Weighted as Weighted
 from inerter.vehicle.quarter_car import QuarterCar as QuarterCar
 from inerter.vehicle.registry import VEHICLES as VEHICLES
 from inerter.vehicle.rig import Rig as Rig
+from inerter.vehicle.seat import Seat as Seat
 from inerter.vehicle.vehicle import VehicleModel as VehicleModel
 from inerter.work.pool import pooled as pooled
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from campaigns import in_parts
-from excited import ROAD, random_excitation, random_outputs
+from excited import random_excitation, random_outputs
 from random_mechanisms import FAMILIES, mechanisms
 
 import inerter as it
@@ -143,17 +143,3 @@ def test_motions_that_the_ground_carries_are_refused_with_the_ones_to_ask_for():
     quake = it.RandomResponse({"mass_displacement": 1.0}, it.GroundAcceleration(1.0))
     with pytest.raises(PerformanceIndexError, match=r"no bounds.*mass_relative_displacement"):
         it.evaluate(single(1.0, 0.1, 1.0), quake, it.Norm())
-
-
-def test_each_output_of_a_question_alone():
-    car = it.HalfCar(
-        sprung_mass=363.5, pitch_inertia=200.0, unsprung_mass_front=25.0, unsprung_mass_rear=20.0,
-        tyre_stiffness_front=120e3, tyre_stiffness_rear=100e3, distance_front=0.775, distance_rear=1.265,
-        front=Spring(60e3) | Damper(2e3), rear=Spring(50e3) | Damper(2e3),
-    )  # fmt: skip
-    question = it.TyreLoad(ROAD).question(car.mechanism())
-    parts = [linear_problem(car.mechanism(), one, CONVENTIONS["exact"]) for one in question.each()]
-    values = [
-        it.norms.h2.h2(p.system(it.systems.descriptor.close(p.descriptor, {}))).outputs @ p.weights for p in parts
-    ]
-    assert sum(values) == pytest.approx(it.evaluate(car, it.TyreLoad(ROAD), it.Norm()).value, rel=1e-12)

@@ -5,7 +5,7 @@ A method reads a `Question` and never asks which index it came from.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol, cast
 
@@ -70,13 +70,6 @@ class Question:
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """How the sources reach the inputs of the mechanism that is driven, in the order in which they do."""
         return tuple(sorted(self.drive.arrivals(mechanism), key=lambda arrival: arrival.delay))
-
-    def each(self) -> tuple[Question, ...]:
-        """The same question of each of its outputs alone, with a weight of one: their own values."""
-        return tuple(
-            replace(self, outputs=(replace(output, weight=1.0),), filter=(passed,))
-            for output, passed in zip(self.outputs, self.filters, strict=True)
-        )
 
 
 class Index(Protocol):

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, PerformanceIndexError
 from inerter.indices.question import Question
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Value
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value
 from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
 from inerter.systems.arrivals import Arrival, fed, inputs_of
@@ -54,6 +54,7 @@ class Equivalent:
         """Friction forces (designs, frictions) [N] at each row of `points`, the values of the design."""
         result = np.empty((points.shape[0], len(self.forces)))
         for i, (force, gain, place) in enumerate(zip(self.forces, self.gains, self.places, strict=True)):
+            assert not isinstance(force, Tied)
             result[:, i] = gain * (points[:, place] if isinstance(force, Free) else force)
         return result
 
@@ -207,4 +208,5 @@ def _typical_damping(mechanism: Mechanism) -> float:
 
 
 def _size(value: Value) -> float:
+    assert not isinstance(value, Tied)
     return math.sqrt(value.lower * value.upper) if isinstance(value, Free) else value

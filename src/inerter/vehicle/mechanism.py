@@ -12,13 +12,14 @@ from dataclasses import dataclass, field, replace
 
 from inerter.checks import check_positive, is_number
 from inerter.errors import DesignError, MechanismError
-from inerter.networks.elements import NAME, Free, Network, check_network
+from inerter.networks.elements import NAME, Free, Network, Tied, check_network
 from inerter.networks.transform import name_free_values, with_values
 
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]
 GROUND: Port = {}
 GROUND_ACCELERATION = "ground_acceleration"  # the input of a mechanism on moving ground [m/s^2]
+TRACKS = ("", "left", "right")
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,13 @@ class Tyre:
 class RoadInput:
     """Where the mechanism meets the road.
 
-    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later.
+    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later, and on the
+    `track` "left" or "right", where there are two; on "" there is one.
     """
 
     name: str
     distance: float = 0.0
+    track: str = ""
 
 
 @dataclass(frozen=True)
@@ -229,6 +232,10 @@ def _check_numbers(mechanism: Mechanism) -> None:
                 f"The distance of road {road.name!r} behind the first one must be zero or more metres, "
                 f"got {road.distance!r}. Measure from the foremost axle."
             )
+        if road.track not in TRACKS:
+            raise MechanismError(
+                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one; got {road.track!r}.'
+            )
 
 
 def _check_ports(mechanism: Mechanism) -> None:
@@ -259,7 +266,7 @@ def check_values(mechanism: Mechanism) -> None:
     """Raises `MechanismError` for an element or inertia that is so small or large that others are lost beside it."""
     for mount in mechanism.mounts():
         for element in mount.network.elements():
-            if not isinstance(element.value, Free):
+            if not isinstance(element.value, Free | Tied):
                 _check_size("value", element.label, element.value, element.unit)
     for coordinate in mechanism.coordinates:
         _check_size("inertia", coordinate.name, coordinate.inertia, "kg m^2" if coordinate.angle else "kg")

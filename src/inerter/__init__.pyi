@@ -23,10 +23,17 @@ from inerter.identification.response import model_response as model_response
 from inerter.identification.staged import Staged as Staged
 from inerter.identification.staged import staged as staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
+from inerter.indices.excitation import Excitation as Excitation
+from inerter.indices.excitation import GroundAcceleration as GroundAcceleration
+from inerter.indices.excitation import OneInput as OneInput
+from inerter.indices.excitation import Shaped as Shaped
+from inerter.indices.excitation import WhiteForce as WhiteForce
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
+from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.question import Combination as Combination
 from inerter.indices.question import Question as Question
 from inerter.indices.question import on_road as on_road
+from inerter.indices.random_response import RandomResponse as RandomResponse
 from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
@@ -98,6 +105,7 @@ from inerter.simulation.batch import simulate_many as simulate_many
 from inerter.simulation.histories import simulate_to_files as simulate_to_files
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
+from inerter.systems.arrivals import Arrival as Arrival
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem

@@ -7,6 +7,7 @@ from textwrap import wrap
 
 from inerter.files.common.suggest import some
 from inerter.files.study.budgets import budget_cases
+from inerter.files.study.cases import cases
 from inerter.files.study.checking import check_study, study_notes
 from inerter.files.study.loading import load_study
 
@@ -17,10 +18,9 @@ def check(study: Path) -> int:
     """Check a study file; returns the exit code."""
     loaded = load_study(study)
     check_study(loaded)
-    points = len(loaded.sweep.values) if loaded.sweep else 1
-    count = len(loaded.layouts) * len(loaded.indices) * points
+    count = len(cases(loaded))
     budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
-    swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
+    swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in loaded.sweeps)
     _say(
         f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
         f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from inspect import getdoc
 from textwrap import wrap
 from typing import Any
@@ -14,6 +14,7 @@ from inerter.files.common.kinds import kind_with
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
 from inerter.files.study.schema import study_schema
+from inerter.indices.names import index_names
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import METHODS
 from inerter.networks.elements.registry import ELEMENTS
@@ -21,7 +22,7 @@ from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
 
 _WIDTH = 80
-_WORDS: dict[str, Any] = {"vehicle": VEHICLES, "index": INDICES, "method": METHODS, "element": ELEMENTS}
+_ROWS: dict[str, Any] = {"vehicle": VEHICLES, "index": INDICES, "method": METHODS, "element": ELEMENTS}
 _PLACE, _UNIT = 32, 11  # columns of the table of keys
 
 
@@ -41,11 +42,16 @@ def explain(wanted: str | None) -> int:
         print("\n".join(_table(keys)))
         return 0
     told = [list(_told(key, keys)) for key in found(keys, wanted)]
-    told += [list(_row(what, wanted, rows[wanted])) for what, rows in _WORDS.items() if wanted in rows]
+    told += [list(_row(what, wanted, rows[wanted])) for what, rows in _words().items() if wanted in rows]
     if not told:
         raise StudyError(_unknown(wanted, keys))
     print("\n\n".join("\n".join(lines) for lines in told))
     return 0
+
+
+def _words() -> dict[str, Mapping[str, Any]]:
+    """What keys may be called, by what it is: the keys of rows, and indices by their names too."""
+    return {**_ROWS, "index": {name: INDICES[symbol] for name, symbol in index_names().items()}}
 
 
 def _unknown(wanted: str, keys: Sequence[Key]) -> str:
@@ -53,7 +59,7 @@ def _unknown(wanted: str, keys: Sequence[Key]) -> str:
     if other is not None:
         return f"{shown(wanted)} is a key of {other.plural}, for: inerter {other.command}."
     known = (
-        [key.place for key in keys] + [key.name for key in keys] + [word for rows in _WORDS.values() for word in rows]
+        [key.place for key in keys] + [key.name for key in keys] + [word for rows in _words().values() for word in rows]
     )
     return f"There is no key {shown(wanted)} in study files.{nearest(wanted, known)} All keys: inerter explain"
 
@@ -95,7 +101,7 @@ def _table(keys: Sequence[Key]) -> Iterator[str]:
         sentences = dict.fromkeys(key.sentence for key in alike)
         text = " ".join(sentences) if len(sentences) == 1 else _by_model(alike)
         units = dict.fromkeys(key.unit for key in alike if key.unit)
-        lines = wrap(text, _WIDTH - len(indent))
+        lines = wrap(text, _WIDTH - len(indent), break_on_hyphens=False)
         yield f"{place:<{_PLACE}}  {' or '.join(units):<{_UNIT}}{lines[0]}"
         yield from (indent + line for line in lines[1:])
 

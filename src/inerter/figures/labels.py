@@ -18,6 +18,7 @@ _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
+NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -61,9 +62,25 @@ def error_of(design: xr.Dataset, of: str = "value") -> float:
     return float(design[name]) if name in design else np.nan
 
 
+def swept_places(results: xr.Dataset) -> list[str]:
+    """The places that the study sweeps, such as elements by their names; they are also names of dimensions."""
+    return [str(name) for name in results["status"].dims if name not in ("layout", "index")]
+
+
 def swept_element(results: xr.Dataset) -> str | None:
-    """The element that the study sweeps; its name is also that of the dimension."""
-    return next((str(name) for name in results["status"].dims if name not in ("layout", "index")), None)
+    """The place that the study sweeps, where it sweeps but one."""
+    return next(iter(swept_places(results)), None)
+
+
+def swept_words(results: xr.Dataset) -> list[str]:
+    """What is swept, in words."""
+    return [str(results[place].attrs["long_name"]) for place in swept_places(results)]
+
+
+def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
+    """The label of an axis of swept values: what an element is called stays as it is."""
+    words = str(results[place].attrs["long_name"])
+    return axis_label(words if words == place else capital(words), unit)
 
 
 def layouts(results: xr.Dataset) -> list[str]:

@@ -10,6 +10,7 @@ import scipy
 import xarray as xr
 
 from inerter.figures.labels import (
+    NOTICEABLE,
     by_method,
     by_which,
     compared,
@@ -21,6 +22,8 @@ from inerter.figures.labels import (
     one_method,
     percent,
     swept_element,
+    swept_places,
+    swept_words,
     with_unit,
 )
 from inerter.methods.ties import equally_least
@@ -28,7 +31,6 @@ from inerter.methods.ties import equally_least
 Writer = Callable[[float, str, float], str]
 
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
-_NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 
 
 def headlines(results: xr.Dataset, write: Writer = with_unit) -> list[str]:
@@ -36,7 +38,7 @@ def headlines(results: xr.Dataset, write: Writer = with_unit) -> list[str]:
 
     `write` turns a number and its unit into text.
     """
-    if swept_element(results) is None:
+    if not swept_places(results):
         return [_of_designs(results, index, write) for index in indices(results)]
     return [_of_sweep(one_method(results), index, write) for index in indices(results)]
 
@@ -64,14 +66,30 @@ def _as_good(names: list[str]) -> str:
     return f" (equally good: {_listed(names[1:])})" if len(names) > 1 else ""
 
 
-def extremes(row: xr.DataArray, element: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """The least and the largest finite number over the swept element, each with the swept value; None if none is."""
-    finite = np.isfinite(row.values)
-    if not finite.any():
+Extreme = tuple[float, dict[str, float]]  # a number, and the swept values where it is
+
+
+def extremes(row: xr.DataArray) -> tuple[Extreme, Extreme] | None:
+    """The least and the largest finite number over the swept places; None if none is finite."""
+    numbers = row.values.ravel()
+    finite = np.flatnonzero(np.isfinite(numbers))
+    if not finite.size:
         return None
-    numbers, swept = row.values[finite], row[element].values[finite]
-    least, largest = np.argmin(numbers), np.argmax(numbers)
-    return (float(numbers[least]), float(swept[least])), (float(numbers[largest]), float(swept[largest]))
+
+    def extreme(number: int) -> Extreme:
+        place = np.unravel_index(number, row.shape)
+        return float(numbers[number]), {str(d): float(row[d].values[i]) for d, i in zip(row.dims, place, strict=True)}
+
+    return extreme(finite[np.argmin(numbers[finite])]), extreme(finite[np.argmax(numbers[finite])])
+
+
+def place_text(results: xr.Dataset, place: dict[str, float], write: Writer = with_unit, *, named: bool = False) -> str:
+    """Swept values with their units, as a sentence has them if they are `named`."""
+    texts = []
+    for name, value in place.items():
+        text = write(value, results[name].attrs["units"], np.nan)
+        texts.append(f"{results[name].attrs['long_name']} = {text}" if named else text)
+    return ", ".join(texts) or "n/a"
 
 
 def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float, float]]:
@@ -84,7 +102,7 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     row = results.sel(layout=layout, index=index).sortby(element)
     swept, better = row[element].values, row["improvement"].values
     errors = row["improvement_error"].values if "improvement_error" in row else np.zeros(better.size)
-    told = np.flatnonzero(np.isfinite(better) & (np.abs(better) >= _NOTICEABLE))
+    told = np.flatnonzero(np.isfinite(better) & (np.abs(better) >= NOTICEABLE))
     if told.size < 2:
         return []
     curve, found = scipy.interpolate.PchipInterpolator(swept[told], better[told]), []
@@ -98,9 +116,32 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     return found
 
 
+def over_the_sweep(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
+    """Each index, and where each layout is better than the baseline: crossings over one place, a share over two."""
+    return crossing_sentences(results, write) if len(swept_places(results)) == 1 else _shares(results)
+
+
+def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
+    """Each index, and at how many points of a map each layout is better than the baseline."""
+    sentences = []
+    for index in indices(results):
+        for name in compared(results):
+            better = one_method(results)["improvement"].sel(layout=name, index=index).values
+            counts = {
+                "better than": int((better >= NOTICEABLE).sum()),
+                "as good as": int((np.abs(better) < NOTICEABLE).sum()),
+                "worse than": int((better <= -NOTICEABLE).sum()),
+            }
+            told = [f"{words} {results.attrs['baseline']} at {count}" for words, count in counts.items() if count]
+            if told:
+                sentences.append((index, f"{name} is {_listed(told)} of {better.size} points{by_which(results)}"))
+    return sentences
+
+
 def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
-    """Each index, and where each layout crosses the baseline over a sweep. For a study with a sweep."""
+    """Each index, and where each layout crosses the baseline over a sweep. For a study with one swept place."""
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
+    words = results[element].attrs["long_name"]
     several = len(methods(results)) > 1
     ways = {f" by {m}": by_method(results, m) for m in methods(results)} if several else {"": one_method(results)}
     sentences = []
@@ -110,7 +151,7 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
             unit = results[element].attrs["units"]
             texts = [_places(places, unit, write) + by for by, places in found.items() if places]
             if texts:
-                said = f"{name} and {baseline} are equally good at {element} = {', '.join(texts)}"
+                said = f"{name} and {baseline} are equally good at {words} = {', '.join(texts)}"
                 sentences.append((index, said))
     return sentences
 
@@ -141,7 +182,7 @@ def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
     improvement = float(design["improvement"])
     if not np.isfinite(improvement):
         return f"{answer}; {baseline} has no finite value." if baseline else f"{answer}."
-    if improvement < _NOTICEABLE:
+    if improvement < NOTICEABLE:
         return f"{answer}, no better than {baseline}."
     better = percent(improvement, error_of(design, "improvement")).removeprefix("+")
     if len(methods(every)) < 2:
@@ -156,11 +197,10 @@ def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
 
 
 def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
-    element, title, baseline = str(swept_element(results)), index_title(results, index), results.attrs["baseline"]
-    unit = results[element].attrs["units"]
+    swept, title, baseline = swept_words(results), index_title(results, index), results.attrs["baseline"]
     layouts = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
-    found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name), element)) is not None}
+    found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
         return f"Best {title}: no layout has a finite value."
     if not compared(results):
@@ -168,16 +208,18 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
         value, at = found[names[0]][0]
         text = write(value, index_unit(results, index), np.nan)
-        return f"Best {title}: {names[0]}{_as_good(names)}, {text} at {element} = {write(at, unit, np.nan)}."
+        where = place_text(results, at, write, named=True)
+        return f"Best {title}: {names[0]}{_as_good(names)}, {text} at {where}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]
-    if largest < _NOTICEABLE:
-        return f"Best {title}: no layout is better than {baseline} at any {element}."
-    best = f"{names[0]}{_as_good(names)}, {largest:.1f} % better at {element} = {write(at, unit, np.nan)}"
+    if largest < NOTICEABLE:
+        return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
+    where = place_text(results, at, write, named=True)
+    best = f"{names[0]}{_as_good(names)}, {largest:.1f} % better at {where}"
     return (
-        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {best}; its improvement over "
-        f"the sweep lies {_range(least, largest)}."
+        f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by_which(results)}: {best}; its "
+        f"improvement over the sweep lies {_range(least, largest)}."
     )
 
 

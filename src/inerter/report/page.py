@@ -11,16 +11,16 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from inerter.figures.labels import printed, swept_element, typeset
+from inerter.figures.labels import printed, swept_places, typeset
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.running import RESOLVED
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study, Sweep, write_resolved
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
-from inerter.report.findings import crossing_sentences, headlines
+from inerter.report.findings import headlines, over_the_sweep
 from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
-from inerter.report.tables import design_tables, sweep_tables, trade_off_tables, where_all_are
+from inerter.report.tables import tables_of, trade_off_tables, where_all_are
 from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -48,24 +48,24 @@ def write_report(
 
 def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[BudgetOutcome] = ()) -> str:
     """The page as text."""
-    swept = swept_element(results)
+    swept = swept_places(results)
     return (
         environment()
         .get_template("report.html")
         .render(
             title=results.attrs["title"],
-            swept=swept is not None,
+            swept=bool(swept),
             searched=study.optimise is not None,
             headlines=[printed_sentence(sentence) for sentence in headlines(results, printed)],
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
             layouts=layout_rows(study),
             indices=index_rows(results),
-            tables=design_tables(results) if swept is None else sweep_tables(results),
+            tables=tables_of(results),
             by_method=method_tables(results),
             remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
             budgets=budget_tables(budgets, study),
-            trade_offs=trade_off_tables(results) if swept is None else [],
+            trade_offs=[] if swept else trade_off_tables(results),
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),
             computation=list(computation(study, results)),
@@ -75,19 +75,22 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
 
 
 def _remarks(results: xr.Dataset) -> list[str]:
-    """What goes below the tables of a sweep: where layouts cross the baseline, and where the other designs are."""
-    crossings = crossing_sentences(results, printed) if results.attrs["baseline"] else []
-    return [*(f"{index}: {sentence}." for index, sentence in crossings), *where_all_are(results)]
+    """What goes below the tables of a sweep: where layouts are better than the baseline, where other designs are."""
+    told = over_the_sweep(results, printed) if results.attrs["baseline"] else []
+    return [*(f"{index}: {sentence}." for index, sentence in told), *where_all_are(results)]
 
 
 def _study_file(study: Study) -> str:
     """The study as it was resolved; of a great many swept values the ends, and where they all are."""
-    sweep = study.sweep
-    if sweep is None or len(sweep.values) <= _MOST_SWEPT:
-        return write_resolved(study)
-    ends = (*sweep.values[: _MOST_SWEPT // 2], *sweep.values[-_MOST_SWEPT // 2 :])
-    note = f"# {_MOST_SWEPT} of the {len(sweep.values)} values of {sweep.element}; {RESOLVED} has all.\n"
-    return note + write_resolved(replace(study, sweep=replace(sweep, values=ends)))
+    long = [sweep for sweep in study.sweeps if len(sweep.values) > _MOST_SWEPT]
+    notes = [f"# {_MOST_SWEPT} of the {len(s.values)} values of {s.label}; {RESOLVED} has all.\n" for s in long]
+    return "".join(notes) + write_resolved(replace(study, sweeps=tuple(map(_ends, study.sweeps))))
+
+
+def _ends(sweep: Sweep) -> Sweep:
+    if len(sweep.values) <= _MOST_SWEPT:
+        return sweep
+    return replace(sweep, values=(*sweep.values[: _MOST_SWEPT // 2], *sweep.values[-_MOST_SWEPT // 2 :]))
 
 
 def environment(*packages: str) -> Environment:

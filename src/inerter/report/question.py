@@ -11,11 +11,12 @@ import xarray as xr
 
 from inerter.fields import fields_of
 from inerter.figures.labels import capital, index_title, indices
+from inerter.files.study.places import places
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES, amplitude_of
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
-from inerter.networks.elements import Element, Free, Tied
+from inerter.networks.elements import Free, Tied
 from inerter.units import format_quantity
 from inerter.vehicle.registry import VEHICLES
 
@@ -37,12 +38,13 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    rows += [(capital(f.in_words), _given(study.vehicle[f.key], f.unit)) for f in fields_of(VEHICLES[study.model])]
-    rows += [("Speed", _given(study.road.speed, "m/s")), ("Road roughness", _given(study.road.roughness, "m^3/cycle"))]
-    for symbol in study.indices:
+    rows += [(capital(f.in_words), _told(study, f"vehicle.{f.key}")) for f in fields_of(VEHICLES[study.model])]
+    rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
+    for name in study.indices:
+        symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
-        given = [field for field in fields_of(INDICES[symbol]) if field.key in study.settings and field != amplitude]
-        rows += [(f"{capital(f.in_words)} of {symbol}", _given(study.settings[f.key], f.unit)) for f in given]
+        given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
+        rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
         rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
@@ -51,7 +53,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
 
 def element_rows(study: Study) -> list[tuple[str, str, str]]:
     """The elements: name, kind, and value or bounds."""
-    return [(name, element.key, _value(study, name, element)) for name, element in study.elements.items()]
+    return [(name, element.key, _told(study, name)) for name, element in study.elements.items()]
 
 
 def layout_rows(study: Study) -> list[LayoutText]:
@@ -77,7 +79,8 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
     if study.optimise is None:
         yield "Every layout was evaluated as it is given; nothing was optimised."
     else:
-        again = f", and again for each value of {study.sweep.element}" if study.sweep else ""
+        swept = " and of ".join(sweep.words for sweep in study.sweeps)
+        again = f", and again for each value of {swept}" if swept else ""
         yield (
             f"The free values of each layout were chosen for each index on its own{again}, within their bounds, by "
             f"local searches from many starting points of a sample with seed {study.seed}. Agreement is the number of "
@@ -99,21 +102,25 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    forced = {symbol: field for symbol in INDICES if (field := amplitude_of(symbol)) and field.key in study.settings}
-    for symbol in [asked for asked in forced if asked in study.indices] or forced:
-        amplitude = _given(study.settings[forced[symbol].key], forced[symbol].unit)
-        yield f"The sinusoidal force of {symbol} has an amplitude of {amplitude}."
+    for name in study.indices:
+        field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
+        if field is not None and field.key in settings:
+            yield f"The sinusoidal force of {name} has an amplitude of {_given(settings[field.key], field.unit)}."
 
 
-def _value(study: Study, name: str, element: Element) -> str:
-    if study.sweep is not None and study.sweep.element == name:
-        ends = _given(min(study.sweep.values), element.unit), _given(max(study.sweep.values), element.unit)
-        return f"swept, {len(study.sweep.values)} values from {ends[0]} to {ends[1]}"
-    if isinstance(element.value, Free):
-        return f"free, {_given(element.value.lower, element.unit)} to {_given(element.value.upper, element.unit)}"
-    if isinstance(element.value, Tied):
-        return f"tied, {element.value}"
-    return _given(element.value, element.unit)
+def _told(study: Study, place: str) -> str:
+    """The number at a place: its value, its bounds if it is free, or the ends of what it takes in a sweep."""
+    number = places(study)[place]
+    for sweep in study.sweeps:
+        if sweep.label == place:
+            ends = _given(min(sweep.values), sweep.unit), _given(max(sweep.values), sweep.unit)
+            return f"swept, {len(sweep.values)} values from {ends[0]} to {ends[1]}"
+    value = number.value
+    if isinstance(value, Free):
+        return f"free, {_given(value.lower, number.unit)} to {_given(value.upper, number.unit)}"
+    if isinstance(value, Tied):
+        return f"tied, {value}"
+    return "" if value is None else _given(value, number.unit)
 
 
 def _given(value: float, unit: str) -> str:

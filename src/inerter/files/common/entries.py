@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, NamedTuple
 
-from pydantic import PlainValidator
+from pydantic import PlainValidator, ValidationInfo
 
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import checked, list_schema, quantity_schema, words_schema
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element
-from inerter.networks.elements.registry import kinds_by_unit, kinds_in_unit, parse_element
-from inerter.units import format_quantity, parse_quantity, shown
+from inerter.networks.elements.registry import kinds_by_unit, parse_element
+from inerter.units import format_quantity, parse_quantity, shown, unit_in
 
 MOST_POINTS = 10_000_000
 _LONGEST_EXPRESSION = 500
@@ -95,9 +95,10 @@ def amount(text: Any) -> Amount:
     return _amount(text, kinds_by_unit())
 
 
-def swept_amount(text: Any) -> Amount:
-    """The value of an element that is named elsewhere."""
-    return _amount(text, kinds_in_unit())
+def quantity_text(text: Any) -> str:
+    """A number with a unit, whose kind of quantity is known when the place is that it is for."""
+    unit_in(text)
+    return str(text)
 
 
 AMOUNT = checked(
@@ -108,7 +109,7 @@ AMOUNT = checked(
         "examples": [f'{kind.symbol} = "{kind.example}"' for kind in kinds_by_unit().values()],
     },
 )
-SWEPT = checked(swept_amount, lambda: quantity_schema(*kinds_in_unit(), least="not negative"))
+SWEPT = checked(quantity_text, quantity_schema)
 
 
 def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
@@ -151,6 +152,16 @@ def some_of(what: str, known: Collection[str]) -> PlainValidator:
     return _list_of(one_of(what, known), lambda: next(iter(known)), lambda: words_schema(known))
 
 
+def some_of_file(what: str, known: Callable[[Mapping[str, Any]], Collection[str]]) -> PlainValidator:
+    """A list of at least one of the words that are `known` in a file, none of them twice."""
+
+    def check(values: Any, info: ValidationInfo) -> tuple[str, ...]:
+        words = known(info.context or {})
+        return _check_list(values, one_of(what, words), lambda: next(iter(words)))
+
+    return checked(check, lambda: list_schema({"anyOf": [words_schema(known({})), TEXT_SCHEMA]}))
+
+
 def some_names(example: str) -> PlainValidator:
     """A list of at least one name, none of them twice; whether they are known is seen later."""
     return _list_of(text, lambda: example, lambda: TEXT_SCHEMA)
@@ -159,17 +170,18 @@ def some_names(example: str) -> PlainValidator:
 def _list_of(
     one: Callable[[Any], str], example: Callable[[], str], schema: Callable[[], dict[str, Any]]
 ) -> PlainValidator:
-    def check(values: Any) -> tuple[str, ...]:
-        if not isinstance(values, list) or not values:
-            got = "an empty list" if values == [] else shown(values)
-            raise EntryError(got=got, expected=f"a list of one or more, such as [{shown(example())}]")
-        listed = tuple(one(value) for value in values)
-        twice = next((value for value in listed if listed.count(value) > 1), None)
-        if twice is not None:
-            raise EntryError(got=f"{shown(twice)} more than once", expected="each at most once")
-        return listed
+    return checked(lambda values: _check_list(values, one, example), lambda: list_schema(schema()))
 
-    return checked(check, lambda: list_schema(schema()))
+
+def _check_list(values: Any, one: Callable[[Any], str], example: Callable[[], str]) -> tuple[str, ...]:
+    if not isinstance(values, list) or not values:
+        got = "an empty list" if values == [] else shown(values)
+        raise EntryError(got=got, expected=f"a list of one or more, such as [{shown(example())}]")
+    listed = tuple(one(value) for value in values)
+    twice = next((value for value in listed if listed.count(value) > 1), None)
+    if twice is not None:
+        raise EntryError(got=f"{shown(twice)} more than once", expected="each at most once")
+    return listed
 
 
 def whole(lower: int, upper: int) -> PlainValidator:
@@ -250,36 +262,22 @@ def check_order(lower: Amount, upper: Amount) -> None:
         raise EntryError(got=ends, expected="from less than to", hint=remedy)
 
 
-def sweep_list(values: Any) -> tuple[Amount, ...]:
+def quantity_list(values: Any) -> tuple[str, ...]:
     """The values of a sweep, one by one."""
     if not isinstance(values, list) or not 2 <= len(values) <= MOST_POINTS:
         got = f"a list of {len(values)}" if isinstance(values, list) else shown(values)
         example = 'k = { from = "10 kN/m", to = "300 kN/m", points = 30 } or k = ["10 kN/m", "20 kN/m"]'
         raise EntryError(got=got, expected=f"2 to {MOST_POINTS} values, as in {example}")
-    amounts = tuple(swept_amount(value) for value in values)
-    if len({a.unit for a in amounts}) > 1:
-        units = ", ".join(sorted({a.unit for a in amounts}))
-        raise EntryError(got=f"values of unlike units, {units}", expected="one")
-    if len(set(amounts)) < len(amounts):
-        raise EntryError(got="the same value more than once", expected="each once")
-    return amounts
+    return tuple(map(quantity_text, values))
 
 
 SWEEP_LIST = checked(
-    sweep_list,
+    quantity_list,
     lambda: {
-        **list_schema(quantity_schema(*kinds_in_unit(), least="not negative")),
+        **list_schema(quantity_schema()),
         "description": "Its values, one by one, or from one end to the other.",
         "examples": ['k = ["60 kN/m", "120 kN/m", "240 kN/m"]'],
         "minItems": 2,
         "maxItems": MOST_POINTS,
     },
 )
-
-
-def one_sweep(sweep: dict[str, Any]) -> dict[str, Any]:
-    """Two swept elements would be a grid, which is not one line in a figure."""
-    if len(sweep) != 1:
-        got = ", ".join(shown(name) for name in sweep) or "none"
-        raise EntryError(got=f"{len(sweep)} swept elements ({got})", expected="exactly one")
-    return sweep

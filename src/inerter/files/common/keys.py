@@ -50,9 +50,7 @@ def below(keys: Iterable[Key], section: Key) -> list[Key]:
 def found(keys: Iterable[Key], wanted: str) -> list[Key]:
     """The keys that `wanted` may mean: a place, the end of one, or a place with a name of the author's own in it."""
     parts = wanted.strip().strip("[]").split(".")
-    every = list(keys)
-    whole = [key for key in every if _ends(key, parts) and key.place.count(".") == len(parts) - 1]
-    return _merged(whole or [key for key in every if _ends(key, parts)])
+    return _merged(key for key in keys if _ends(key, parts))
 
 
 def _merged(keys: Iterable[Key]) -> list[Key]:

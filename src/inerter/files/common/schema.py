@@ -43,13 +43,25 @@ class Says:
         return self.schema()
 
 
-def checked(check: Callable[[Any], Any], schema: Callable[[], dict[str, Any]]) -> PlainValidator:
+@dataclass(frozen=True)
+class OrDeeper:
+    """A JSON Schema that takes the same entry in a table of tables too."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        return handler(source)
+
+    def __get_pydantic_json_schema__(self, core: Any, handler: Any) -> dict[str, Any]:
+        deeper = {"type": ["array", "object"]}
+        return {"anyOf": [handler(core), {"type": "object", "additionalProperties": deeper, "minProperties": 1}]}
+
+
+def checked(check: Callable[..., Any], schema: Callable[[], dict[str, Any]]) -> PlainValidator:
     """An entry that `check` turns into its value, or refuses, and the `schema` that tells editors what it may be."""
     return PlainValidator(check, json_schema_input_type=Annotated[Any, Says(schema)])
 
 
 def quantity_schema(*units: str, least: str = "") -> dict[str, Any]:
-    """A number with a unit of one of these kinds.
+    """A number with a unit of one of these kinds, of any if none is named.
 
     A pattern cannot know all units that can be written; it refuses a number without one, and the usual units of other
     kinds. `least` is "positive" or "not negative" where a sign, or zero, is refused.
@@ -61,7 +73,8 @@ def quantity_schema(*units: str, least: str = "") -> dict[str, Any]:
     """
     sign = r"\+?" if least else "[+-]?"
     other = [unit for kind, usual in USUAL.items() if kind not in units for unit in usual]
-    refused = "|".join(unit.replace("^", r"\^") for unit in other) if all(unit in USUAL for unit in units) else ""
+    known = units and all(unit in USUAL for unit in units)
+    refused = "|".join(unit.replace("^", r"\^") for unit in other) if known else ""
     kind = rf"(?!(?:{refused})\s*$)" if refused else ""
     zero = _NOT_ZERO if least == "positive" else ""
     one = {UNIT: units[0]} if len(units) == 1 else {}

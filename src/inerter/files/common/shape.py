@@ -97,6 +97,17 @@ def of_field(field: Quantity) -> dict[str, Any]:
     return {"description": field.sentence, "examples": [f'{field.key} = "{field.example}"']}
 
 
+def if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
+    """Keys for quantities that may be left out."""
+    return {
+        field.key: (
+            Annotated[float | None, positive(field.unit)],
+            Field(default=None, **of_field(field)),
+        )
+        for field in fields
+    }
+
+
 def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Shapes]:
     """The table [vehicle] of any of these models, and its shapes by place; `unknown` is that of any other model."""
     made = {f"<{model}>": _vehicle_shape(model) for model in models}
@@ -106,8 +117,7 @@ def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Sh
         return f"<{model}>" if isinstance(model, str) and f"<{model}>" in made else ANY
 
     shapes = {**made, ANY: unknown}
-    known = {**made, ANY: Annotated[unknown, Says(lambda: NEVER)]}
-    return one_of_shapes(known, tag), {("vehicle", name): shape for name, shape in shapes.items()}
+    return one_of_shapes(shapes, tag), {("vehicle", name): shape for name, shape in shapes.items()}
 
 
 def _vehicle_shape(model: str) -> type[Shape]:
@@ -122,7 +132,8 @@ def _vehicle_shape(model: str) -> type[Shape]:
 
 def one_of_shapes(shapes: Mapping[str, Any], tag: Callable[[Any], str]) -> Any:
     """What has the shape whose tag it has."""
-    return Annotated[reduce(or_, (Annotated[shape, Tag(name)] for name, shape in shapes.items())), Discriminator(tag)]
+    known = {**shapes, **({ANY: Annotated[shapes[ANY], Says(lambda: NEVER)]} if ANY in shapes else {})}
+    return Annotated[reduce(or_, (Annotated[shape, Tag(name)] for name, shape in known.items())), Discriminator(tag)]
 
 
 ElementEntry = Annotated[

@@ -29,7 +29,7 @@ def read_shape(path: Path, what: str, file: type[File], shapes: Shapes) -> File:
     """
     tables = read_tables(path, what)
     try:
-        return file.model_validate(tables)
+        return file.model_validate(tables, context=tables)
     except ValidationError as error:
         raise refusal(path, explain(error, shapes)) from None
 

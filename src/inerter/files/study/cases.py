@@ -1,4 +1,4 @@
-"""The cases of a study: one layout, one index, one swept value each, and what running one gives."""
+"""The cases of a study: one layout, one index, one point of the sweeps each, and what running one gives."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -35,27 +36,40 @@ class Case:
     layout: str
     index: str
     point: int = 0
-    swept: float | None = field(default=None, compare=False)  # the value of that number
+    swept: tuple[float, ...] = field(default=(), compare=False)  # the value of each sweep at that point
 
 
 @dataclass(frozen=True)
 class Cases:
     """All cases of a study in the order of the results, each made when it is asked for.
 
-    The order is that of layouts, of indices, of swept values.
+    The order is that of layouts, of indices, of the values of the first sweep, of the second.
     """
 
     layouts: tuple[str, ...]
     indices: tuple[str, ...]
-    values: tuple[float | None, ...]
+    axes: tuple[tuple[float, ...], ...]  # the values of each sweep
+
+    @cached_property
+    def points(self) -> int:
+        """How many points the sweeps have."""
+        return prod(map(len, self.axes))
 
     def __len__(self) -> int:
-        return len(self.layouts) * len(self.indices) * len(self.values)
+        return len(self.layouts) * len(self.indices) * self.points
 
     def __getitem__(self, number: int) -> Case:
-        design, point = divmod(number, len(self.values))
+        design, point = divmod(number, self.points)
         layout, index = divmod(design, len(self.indices))
-        return Case(self.layouts[layout], self.indices[index], point, self.values[point])
+        return Case(self.layouts[layout], self.indices[index], point, self.swept(point))
+
+    def swept(self, point: int) -> tuple[float, ...]:
+        """The value of each sweep at the point of that number."""
+        values = []
+        for axis in reversed(self.axes):
+            point, place = divmod(point, len(axis))
+            values.append(axis[place])
+        return tuple(reversed(values))
 
     def __iter__(self) -> Iterator[Case]:
         return map(self.__getitem__, range(len(self)))
@@ -67,7 +81,7 @@ class Cases:
     @cached_property
     def _firsts(self) -> dict[tuple[str, str], int]:
         designs = product(self.layouts, self.indices)
-        return {design: i * len(self.values) for i, design in enumerate(designs)}
+        return {design: i * self.points for i, design in enumerate(designs)}
 
 
 @dataclass(frozen=True)
@@ -109,12 +123,12 @@ class Outcome:
 
 def cases(study: Study) -> Cases:
     """All cases of a study."""
-    return Cases(tuple(study.layouts), study.indices, study.sweep.values if study.sweep else (None,))
+    return Cases(tuple(study.layouts), study.indices, tuple(sweep.values for sweep in study.sweeps))
 
 
 def portable(study: Study) -> Study:
     """The study without its swept values, of which each case has its own: as small for a process as any."""
-    return replace(study, sweep=replace(study.sweep, values=())) if study.sweep else study
+    return replace(study, sweeps=tuple(replace(sweep, values=()) for sweep in study.sweeps))
 
 
 def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
@@ -157,8 +171,8 @@ def _prefix(study: Study, method: str) -> str:
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
-    assert (case.swept is None) == (study.sweep is None), case
-    vehicle = study.design(case.layout, case.swept).mechanism()
+    study = study.at(case.swept)
+    vehicle = study.design(case.layout).mechanism()
     fields: dict[str, Any] = {
         "parameters": {},
         "active_bounds": {},

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
-from inerter.files.common.entries import Amount
 from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
@@ -15,8 +13,10 @@ from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
 from inerter.files.study.method_problems import method_problems
-from inerter.files.study.shape import StudyFile, SweepRange, shapes
-from inerter.files.study.study import Study, Sweep, elements_used
+from inerter.files.study.own_indices import own_index, own_index_problems
+from inerter.files.study.shape import StudyFile, shapes
+from inerter.files.study.study import Study, elements_used
+from inerter.files.study.sweeps import sweeps_of
 from inerter.indices.registry import index_settings
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
@@ -33,10 +33,13 @@ def load_study(path: str | Path) -> Study:
     path = Path(path)
     shape = read_shape(path, "a study file", *shapes())
     study = _resolve(path, shape)
+    swept, sweep_problems = ((), []) if shape.study.sweep is None else sweeps_of(study, shape.study.sweep)
+    study = replace(study, sweeps=swept)
     problems = [
         *layout_problems(study.model, study.elements, study.layouts),
-        *_sweep_problems(study),
+        *sweep_problems,
         *_setting_problems(study),
+        *own_index_problems(study.indices, study.own_indices),
         *method_problems(study),
     ]
     if not problems:
@@ -67,11 +70,11 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         optimise=settings.optimise,
         evaluate=settings.evaluate,
         baseline=baseline,
-        sweep=None if settings.sweep is None else _sweep(*next(iter(settings.sweep.items()))),
         seed=settings.seed,
         realisations=settings.realisations,
         relative_error=settings.relative_error,
         settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
+        own_indices={name: own_index(entry) for name, entry in shape.indices.items()},
         method_settings=_method_settings(shape),
         budgets=settings.budgets,
     )
@@ -83,35 +86,6 @@ def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
     tables = {} if section is None else section.model_dump(by_alias=True)
     given = {n: {key: value for key, value in table.items() if value is not None} for n, table in tables.items()}
     return {name: table for name, table in given.items() if table}
-
-
-def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
-    if not isinstance(entry, SweepRange):
-        return Sweep(name, tuple(amount.value for amount in entry), entry[0].unit)
-    space = np.geomspace if entry.spacing == "log" else np.linspace
-    values = space(entry.lower.value, entry.upper.value, entry.points)
-    return Sweep(name, tuple(float(value) for value in values), entry.lower.unit)
-
-
-def _sweep_problems(study: Study) -> Iterator[Problem]:
-    sweep = study.sweep
-    if sweep is None:
-        return
-    place, name = ("study", "sweep", sweep.element), sweep.element
-    if name not in study.elements:
-        missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
-        yield at(place, fault=missing, hint=nearest(name, study.elements))
-        return
-    element = study.elements[name]
-    if isinstance(element.value, Free):
-        fixed = "an element with a fixed value"
-        yield at(place, fault=f"{name} is free", expected=fixed, hint="Fix it, or leave the sweep out.")
-    if element.unit != sweep.unit:
-        other = f"{name} is in {element.unit}"
-        yield at(place, got=f"values in {sweep.unit}", fault=other, expected=f"the unit of {name}")
-    if name not in elements_used(study):
-        unused = f"{name} is in no layout, so a sweep changes nothing"
-        yield at(place, fault=unused, expected="an element that a layout uses")
 
 
 def _setting_problems(study: Study) -> Iterator[Problem]:

@@ -69,7 +69,7 @@ class Gathered:
             arrays[name][number] = getattr(outcome, name)
         if self._uncertain:
             self._enter_scatter(number, outcome)
-        if self.study.sweep is None:
+        if not self.study.sweeps:
             self.designs[case] = outcome
 
     def dataset(self) -> xr.Dataset:
@@ -89,7 +89,7 @@ class Gathered:
             base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
             data["improvement"][:] = (100.0 * (1.0 - data["value"] / base)).transpose(*data["value"].dims).values
             self._enter_errors()
-        if study.sweep:
+        if study.sweeps:
             return data
         found = {case: outcome.parameters for case, outcome in self.designs.items() if outcome.values}
         return data.isel(point=0).merge(responses(study, found))
@@ -156,7 +156,7 @@ class Pending:
 
 
 def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
-    """All outcomes, labelled: dimensions layout, index, method, the swept element if there is one, parameter.
+    """All outcomes, labelled: dimensions layout, index, the swept places if there are any, method, parameter.
 
     Improvements are per cent below the baseline's own optimum of the same index, method and swept value. Where a method
     other than the norm is used, there are standard errors and numbers of realisations too.
@@ -175,13 +175,13 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
 
 def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
-    sweep = study.sweep
     indices = {name: study.index(name) for name in study.indices}
-    design = ("layout", "index", sweep.element if sweep else "point")
+    swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}
+    design = ("layout", "index", *swept)
     sizes = {
         "layout": len(study.layouts),
         "index": len(indices),
-        design[2]: len(sweep.values) if sweep else 1,
+        **swept,
         "method": len(study.evaluate),
         "other": len(indices),
         "parameter": len(parameters),
@@ -202,9 +202,9 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "index_unit": ("index", [index.unit for index in indices.values()]),
         "index_title": ("index", [index.title for index in indices.values()]),
     }
-    if sweep:
-        attributes = {"units": sweep.unit, "long_name": sweep.element}
-        coords[sweep.element] = (sweep.element, list(sweep.values), attributes)
+    for sweep in study.sweeps:
+        attributes = {"units": sweep.unit, "long_name": sweep.words}
+        coords[sweep.label] = (sweep.label, list(sweep.values), attributes)
     data = xr.Dataset(variables, coords)
     for name in PERCENT & set(variables):
         data[name].attrs["units"] = "percent"

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Annotated, Any
 
 from pydantic import (
-    AfterValidator,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
     PlainValidator,
     Tag,
     create_model,
-    model_validator,
 )
 
 from inerter.errors import RowError
-from inerter.fields import Field as Quantity
 from inerter.fields import fields_of
 from inerter.files.common.entries import (
     MOST_POINTS,
@@ -25,17 +22,14 @@ from inerter.files.common.entries import (
     SWEEP_LIST,
     SWEPT,
     TEXT,
-    Amount,
-    check_order,
     one_of,
-    one_sweep,
-    positive,
     some_names,
     some_of,
+    some_of_file,
     whole,
     word,
 )
-from inerter.files.common.schema import checked, words_schema
+from inerter.files.common.schema import OrDeeper, checked, words_schema
 from inerter.files.common.shape import (
     ROAD,
     ElementEntry,
@@ -44,12 +38,14 @@ from inerter.files.common.shape import (
     RoadTable,
     Shape,
     Shapes,
+    if_given,
     layouts,
-    of_field,
     of_quantities,
     vehicle_shapes,
 )
-from inerter.indices.registry import INDICES, index_settings
+from inerter.files.study.own_indices import index_shapes, indices_of
+from inerter.files.study.places import by_place
+from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
 from inerter.rows import made_of_rows
@@ -60,11 +56,11 @@ _MOST_ROADS = 100_000
 SPACINGS = ("linear", "log")
 
 
-SweptText = Annotated[Amount, SWEPT]
+SweptText = Annotated[str, SWEPT]
 
 
 class SweepRange(Shape):
-    """Values of one element from one end to the other."""
+    """Values of a number from one end to the other."""
 
     lower: SweptText = Field(alias="from", description="The first value.", examples=['from = "10 kN/m"'])
     upper: SweptText = Field(alias="to", description="The last value.", examples=['to = "300 kN/m"'])
@@ -73,17 +69,11 @@ class SweepRange(Shape):
         default="linear", description="Equal steps, or equal ratios.", examples=['spacing = "log"']
     )
 
-    @model_validator(mode="after")
-    def _ordered(self) -> SweepRange:
-        check_order(self.lower, self.upper)
-        if self.spacing == "log" and self.lower.value == 0.0:
-            raise ValueError('Got spacing = "log" from zero; expected from greater than zero, or spacing = "linear".')
-        return self
-
 
 SweepEntry = Annotated[
-    Annotated[SweepRange, Tag("<range>")] | Annotated[tuple[Amount, ...], SWEEP_LIST, Tag("<list>")],
+    Annotated[SweepRange, Tag("<range>")] | Annotated[tuple[str, ...], SWEEP_LIST, Tag("<list>")],
     Discriminator(lambda value: "<range>" if isinstance(value, dict) else "<list>"),
+    OrDeeper(),
 ]
 
 
@@ -119,7 +109,7 @@ def _search(value: Any) -> str:
 class Settings(Shape):
     """What is asked of the layouts, and how it is answered; beside these there are the settings of indices."""
 
-    indices: Annotated[tuple[str, ...], some_of("an index", INDICES)] = Field(
+    indices: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = Field(
         description="What is asked of each layout.", examples=['indices = ["J1", "J3", "J5"]']
     )
     conventions: Annotated[str, word("a set of conventions", CONVENTIONS)] = Field(
@@ -142,9 +132,9 @@ class Settings(Shape):
         description="The layout that the others are compared with; the first if left out.",
         examples=['baseline = "S1"'],
     )
-    sweep: Annotated[dict[str, SweepEntry], AfterValidator(one_sweep)] | None = Field(
+    sweep: Annotated[dict[str, SweepEntry], BeforeValidator(by_place)] | None = Field(
         default=None,
-        description="One element with a fixed value takes these in turn.",
+        description="Numbers of this file, by their places, that take these values in turn; two make a map.",
         examples=['sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }'],
     )
     seed: Annotated[int, whole(0, 2**63 - 1)] = Field(
@@ -182,6 +172,7 @@ class StudyFile(Shape):
         examples=['a section [elements] with lines such as k = "120 kN/m"'],
     )
     layouts: Any
+    indices: Any
     study: Any
 
 
@@ -194,8 +185,9 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     taken = sorted(index_settings().keys() & Settings.model_fields.keys())
     if taken:
         raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
-    settings = create_model("Settings", __base__=Settings, **_if_given(index_settings().values()))
+    settings = create_model("Settings", __base__=Settings, **if_given(index_settings().values()))
     method, own = _method_shapes()
+    index, kinds = index_shapes()
     vehicle, vehicles = vehicle_shapes(models(), AnyCar)
     cars = " or ".join(map(shown, models()))
     layout, tables = layouts()
@@ -222,6 +214,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
             ),
         ),
         layouts=(layout, Field(description="How elements are joined: | side by side, - end to end.")),
+        indices=(index, Field(default_factory=dict, description="Indices of your own: a kind, with its settings.")),
         study=(
             settings,
             Field(
@@ -235,6 +228,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         (): file,
         **vehicles,
         ("road",): RoadShape,
+        **kinds,
         ("elements", "*", "<range>"): Range,
         **tables,
         ("study",): settings,
@@ -246,7 +240,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
 def _method_shapes() -> tuple[type[Shape], Shapes]:
     """The section [methods], with a table for each method that has settings of its own, and its shapes by place."""
     own = {
-        name: create_model(f"Method {name}", __base__=Shape, **_if_given(fields))
+        name: create_model(f"Method {name}", __base__=Shape, **if_given(fields))
         for name, kind in METHODS.items()
         if (fields := fields_of(kind))
     }
@@ -257,14 +251,3 @@ def _method_shapes() -> tuple[type[Shape], Shapes]:
     section = create_model("Methods", __base__=Shape, **tables)
     places: dict[tuple[str, ...], type[Shape]] = {("methods", name): shape for name, shape in own.items()}
     return section, {("methods",): section, **places} if own else {}
-
-
-def _if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
-    """Keys for quantities that may be left out."""
-    return {
-        field.key: (
-            Annotated[float | None, positive(field.unit)],
-            Field(default=None, **of_field(field)),
-        )
-        for field in fields
-    }

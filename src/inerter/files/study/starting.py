@@ -8,7 +8,8 @@ from typing import Any
 
 from inerter.errors import InerterError, StudyError
 from inerter.fields import Field, fields_of, needed_mounts_of
-from inerter.files.common.keys import below, keys_of
+from inerter.files.common.keys import keys_of
+from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
 from inerter.files.study.schema import study_schema
@@ -32,7 +33,7 @@ _LAYOUTS = {
 _JOINED = "# How they are joined: | side by side (parallel), - end to end (series, binds tighter), brackets group."
 _ELEMENTS = (
     "# What networks are made of, by names of your own. The unit of a value tells what it is:",
-    "# A value is fixed, or free between two bounds; then the optimiser chooses it, for each layout and index by itself.",
+    "# A value is fixed, or free between two bounds; then the optimiser chooses it, for each layout and index anew.",
 )
 
 
@@ -48,11 +49,15 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
     kind = VEHICLES[model]
     car = kind.key.replace("-", " ")
     blocks = [
-        [f"# A study of {_a(car)}: which values make each layout best, and which layout is the best of all?", "#"]
-        + [f"# Run it: inerter run {name}", "# What a key means: inerter explain road.speed"],
+        [
+            f"# A study of {_a(car)}: which values make each layout best, and which layout is the best of all?",
+            "#",
+            f"# Run it: inerter run {name}",
+            "# What a key means: inerter explain road.speed",
+        ],
         [as_line("title", f"{car.capitalize()}: with an inerter and without")],
         ["[vehicle]", as_line("model", model), *_quantities(fields_of(kind))],
-        *([_road()] if _moved_by_road(kind) else []),
+        *([["[road]", *_quantities(ROAD)]] if _moved_by_road(kind) else []),
         [*_elements(kind)],
         [_JOINED, *_mounts(kind), "[layouts]", *(_line(as_line(n, text), why) for n, (text, why) in _LAYOUTS.items())],
         [*_settings(kind)],
@@ -73,13 +78,6 @@ def _quantities(fields: Iterable[Field]) -> Iterator[str]:
     for field in fields:
         text = as_line(field.key, field.example or f"1 {field.unit}")
         yield _line(text if field.default is None else f"# {text}", field.sentence)
-
-
-def _road() -> list[str]:
-    keys = keys_of(study_schema())
-    section = next(key for key in keys if key.place == "road")
-    given = [key for key in below(keys, section) if key.needed]
-    return ["[road]", *(_line(as_line(key.name, key.example), key.sentence) for key in given)]
 
 
 def _moved_by_road(kind: type[VehicleModel]) -> bool:

@@ -25,8 +25,8 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
+from inerter.report.answers import answers
 from inerter.report.budgets import budget_lines
-from inerter.report.findings import headlines
 from inerter.report.json_data import json_data
 from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
@@ -77,11 +77,12 @@ def run(
         for text in _as_json(result):
             print(text, end="")
     else:
-        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrapped(text)))
-        print(f"\n{summary_table(result.data)}")
+        print("\n".join([*wrapped(loaded.title), "", summary_table(result.data)]))
         print("".join(f"{line}\n" for line in budget_lines(result.budgets, loaded, WIDTH)), end="")
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
+        told = answers(result.data, loaded, result.budgets)
+        print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
     return _judge(result)
 
 

@@ -16,9 +16,10 @@ from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study, Sweep, write_resolved
+from inerter.report.answers import answers
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
-from inerter.report.findings import headlines, over_the_sweep
+from inerter.report.findings import over_the_sweep
 from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
 from inerter.writing import write_text
@@ -56,7 +57,7 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             title=results.attrs["title"],
             swept=bool(swept),
             searched=study.optimise is not None,
-            headlines=[printed_sentence(sentence) for sentence in headlines(results, printed)],
+            headlines=[printed_sentence(sentence) for sentence in answers(results, study, budgets, printed)],
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
             layouts=layout_rows(study),

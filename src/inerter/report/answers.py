@@ -28,13 +28,10 @@ def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutco
     best = {name for index in study.indices for name in best_layouts(results, index)} if budgets else set()
     for element, layout in dict.fromkeys((found.parameter, found.layout) for found in budgets):
         own = [found for found in budgets if (found.parameter, found.layout) == (element, layout)]
-        told = [f"{end} in {index_title(results, o.index)}" for o in own if (end := end_of_range(o, write))]
-        told += [f"in {index_title(results, o.index)} {o.message}" for o in own if not end_of_range(o, write)]
         if layout in best:
-            kind = (
-                study.elements[element].quantity
-                if study.elements[element].switch is None
-                else study.elements[element].key
-            )
-            what = f"{kind.replace('_', ' ')} {element}"
-            yield f"{what[0].upper()}{what[1:]}: {layout} is better than {study.baseline} {', '.join(told)}."
+            what = capital(f"{study.elements[element].key} {element}")
+            ends = [f"{end} in {index_title(results, o.index)}" for o in own if (end := end_of_range(o, write))]
+            told = [f"{what}: {layout} is better than {study.baseline} {', '.join(ends)}."] if ends else []
+            others = [found for found in own if not end_of_range(found, write)]
+            told += [f"{what}, {layout}, {index_title(results, o.index)}: {o.message}." for o in others]
+            yield " ".join(told)

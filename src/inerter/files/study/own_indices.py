@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Never
 
 from pydantic import AfterValidator, ConfigDict, Field, PlainValidator, create_model
 
@@ -19,6 +19,7 @@ from inerter.indices.registry import INDICES
 from inerter.units import shown
 
 _KIND = "kind"
+_NO_TABLE = "<no table>"
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,10 @@ def indices_of(tables: Mapping[str, Any]) -> list[str]:
     return [*index_names(), *(own if isinstance(own, dict) else ())]
 
 
+def _refused(entry: Any) -> Never:
+    raise EntryError(got=shown(entry), fault="not a table", expected='such as { kind = "ride-comfort" }')
+
+
 def _own_name(name: Any) -> str:
     if name in index_names():
         raise EntryError(got=shown(name), fault="a name that an index has already", expected="another, such as comfort")
@@ -76,10 +81,13 @@ def index_shapes() -> tuple[Any, Shapes]:
     shapes[ANY] = _AnyIndex
 
     def tag(entry: Any) -> str:
-        kind = entry.get(_KIND) if isinstance(entry, dict) else None
+        if not isinstance(entry, dict):
+            return _NO_TABLE
+        kind = entry.get(_KIND)
         return f"<{kind}>" if isinstance(kind, str) and f"<{kind}>" in shapes else ANY
 
-    each: Any = one_of_shapes(shapes, tag)
+    no_table = Annotated[Any, PlainValidator(_refused)]
+    each: Any = one_of_shapes({**shapes, _NO_TABLE: no_table}, tag)
     every: Any = dict.__class_getitem__((_OwnName, each))
     return every, {("indices", "*", tagged): shape for tagged, shape in shapes.items()}
 

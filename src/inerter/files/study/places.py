@@ -107,7 +107,7 @@ class _Section(NamedTuple):
 
 
 def _vehicle_numbers(study: Study) -> dict[str, Number]:
-    return {f.key: Number(f.unit, f.in_words, study.vehicle[f.key]) for f in fields_of(VEHICLES[study.model])}
+    return {f.key: Number(f.unit, f.in_words, study.vehicle.get(f.key)) for f in fields_of(VEHICLES[study.model])}
 
 
 def _put_vehicle(study: Study, key: str, number: float) -> Study:

@@ -81,6 +81,10 @@ from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
 from inerter.records.result import Response as Response
 from inerter.records.writers import write_record as write_record
+from inerter.scatter.robust import Quantile as Quantile
+from inerter.scatter.robust import robust as robust
+from inerter.scatter.tolerance import Tolerance as Tolerance
+from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
 from inerter.signals.harmonics import multisine as multisine

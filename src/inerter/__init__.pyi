@@ -91,6 +91,7 @@ from inerter.signals.harmonics import multisine as multisine
 from inerter.signals.harmonics import sine as sine
 from inerter.signals.records import held_noise as held_noise
 from inerter.signals.records import profile as profile
+from inerter.signals.road import ROAD_CLASSES as ROAD_CLASSES
 from inerter.signals.road import Road as Road
 from inerter.signals.signal import Signal as Signal
 from inerter.signals.transients import bump as bump
@@ -98,6 +99,7 @@ from inerter.signals.transients import chirp as chirp
 from inerter.signals.transients import step as step
 from inerter.simulation.batch import Batch as Batch
 from inerter.simulation.batch import simulate_many as simulate_many
+from inerter.simulation.histories import simulate_to_files as simulate_to_files
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.assemble import assemble as assemble
@@ -105,6 +107,9 @@ from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.trade_off.front import Front as Front
 from inerter.trade_off.pareto import pareto as pareto
+from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
+from inerter.vehicle.absorber import Absorber as Absorber
+from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate
@@ -118,6 +123,7 @@ from inerter.vehicle.mechanism import Weighted as Weighted
 from inerter.vehicle.quarter_car import QuarterCar as QuarterCar
 from inerter.vehicle.registry import VEHICLES as VEHICLES
 from inerter.vehicle.rig import Rig as Rig
+from inerter.vehicle.seat import Seat as Seat
 from inerter.vehicle.vehicle import VehicleModel as VehicleModel
 from inerter.work.pool import pooled as pooled
 

@@ -18,6 +18,7 @@ from inerter.networks.transform import name_free_values, with_values
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]
 GROUND: Port = {}
+TRACKS = ("", "left", "right")
 
 
 @dataclass(frozen=True)
@@ -53,11 +54,13 @@ class Tyre:
 class RoadInput:
     """Where the mechanism meets the road.
 
-    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later.
+    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later, and on the
+    `track` "left" or "right", where there are two; on "" there is one.
     """
 
     name: str
     distance: float = 0.0
+    track: str = ""
 
 
 @dataclass(frozen=True)
@@ -215,6 +218,10 @@ def _check_numbers(mechanism: Mechanism) -> None:
             raise MechanismError(
                 f"The distance of road {road.name!r} behind the first one must be zero or more metres, "
                 f"got {road.distance!r}. Measure from the foremost axle."
+            )
+        if road.track not in TRACKS:
+            raise MechanismError(
+                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one; got {road.track!r}.'
             )
 
 

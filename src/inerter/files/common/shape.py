@@ -22,9 +22,20 @@ from pydantic import (
 from inerter.errors import RowError
 from inerter.fields import Field as Quantity
 from inerter.fields import fields_of, mounts_of
-from inerter.files.common.entries import Amount, amount, check_order, element_name, expression, layout_name, positive
+from inerter.files.common.entries import (
+    Amount,
+    amount,
+    check_order,
+    element_name,
+    expression,
+    layout_name,
+    one_of,
+    positive,
+)
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
+from inerter.files.common.problem import EntryError
 from inerter.rows import made_of_rows
+from inerter.signals.road import ROAD_CLASSES
 from inerter.vehicle.registry import VEHICLES
 
 ROAD = (
@@ -38,6 +49,24 @@ class Shape(BaseModel):
     """A table of a study file; keys that it does not know are errors."""
 
     model_config = ConfigDict(extra="forbid")
+
+
+class RoadTable(Shape):
+    """A table [road] may say the class of a road in place of its roughness."""
+
+    letter: Annotated[str | None, PlainValidator(one_of("a class of ISO 8608", ROAD_CLASSES))] = Field(
+        default=None, alias="class", examples=['class = "C"']
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_a_class(cls, table: Any) -> Any:
+        if not isinstance(table, dict) or "class" not in table:
+            return table
+        if "roughness" in table:
+            raise EntryError(got="both roughness and class", expected="one of the two")
+        known = ROAD_CLASSES.get(str(table["class"]), ROAD_CLASSES["A"])  # of another one, that is what is told
+        return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
 
 
 Shapes = Mapping[tuple[str, ...], type[Shape]]

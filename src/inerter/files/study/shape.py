@@ -39,6 +39,7 @@ from inerter.files.common.shape import (
     ElementEntry,
     ElementName,
     Range,
+    RoadTable,
     Shape,
     Shapes,
     layouts,
@@ -103,7 +104,7 @@ class AnyCar(Shape):
     model: Annotated[str, PlainValidator(_car)] = Field(examples=['model = "quarter-car"'])
 
 
-RoadShape = create_model("RoadShape", __base__=Shape, **of_quantities(ROAD))
+RoadShape = create_model("RoadShape", __base__=RoadTable, **of_quantities(ROAD))
 
 
 def _search(value: Any) -> str:

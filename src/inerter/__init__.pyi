@@ -88,6 +88,10 @@ from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
 from inerter.records.result import Response as Response
 from inerter.records.writers import write_record as write_record
+from inerter.scatter.robust import Quantile as Quantile
+from inerter.scatter.robust import robust as robust
+from inerter.scatter.tolerance import Tolerance as Tolerance
+from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
 from inerter.signals.harmonics import multisine as multisine
@@ -109,6 +113,8 @@ from inerter.systems.arrivals import Arrival as Arrival
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
+from inerter.trade_off.front import Front as Front
+from inerter.trade_off.pareto import pareto as pareto
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
 from inerter.trade_off.front import Front as Front
 from inerter.trade_off.pareto import pareto as pareto

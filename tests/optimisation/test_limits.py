@@ -38,11 +38,14 @@ def problem(number):
         if worst > 1.1 * best:  # else the two hardly contradict each other
             break
     limits = [it.at_most(first, best * (worst / best) ** float(rng.uniform(0.3, 0.95)))]
+    step = 3e-4 * np.log(worst / best)
     if number % 2:
         within = it.optimise(car, second, NORM, subject_to=limits).value
         here = it.evaluate(it.optimise(car, index, NORM, subject_to=limits).design, second, NORM).value
-        limits.append(it.at_most(second, within * (here / within) ** float(rng.uniform(0.5, 1.2))))
-    return car, index, limits, 1e-3 * np.log(worst / best)
+        if here > 1.02 * within:
+            limits.append(it.at_most(second, within * (here / within) ** float(rng.uniform(0.5, 1.2))))
+            step = min(step, 3e-4 * np.log(here / within))
+    return car, index, limits, step
 
 
 def by_evolution(car, index, limits, seed=0):
@@ -89,7 +92,7 @@ def test_what_a_limit_costs_is_what_moving_it_costs(number):
             moved.append(it.optimise(car, index, NORM, subject_to=others).value)
         rising, falling = np.log(moved[0] / best.value) / step, np.log(best.value / moved[1]) / step
         assert min(rising, falling) - 1e-3 <= held.sensitivity <= max(rising, falling) + 1e-3
-        assert held.sensitivity == pytest.approx(0.5 * (rising + falling), rel=2e-2, abs=1e-3)
+        assert held.sensitivity == pytest.approx(0.5 * (rising + falling), rel=3e-2, abs=2e-3)
         assert best.sensitivities[held.label] == held.sensitivity
         assert (held.label in best.active_limits) == held.active
 

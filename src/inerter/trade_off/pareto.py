@@ -71,7 +71,7 @@ def pareto(
     >>> road = it.Road(roughness=5e-7, speed=25)
     >>> front = it.pareto(car, [it.RideComfort(road), it.TyreLoad(road)], it.Norm(), points=5)
     >>> front.values.round(3)[[0, -1]]
-    array([[  2.428, 503.387],
+    array([[  2.428, 503.131],
            [  2.437, 501.205]])
     """
     criteria = _checked(vehicle, indices, method, points)
@@ -139,7 +139,8 @@ class _Trade:
         """The least of each criterion, and how far the largest at an end is from it."""
         table = self.criteria(np.array(self.ends))
         ideal = table.min(axis=0)
-        return ideal, table.max(axis=0) - ideal
+        size = table.max(axis=0) - ideal
+        return ideal, np.where(size > 0.0, size, 1.0)
 
     def at(self, point: Array) -> _Found:
         """What a point comes to."""
@@ -221,7 +222,8 @@ class _Trade:
     def front(self, count: int) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
         """Points of the front, and the pairs between which it jumps."""
         ends = [self.at(point) for point in self.ends]
-        if np.all(self.scale[1] <= _NO_CONFLICT * self.scale[0]):
+        table = np.array([one.values for one in ends])
+        if np.all(np.ptp(table, axis=0) <= _NO_CONFLICT * self.scale[0]):
             return ends[:1], set()
         if len(self.objectives) == 2:
             return self.between(ends, count)

@@ -113,8 +113,6 @@ from inerter.systems.arrivals import Arrival as Arrival
 from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
-from inerter.trade_off.front import Front as Front
-from inerter.trade_off.pareto import pareto as pareto
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
 from inerter.trade_off.front import Front as Front
 from inerter.trade_off.pareto import pareto as pareto

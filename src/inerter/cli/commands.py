@@ -6,7 +6,7 @@ import json
 import os
 import shlex
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from textwrap import indent, wrap
@@ -21,12 +21,14 @@ from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.study.journal import Further
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
+from inerter.report.fronts import front_lines, front_sentences
 from inerter.report.json_data import json_data
 from inerter.report.page import write_report
 from inerter.report.text import WIDTH, summary_table, wrapped
@@ -55,7 +57,8 @@ def run(
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
 
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
-    items = "designs and budgets" if loaded.budgets else "designs"
+    asked = {"budgets": loaded.budgets, "fronts": loaded.trade_off}
+    items = " and ".join(["designs", *(kind for kind, some in asked.items() if some)])
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,
@@ -77,9 +80,11 @@ def run(
         for text in _as_json(result):
             print(text, end="")
     else:
-        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrapped(text)))
+        answers = (loaded.title, *headlines(result.data), *front_sentences(result.data))
+        print("\n".join(line for text in answers for line in wrapped(text)))
         print(f"\n{summary_table(result.data)}")
-        print("".join(f"{line}\n" for line in budget_lines(result.budgets, loaded, WIDTH)), end="")
+        lines = (*front_lines(result.data, WIDTH), *budget_lines(result.budgets, loaded, WIDTH))
+        print("".join(f"{line}\n" for line in lines), end="")
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
     return _judge(result)
@@ -146,8 +151,9 @@ def _judge(result: StudyResult) -> int:
 
 def _as_json(result: StudyResult) -> Iterator[str]:
     """All results as JSON, in pieces: a list of a million designs is never held."""
-    budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
-    whole = json.dumps({**result.data.attrs, "designs": [None], **budgets}, indent=2)
+    kinds: dict[str, Sequence[Further]] = {"budgets": result.budgets, "fronts": result.fronts}
+    further = {kind: [found.to_json() for found in several] for kind, several in kinds.items() if several}
+    whole = json.dumps({**result.data.attrs, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
     separator = "\n"
     yield before

@@ -110,6 +110,22 @@ def index_unit(results: xr.Dataset, index: str) -> str:
     return str(results["index_unit"].sel(index=index).item())
 
 
+def criteria(results: xr.Dataset) -> list[str]:
+    """The indices of the trade-off that the study asks for; none if it asks for none."""
+    names: list[str] = results["criterion"].values.tolist() if "front_value" in results else []
+    return names
+
+
+def criterion_title(results: xr.Dataset, name: str) -> str:
+    """The name of an index of a trade-off in words."""
+    return str(results["criterion_title"].sel(criterion=name).item())
+
+
+def criterion_unit(results: xr.Dataset, name: str) -> str:
+    """The unit of an index of a trade-off."""
+    return str(results["criterion_unit"].sel(criterion=name).item())
+
+
 def flat_range(entry: xr.Dataset) -> str:
     """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])

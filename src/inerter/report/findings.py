@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 import xarray as xr
 
+from inerter.errors import StatusKind
 from inerter.figures.labels import (
     NOTICEABLE,
     by_method,
@@ -172,7 +173,7 @@ def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
     title, baseline = index_title(results, index), results.attrs["baseline"]
     names = best_layouts(results, index)
     if not names:
-        return f"Best {title}: no layout has a finite value."
+        return f"Best {title}: {_none(results, index)}."
     best = names[0]
     design = results.sel(layout=best, index=index)
     value = write(float(design["value"]), index_unit(results, index), error_of(design))
@@ -181,7 +182,7 @@ def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
         return f"{answer}; no other layout is better than this baseline."
     improvement = float(design["improvement"])
     if not np.isfinite(improvement):
-        return f"{answer}; {baseline} has no finite value." if baseline else f"{answer}."
+        return f"{answer}; {_without(results, index, baseline)}." if baseline else f"{answer}."
     if improvement < NOTICEABLE:
         return f"{answer}, no better than {baseline}."
     better = percent(improvement, error_of(design, "improvement")).removeprefix("+")
@@ -202,7 +203,7 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
     found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
-        return f"Best {title}: no layout has a finite value."
+        return f"Best {title}: {_none(results, index)}."
     if not compared(results):
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
@@ -221,6 +222,19 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
         f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by_which(results)}: {best}; its "
         f"improvement over the sweep lies {_range(least, largest)}."
     )
+
+
+def _without(results: xr.Dataset, index: str, layout: str) -> str:
+    """That a layout has no value, and why."""
+    status = str(results["status"].sel(layout=layout, index=index).item())
+    infeasible = status.startswith(StatusKind.INFEASIBLE.value)
+    return f"no {layout} keeps the limits" if infeasible else f"{layout} has no finite value"
+
+
+def _none(results: xr.Dataset, index: str) -> str:
+    """Why there is no best layout."""
+    kinds = {str(status).partition(":")[0] for status in results["status"].sel(index=index).values.ravel()}
+    return "no layout keeps the limits" if kinds == {StatusKind.INFEASIBLE.value} else "no layout has a finite value"
 
 
 def _range(least: float, largest: float) -> str:

@@ -19,7 +19,9 @@ from inerter.files.study.study import Study, Sweep, write_resolved
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
 from inerter.report.findings import headlines, over_the_sweep
-from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
+from inerter.report.fronts import front_sentences, front_tables
+from inerter.report.limits import limit_tables
+from inerter.report.question import computation, condition_rows, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
 from inerter.writing import write_text
 
@@ -56,7 +58,10 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             title=results.attrs["title"],
             swept=bool(swept),
             searched=study.optimise is not None,
-            headlines=[printed_sentence(sentence) for sentence in headlines(results, printed)],
+            headlines=[
+                printed_sentence(sentence)
+                for sentence in (*headlines(results, printed), *front_sentences(results, printed))
+            ],
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
             layouts=layout_rows(study),
@@ -65,6 +70,9 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             by_method=method_tables(results),
             remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
             budgets=budget_tables(budgets, study),
+            fronts=front_tables(results),
+            limits=limit_tables(results),
+            conditions=condition_rows(study),
             trade_offs=[] if swept else trade_off_tables(results),
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),

@@ -11,6 +11,7 @@ import xarray as xr
 
 from inerter.fields import fields_of
 from inerter.figures.labels import capital, index_title, indices
+from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES, amplitude_of
@@ -56,6 +57,17 @@ def element_rows(study: Study) -> list[tuple[str, str, str]]:
     return [(name, element.key, _told(study, name)) for name, element in study.elements.items()]
 
 
+def condition_rows(study: Study) -> list[tuple[str, str, str]]:
+    """The operating conditions: name or number, share of all, and the numbers that are others."""
+    total, known = sum(condition.share for condition in study.conditions), places(study)
+    rows = []
+    for i, condition in enumerate(study.conditions, start=1):
+        numbers = [f"{label} = {_given(value, known[label].unit)}" for label, value in condition.numbers.items()]
+        told = ", ".join(numbers) or "as above"
+        rows.append((condition.name or f"{i}", f"{100.0 * condition.share / total:.3g} %", told))
+    return rows
+
+
 def layout_rows(study: Study) -> list[LayoutText]:
     """The layouts with the expressions of their struts; one without a mount where all struts are alike."""
     rows = []
@@ -88,6 +100,11 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         )
         if not is_blind(study.optimise):
             yield f"What was made smallest is the value by {study.optimise}: {words_of(study.optimise)}."
+    if study.limits:
+        yield f"Every design keeps these limits: {'; '.join(limit.label for limit in study.limits)}."
+    if study.conditions:
+        how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
+        yield f"An index is its {how}; limits hold in each. Frequency responses are those of the vehicle as it stands."
     yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."
 
@@ -102,7 +119,9 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    for name in study.indices:
+    amplitudes = [symbol for symbol in INDICES if amplitude_of(symbol)]
+    asked = [name for name in study.indices if study.symbol(name) in amplitudes]
+    for name in asked or amplitudes:
         field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
         if field is not None and field.key in settings:
             yield f"The sinusoidal force of {name} has an amplitude of {_given(settings[field.key], field.unit)}."

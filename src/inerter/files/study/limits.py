@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Never
 
-from pydantic import Field, PlainValidator
+from pydantic import Discriminator, Field, PlainValidator, Tag
 
-from inerter.errors import InerterError, UnitError
+from inerter.errors import InerterError
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.shape import Shape
-from inerter.files.common.suggest import nearest
+from inerter.files.common.suggest import nearest, some
 from inerter.indices.names import index_names
 from inerter.methods.asking import Asked
 from inerter.methods.method import asked_of
@@ -41,9 +41,14 @@ class StudyLimit:
     unit: str
 
     @property
+    def words(self) -> str:
+        """What is limited, and on which side."""
+        return f"{self.of} {self.sense.replace('_', ' ')}"
+
+    @property
     def label(self) -> str:
         """The limit in words."""
-        return f"{self.of} {self.sense.replace('_', ' ')} {format_quantity(self.value, self.unit, digits=12).strip()}"
+        return f"{self.words} {format_quantity(self.value, self.unit, digits=12).strip()}"
 
     def entry(self) -> str | float:
         """How a file says its value."""
@@ -65,6 +70,16 @@ class LimitShape(Shape):
     at_most: _Text = Field(default=None, examples=['at_most = "3 mm"'])
     at_least: _Text = Field(default=None, examples=['at_least = "1 mm"'])
     equal: _Text = Field(default=None, examples=['equal = "120 kN/m"'])
+
+
+def _refused(entry: Any) -> Never:
+    raise EntryError(got=shown(entry), fault="not a table", expected='such as { at_most = "600 N" }')
+
+
+LimitEntry = Annotated[
+    Annotated[LimitShape, Tag("<limit>")] | Annotated[Any, PlainValidator(_refused), Tag("<no table>")],
+    Discriminator(lambda entry: "<limit>" if isinstance(entry, dict) else "<no table>"),
+]
 
 
 def limits_of(study: Study, entries: Mapping[str, LimitShape]) -> tuple[tuple[StudyLimit, ...], list[Problem]]:
@@ -90,10 +105,8 @@ def limits_of(study: Study, entries: Mapping[str, LimitShape]) -> tuple[tuple[St
 
 
 def _value(text: str | float, unit: str) -> float:
-    if isinstance(text, float) and unit in _PURE:
-        value = text
-    else:
-        value = parse_quantity(text, unit or "1")  # type: ignore[arg-type]  # a number is refused there
+    pure = isinstance(text, float) and unit in _PURE
+    value = float(text) if pure else parse_quantity(text, unit or "1")  # type: ignore[arg-type]  # refused there
     if value <= 0.0:
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}".strip())
     return value
@@ -109,7 +122,7 @@ def _unit(study: Study, of: str) -> str:
         return "N/m"
     known = [*study.own_indices, *index_names()]
     if of not in known:
-        expected = f"an index, or {_STIFFNESS} of a strut"
+        expected = f"an index ({some(known)}), or {_STIFFNESS} of a strut"
         raise EntryError(got=shown(of), fault="nothing that can be limited", expected=expected, hint=nearest(of, known))
     return study.unit(of)
 
@@ -128,18 +141,18 @@ def limits_in(study: Study) -> list[list[Limit]]:
     ]
 
 
-def told(study: Study, vehicle: Vehicle, held: tuple[Held, ...]) -> dict[str, tuple[float, bool, float]]:
-    """By limit: the value that comes closest, whether it holds the optimum back, and the per cent that 1 % more gives.
+def kept(study: Study, vehicle: Vehicle, held: tuple[Held, ...]) -> list[tuple[float, bool, float]]:
+    """Of each limit: the value that comes closest, whether it holds the optimum back, and the per cent that 1 % gives.
 
     `held` are all limited quantities of an optimum of `vehicle`, in the order of `limits_in`.
     """
-    found, rest = {}, list(held)
-    for limit, several in zip(study.limits, limits_in(study), strict=True):
+    found, rest = [], list(held)
+    for several in limits_in(study):
         count = sum(len(for_each(one.of, vehicle)) for one in several)
         own, rest = rest[:count], rest[count:]
         worst = max(own, key=lambda one: one.excess)
         active = [one for one in own if one.active]
-        found[limit.label] = (worst.value, bool(active), float(sum(one.sensitivity for one in active)))
+        found.append((worst.value, bool(active), float(sum(one.sensitivity for one in active))))
     return found
 
 

@@ -12,17 +12,21 @@ from inerter.files.common.problems import refusal
 from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
+from inerter.files.study.conditions import OVER
+from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.own_indices import own_index, own_index_problems
 from inerter.files.study.shape import StudyFile, shapes
-from inerter.files.study.study import Study, elements_used
-from inerter.files.study.sweeps import sweeps_of
+from inerter.files.study.study import POINTS, Study, elements_used
+from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.indices.registry import index_settings
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
 from inerter.signals.road import Road
 from inerter.units import shown
 from inerter.writing import characters
+
+_LEAST_OF_THREE = 6  # points of a front of three indices
 
 
 def load_study(path: str | Path) -> Study:
@@ -33,13 +37,20 @@ def load_study(path: str | Path) -> Study:
     path = Path(path)
     shape = read_shape(path, "a study file", *shapes())
     study = _resolve(path, shape)
+    limits, limit_problems = limits_of(study, shape.study.subject_to or {})
+    study = replace(study, limits=limits)
     swept, sweep_problems = ((), []) if shape.study.sweep is None else sweeps_of(study, shape.study.sweep)
     study = replace(study, sweeps=swept)
+    conditions, condition_problems = conditions_of(study, shape.conditions)
+    study = replace(study, conditions=conditions)
     problems = [
         *layout_problems(study.model, study.elements, study.layouts),
         *sweep_problems,
-        *_setting_problems(study),
-        *own_index_problems(study.indices, study.own_indices),
+        *condition_problems,
+        *limit_problems,
+        *_setting_problems(study, shape),
+        *own_index_problems(study.indices, study.own_indices, [*study.trade_off, *(limit.of for limit in limits)]),
+        *_front_problems(study, shape),
         *method_problems(study),
     ]
     if not problems:
@@ -75,7 +86,10 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         relative_error=settings.relative_error,
         settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
         own_indices={name: own_index(entry) for name, entry in shape.indices.items()},
+        over=settings.conditions or OVER[0],
         method_settings=_method_settings(shape),
+        trade_off=settings.trade_off,
+        points=settings.points or POINTS,
         budgets=settings.budgets,
     )
 
@@ -88,12 +102,34 @@ def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
     return {name: table for name, table in given.items() if table}
 
 
-def _setting_problems(study: Study) -> Iterator[Problem]:
+def _setting_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    if shape.study.conditions is not None and not study.conditions:
+        place, wanted = ("study", "conditions"), "sections [[conditions]], or no conditions in [study]"
+        yield at(place, got=shown(shape.study.conditions), fault="there are none", expected=wanted)
     if study.baseline is not None and study.baseline not in study.layouts:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
         wanted = f"a layout, one of {known}"
         yield at(("study", "baseline"), got=shown(study.baseline), expected=wanted, hint=hint)
+
+
+def _front_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    place = ("study", "trade_off")
+    if shape.study.points is not None and not study.trade_off:
+        yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
+    if not study.trade_off:
+        return
+    several = len({study.asked(name) for name in study.trade_off})
+    if several not in (2, 3) or several < len(study.trade_off):
+        got = f"{len(study.trade_off)} indices" if several == len(study.trade_off) else "the same index twice"
+        yield at(place, got=got, expected="two or three that differ")
+    if several == 3 and study.points < _LEAST_OF_THREE:
+        few = f"at least {_LEAST_OF_THREE} points for three indices"
+        yield at(("study", "points"), got=str(study.points), expected=few)
+    if study.sweeps:
+        yield at(place, fault="given beside a sweep", expected="one of the two")
+    if study.optimise is None:
+        yield at(place, fault="nothing is optimised", expected="optimise, or no trade_off")
 
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:

@@ -92,10 +92,10 @@ def index_shapes() -> tuple[Any, Shapes]:
     return every, {("indices", "*", tagged): shape for tagged, shape in shapes.items()}
 
 
-def own_index_problems(asked: Sequence[str], own: Mapping[str, OwnIndex]) -> Iterator[Problem]:
-    """Indices that the file describes and does not ask for, and those that it asks for twice."""
+def own_index_problems(asked: Sequence[str], own: Mapping[str, OwnIndex], limited: Sequence[str]) -> Iterator[Problem]:
+    """Indices that the file describes and makes no use of, and those that it asks for twice."""
     for name in own:
-        if name not in asked:
+        if name not in asked and name not in limited:
             yield at(
                 ("indices", name), fault="nothing asks for it", expected=f"{shown(name)} in indices, or no section"
             )

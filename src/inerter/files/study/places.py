@@ -19,7 +19,7 @@ from inerter.vehicle.registry import VEHICLES
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
-_ELEMENTS = "elements"
+_ELEMENTS, _LIMITS = "elements", "subject_to"
 _LOWER, _UPPER = "from", "to"  # the keys of the bounds of a free value
 
 
@@ -56,8 +56,10 @@ def place_of(text: str) -> Place:
     return Place(section, key) if key else Place(_ELEMENTS, section)
 
 
-def by_place(table: Any) -> Any:
+def by_place(table: Any, *, entries: bool = True) -> Any:
     """A table of a file by places: a place that is written without quotes is a table in a table.
+
+    Tables may be `entries` too, where they hold no others.
 
     >>> by_place({"road": {"speed": ["20 m/s", "30 m/s"]}, "k": {"from": "1 N/m", "to": "2 N/m"}})
     {'road.speed': ['20 m/s', '30 m/s'], 'k': {'from': '1 N/m', 'to': '2 N/m'}}
@@ -66,8 +68,13 @@ def by_place(table: Any) -> Any:
         return table
     found: dict[Any, Any] = {}
     for key, entry in table.items():
-        further = isinstance(entry, dict) and any(isinstance(inner, dict | list) for inner in entry.values())
-        found |= by_place({f"{key}.{name}": inner for name, inner in entry.items()}) if further else {key: entry}
+        further = isinstance(entry, dict)
+        if further and entries:
+            further = any(isinstance(inner, dict | list) for inner in entry.values())
+        if further:
+            found |= by_place({f"{key}.{name}": inner for name, inner in entry.items()}, entries=entries)
+        else:
+            found[key] = entry
     return found
 
 
@@ -160,11 +167,21 @@ def _with_part(element: Element, part: str, number: float) -> Element:
 
 
 def _setting_numbers(study: Study) -> dict[str, Number]:
-    return {key: Number(f.unit, f.in_words, study.settings.get(key)) for key, f in index_settings().items()}
+    settings = {key: Number(f.unit, f.in_words, study.settings.get(key)) for key, f in index_settings().items()}
+    limits = {
+        f"{_LIMITS}.{limit.of}.{limit.sense}": Number(limit.unit, limit.words, limit.value) for limit in study.limits
+    }
+    return {**settings, **limits}
 
 
 def _put_setting(study: Study, key: str, number: float) -> Study:
-    return replace(study, settings={**study.settings, key: number})
+    if not key.startswith(f"{_LIMITS}."):
+        return replace(study, settings={**study.settings, key: number})
+    found = (
+        replace(limit, value=number) if key == f"{_LIMITS}.{limit.of}.{limit.sense}" else limit
+        for limit in study.limits
+    )
+    return replace(study, limits=tuple(found))
 
 
 def _index_numbers(study: Study) -> dict[str, Number]:

@@ -12,6 +12,7 @@ from pydantic import (
     PlainValidator,
     Tag,
     create_model,
+    model_validator,
 )
 
 from inerter.errors import RowError
@@ -19,6 +20,7 @@ from inerter.fields import fields_of
 from inerter.files.common.entries import (
     MOST_POINTS,
     one_of,
+    positive_number,
     quantity_list,
     quantity_text,
     share,
@@ -41,6 +43,8 @@ from inerter.files.common.shape import (
     of_quantities,
     vehicle_shapes,
 )
+from inerter.files.study.conditions import OVER
+from inerter.files.study.limits import LimitEntry, LimitShape
 from inerter.files.study.own_indices import index_shapes, indices_of
 from inerter.files.study.places import by_place
 from inerter.indices.registry import index_settings
@@ -51,6 +55,7 @@ from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
 
 _MOST_ROADS = 100_000
+_MOST_OF_FRONT = 1000
 SPACINGS = ("linear", "log")
 
 
@@ -70,6 +75,22 @@ SweepEntry = Annotated[
     Annotated[SweepRange, Tag("<range>")] | Annotated[tuple[str, ...], PlainValidator(quantity_list), Tag("<list>")],
     Discriminator(lambda value: "<range>" if isinstance(value, dict) else "<list>"),
 ]
+
+
+def _by_place(table: Any) -> Any:
+    return by_place(table, entries=False)
+
+
+class ConditionTable(Shape):
+    """Numbers by their places, and how much of the time they are so."""
+
+    model_config = ConfigDict(extra="allow")
+    share: Annotated[float, PlainValidator(positive_number)] = Field(default=1.0, examples=["share = 0.3"])
+    name: Annotated[str, PlainValidator(text)] = Field(default="", examples=['name = "loaded"'])
+
+
+ConditionShape = Annotated[ConditionTable, BeforeValidator(_by_place)]
+Over = Annotated[str | None, PlainValidator(one_of("a way to take an index over conditions", OVER))]
 
 
 def _car(value: Any) -> str:
@@ -104,6 +125,13 @@ def _search(value: Any) -> str:
 class Settings(Shape):
     """What is asked of the layouts, and how it is answered; beside these there are the settings of indices."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_a_trade_off(cls, table: Any) -> Any:
+        """The indices of a trade-off are asked for by themselves too."""
+        alone = isinstance(table, dict) and "trade_off" in table and "indices" not in table
+        return {**table, "indices": table["trade_off"]} if alone else table
+
     indices: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = Field(
         examples=['indices = ["J1", "J3", "J5"]']
     )
@@ -117,6 +145,12 @@ class Settings(Shape):
     seed: Annotated[int, whole(0, 2**63 - 1)] = 0
     realisations: Annotated[int | None, whole(2, _MOST_ROADS)] = None
     relative_error: Annotated[float | None, PlainValidator(share)] = None
+    subject_to: Annotated[dict[str, LimitEntry], BeforeValidator(by_place)] | None = Field(
+        default=None, examples=['subject_to = { tyre-load = { at_most = "600 N" } }']
+    )
+    conditions: Over = None
+    trade_off: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = ()
+    points: Annotated[int | None, whole(3, _MOST_OF_FRONT)] = None
     budgets: Annotated[tuple[str, ...], some_names("f")] = ()
 
 
@@ -131,6 +165,7 @@ class StudyFile(Shape):
     )
     layouts: Any
     indices: Any
+    conditions: list[ConditionShape] = Field(default=[], examples=['[[conditions]] with "road.speed" = "15 m/s"'])
     study: Any
 
 
@@ -169,6 +204,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         **tables,
         ("study",): settings,
         ("study", "sweep", "*", "<range>"): SweepRange,
+        ("study", "subject_to", "*", "<limit>"): LimitShape,
         **own,
     }
 

@@ -14,17 +14,23 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_toml
+from inerter.files.study.conditions import OVER, StudyCondition, condition_of
+from inerter.files.study.limits import StudyLimit
 from inerter.files.study.own_indices import OwnIndex
 from inerter.files.study.places import Place, with_numbers
 from inerter.indices.names import index_names
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
+from inerter.methods.asking import Asked
+from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
 from inerter.signals.road import Road
 from inerter.vehicle.vehicle import VehicleModel
+
+POINTS = 25  # of a front
 
 
 @dataclass(frozen=True)
@@ -63,8 +69,13 @@ class Study:
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
+    limits: tuple[StudyLimit, ...] = ()  # which optima keep
+    conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
+    over: str = OVER[0]  # how
     own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
+    trade_off: tuple[str, ...] = ()  # two or three indices, whose front of each layout is asked for
+    points: int = POINTS  # of each front
     budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
     @property
@@ -80,6 +91,23 @@ class Study:
     def index(self, name: str) -> Index:
         """The index that the study calls so, as it asks it."""
         return make_index(self.symbol(name), self.road, self.settings_of(name))
+
+    def asked(self, name: str) -> Asked:
+        """That index over the conditions of the study, if there are any."""
+        index = self.index(name)
+        if not self.conditions:
+            return index
+        use = Conditions(condition_of(self, condition) for condition in self.conditions)
+        return use.mean(index) if self.over == OVER[0] else use.worst(index)
+
+    def in_each(self, index: Asked) -> list[Asked]:
+        """An index in each of the conditions by itself; as it is if there are none."""
+        return [Conditions([condition_of(self, c)]).mean(index) for c in self.conditions] or [index]
+
+    def unit(self, name: str) -> str:
+        """The unit of that index, which may depend on what is asked of the vehicle."""
+        index = self.index(name)
+        return index.unit or index.question(self.design(next(iter(self.layouts))).mechanism()).unit
 
     def settings_of(self, name: str) -> dict[str, float]:
         """The settings of that index by their keys: its own, else those of the study; others are among them."""
@@ -136,6 +164,7 @@ class Study:
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             **({"indices": own} if (own := {n: index.entry() for n, index in self.own_indices.items()}) else {}),
+            **({"conditions": [c.entry(self) for c in self.conditions]} if self.conditions else {}),
             "study": self._settings(),
             **({"methods": own} if (own := self._of_methods()) else {}),
         }
@@ -155,9 +184,19 @@ class Study:
             "realisations": self.realisations,
             "relative_error": self.relative_error,
             **in_si(index_settings().values(), self.settings),
+            "subject_to": self._limits() or None,
+            "conditions": self.over if self.conditions else None,
+            "trade_off": list(self.trade_off) or None,
+            "points": self.points if self.trade_off else None,
             "budgets": list(self.budgets) or None,
         }
         return {key: value for key, value in settings.items() if value is not None}
+
+    def _limits(self) -> dict[str, dict[str, str | float]]:
+        found: dict[str, dict[str, str | float]] = {}
+        for limit in self.limits:
+            found.setdefault(limit.of, {})[limit.sense] = limit.entry()
+        return found
 
 
 def elements_used(study: Study) -> dict[str, list[str]]:

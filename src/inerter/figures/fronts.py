@@ -10,7 +10,16 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from inerter.figures.labels import axis_label, capital, criteria, criterion_title, criterion_unit, layouts, scale
+from inerter.figures.labels import (
+    axis_label,
+    capital,
+    criteria,
+    criterion_title,
+    criterion_unit,
+    layouts,
+    scale,
+    titled,
+)
 from inerter.figures.style import LayoutStyle, layout_styles
 
 
@@ -40,7 +49,13 @@ def front_curves(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence[Axes]:
             if np.any(np.isfinite(across)):
                 _draw(ax, styles[name], across, up, row, joined=joined)
         for which, name, unit in zip(("x", "y"), pair, units, strict=True):
-            ax.set(**{f"{which}label": axis_label(f"{capital(criterion_title(results, name))} {name}", unit.unit)})
+            ax.set(
+                **{
+                    f"{which}label": axis_label(
+                        capital(titled(criterion_title(results, name), name, "{} {}")), unit.unit
+                    )
+                }
+            )
     return axes
 
 
@@ -53,4 +68,6 @@ def _draw(ax: Axes, style: LayoutStyle, across: np.ndarray, up: np.ndarray, row:
         ax.plot(across[part], up[part], **{**curve, "label": label}, marker=style.marker, markersize=2.6)
     knee = np.flatnonzero(row["front_knee"].values)
     look: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 1.2, "zorder": style.zorder + 0.2}
-    ax.plot(across[knee], up[knee], linestyle="", marker=style.marker, markersize=7.0, color=style.colour, **look)
+    ax.plot(
+        across[knee], up[knee], linestyle="", marker=style.marker or "o", markersize=7.0, color=style.colour, **look
+    )

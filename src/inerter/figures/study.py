@@ -26,6 +26,7 @@ from inerter.figures.labels import (
     one_method,
     swept_places,
     swept_words,
+    titled,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, styled
@@ -86,7 +87,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
-                f"{linear} of the designs that are best for {index_title(results, index)} ({index}).",
+                f"{linear} of the designs that are best for {titled(index_title(results, index), index)}.",
                 partial(_response, results, index),
             )
 
@@ -94,7 +95,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
 def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
     (element,), baseline = swept_words(results), results.attrs["baseline"]
     for index in indices(results):
-        title = f"{index_title(results, index)} ({index})"
+        title = titled(index_title(results, index), index)
         versus = f", and improvement over the best {baseline} of the same {element}" if compared(results) else ""
         yield StudyFigure(
             f"sweep-{index}",
@@ -116,7 +117,7 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
     words, results = " and ".join(swept_words(results)), one_method(results)
     baseline = results.attrs["baseline"]
     for index in indices(results):
-        title = f"{index_title(results, index)} ({index})"
+        title = titled(index_title(results, index), index)
         versus = f" of {baseline}, and improvement over it of every other layout" if compared(results) else ""
         yield StudyFigure(
             f"map-{index}",

@@ -12,6 +12,7 @@ from inerter.figures.labels import criteria, criterion_title, criterion_unit, la
 from inerter.report.findings import Writer
 from inerter.report.tables import Cell, Row, Table
 
+_NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _SAME = 1e-9  # relative; a point that is as good as another in all indices does not better it
 
 
@@ -47,10 +48,10 @@ def front_lines(results: xr.Dataset, width: int) -> Iterator[str]:
         status = str(results["front_status"].sel(layout=layout).item())
         yield f"  {layout}" if status == "ok" else f"  {layout}: {status}"
         for what, point in _told_points(results, layout):
-            text = ", ".join(
-                [*_values(results, layout, point, with_unit), *_parameters(results, layout, point, with_unit)]
-            )
-            yield from wrap(f"{what}: {text}", width, initial_indent="    ", subsequent_indent="      ")
+            items = [*_values(results, layout, point, with_unit), *_parameters(results, layout, point, with_unit)]
+            text = ", ".join(item.replace(" ", _NO_BREAK_SPACE) for item in items)
+            lines = wrap(f"{what}: {text}", width, initial_indent="    ", subsequent_indent="      ")
+            yield from (line.replace(_NO_BREAK_SPACE, " ") for line in lines)
 
 
 def front_tables(results: xr.Dataset) -> list[Table]:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import index_title, indices, layouts, one_method, swept_places, with_unit
+from inerter.figures.labels import index_title, indices, layouts, one_method, swept_places, titled, with_unit
 from inerter.report.tables import Cell, Row, Table
 
 
@@ -45,7 +45,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
             value, _, cost = _told(results.sel(layout=name, index=index, limit=limit), index).partition(", ")
             cells.append(Cell(value, cost))
         rows.append(Row(name, cells))
-    caption = f"Limits of the designs that are best for {index_title(results, index)} ({index})"
+    caption = f"Limits of the designs that are best for {titled(index_title(results, index), index)}"
     return Table(caption, ["Layout", *limits], rows)
 
 

@@ -14,7 +14,7 @@ from inerter.figures.labels import capital, index_title, indices
 from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
 from inerter.files.study.study import Study
-from inerter.indices.registry import INDICES, amplitude_of
+from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
 from inerter.networks.elements import Free, Tied
@@ -46,6 +46,8 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
         rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
+        texts = [one for one in index_choices(symbol) if one.key in settings]
+        rows += [(f"{capital(one.key.replace('_', ' '))} of {name}", settings[one.key]) for one in texts]
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
         rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]

@@ -20,8 +20,8 @@ from pydantic import (
 )
 
 from inerter.errors import RowError
+from inerter.fields import Choice, fields_of, mounts_of
 from inerter.fields import Field as Quantity
-from inerter.fields import fields_of, mounts_of
 from inerter.files.common.entries import (
     Amount,
     amount,
@@ -31,6 +31,7 @@ from inerter.files.common.entries import (
     layout_name,
     one_of,
     positive,
+    text,
 )
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
@@ -102,6 +103,17 @@ def if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
         )
         for field in fields
     }
+
+
+def of_choices(choices: Iterable[Choice]) -> dict[str, Any]:
+    """Keys for texts, some of which may be left out."""
+    keys = {}
+    for one in choices:
+        check = PlainValidator(one_of(f"a {one.key.replace('_', ' ')}", one.options) if one.options else text)
+        examples = [f'{one.key} = "{one.example}"']
+        needed, optional = Field(examples=examples), Field(default=None, examples=examples)
+        keys[one.key] = (Annotated[str, check], needed) if one.needed else (Annotated[str | None, check], optional)
+    return keys
 
 
 def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Shapes]:

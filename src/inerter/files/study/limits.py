@@ -19,7 +19,7 @@ from inerter.methods.method import asked_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.held import Held
 from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each
-from inerter.units import format_quantity, parse_quantity, shown
+from inerter.units import PURE, format_quantity, parse_quantity, shown
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 _STIFFNESS = "static-stiffness"
 _SENSES: dict[str, Callable[[Asked, float], Limit]] = {"at_most": at_most, "at_least": at_least, "equal": equal}
 _PLACE = ("study", "subject_to")
-_PURE = ("", "1")  # units of what is a mere number
 
 
 @dataclass(frozen=True)
@@ -48,11 +47,11 @@ class StudyLimit:
     @property
     def label(self) -> str:
         """The limit in words."""
-        return f"{self.words} {format_quantity(self.value, self.unit, digits=12).strip()}"
+        return f"{self.words} {format_quantity(self.value, self.unit, digits=12)}"
 
     def entry(self) -> str | float:
         """How a file says its value."""
-        return self.value if self.unit in _PURE else f"{self.value!r} {self.unit}"
+        return self.value if self.unit == PURE else f"{self.value!r} {self.unit}"
 
 
 def _limit_text(value: Any) -> str | float:
@@ -105,8 +104,8 @@ def limits_of(study: Study, entries: Mapping[str, LimitShape]) -> tuple[tuple[St
 
 
 def _value(text: str | float, unit: str) -> float:
-    pure = isinstance(text, float) and unit in _PURE
-    value = float(text) if pure else parse_quantity(text, unit or "1")  # type: ignore[arg-type]  # refused there
+    pure = isinstance(text, float) and unit == PURE
+    value = float(text) if pure else parse_quantity(text, unit)  # type: ignore[arg-type]  # refused there
     if value <= 0.0:
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}".strip())
     return value

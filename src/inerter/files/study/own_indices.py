@@ -13,9 +13,9 @@ from inerter.fields import fields_of
 from inerter.files.common.entries import layout_name, one_of
 from inerter.files.common.layouts import in_si
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.common.shape import ANY, Shape, Shapes, if_given, one_of_shapes
+from inerter.files.common.shape import ANY, Shape, Shapes, if_given, of_choices, one_of_shapes
 from inerter.indices.names import index_names, index_words
-from inerter.indices.registry import INDICES
+from inerter.indices.registry import INDICES, index_choices
 from inerter.units import shown
 
 _KIND = "kind"
@@ -27,11 +27,13 @@ class OwnIndex:
     """An index by its symbol, and those of its settings that the file gives it, in SI units."""
 
     symbol: str
-    settings: dict[str, float]
+    settings: dict[str, Any]  # texts among them
 
     def entry(self) -> dict[str, str]:
         """How a file says it."""
-        return {_KIND: index_words()[self.symbol], **in_si(fields_of(INDICES[self.symbol]), self.settings)}
+        texts = {one.key: self.settings[one.key] for one in index_choices(self.symbol) if one.key in self.settings}
+        numbers = in_si(fields_of(INDICES[self.symbol]), self.settings)
+        return {_KIND: index_words()[self.symbol], **texts, **numbers}
 
 
 def _kind(value: Any) -> str:
@@ -74,7 +76,7 @@ def index_shapes() -> tuple[Any, Shapes]:
     """The section [indices], and its shapes by place."""
     shapes: dict[str, type[Shape]] = {}
     for name, symbol in index_names().items():
-        keys = if_given(fields_of(INDICES[symbol]))
+        keys = {**if_given(fields_of(INDICES[symbol])), **of_choices(index_choices(symbol))}
         if _KIND in keys:
             raise RowError(f"{symbol} has a setting {_KIND!r}, a key that [indices.NAME] has already. Choose another.")
         shapes[f"<{name}>"] = create_model(f"Index {name}", __base__=Shape, **{**keys, _KIND: (Literal[name], ...)})
@@ -100,6 +102,11 @@ def own_index_problems(asked: Sequence[str], own: Mapping[str, OwnIndex], limite
                 ("indices", name), fault="nothing asks for it", expected=f"{shown(name)} in indices, or no section"
             )
     names = [name for name in asked if name not in own]
+    for name in dict.fromkeys([*names, *(name for name in limited if name in index_names())]):
+        for one in index_choices(index_names()[name]):
+            if one.needed:
+                section = f'a section [indices.NAME] with kind = "{name}" and {one.key} = "{one.example}"'
+                yield at(("study", "indices"), got=shown(name), fault=f"it needs its {one.key}", expected=section)
     for name in names:
         first = next(other for other in names if index_names()[other] == index_names()[name])
         if first != name:

@@ -109,7 +109,7 @@ class Study:
         index = self.index(name)
         return index.unit or index.question(self.design(next(iter(self.layouts))).mechanism()).unit
 
-    def settings_of(self, name: str) -> dict[str, float]:
+    def settings_of(self, name: str) -> dict[str, Any]:
         """The settings of that index by their keys: its own, else those of the study; others are among them."""
         own = self.own_indices.get(name)
         return {**self.settings, **own.settings} if own else self.settings

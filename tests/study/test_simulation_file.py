@@ -172,7 +172,11 @@ def test_frequencies_count_cycles_and_phases_radians(load):
 
 @pytest.mark.parametrize("model", VEHICLES)
 def test_the_inputs_of_a_model_are_those_of_its_mechanism(load, model):
-    mechanism = load({"quarter-car": CAR, "half-car": HALF, "full-car": FULL, "absorber": ABSORBER, "rig": RIG}[model]).design().mechanism()
+    mechanism = (
+        load({"quarter-car": CAR, "half-car": HALF, "full-car": FULL, "absorber": ABSORBER, "rig": RIG}[model])
+        .design()
+        .mechanism()
+    )
     angles = {coordinate.name for coordinate in mechanism.coordinates if coordinate.angle}
     units = {force.name: "N m" if angles & set(force.port) else "N" for force in mechanism.forces}
     assert units == dict(VEHICLES[model].forces)

@@ -61,7 +61,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         path=path,
         model=model,
         vehicle=vehicle,
-        road=None if shape.road is None else Road(**shape.road.model_dump()),
+        road=None if shape.road is None else Road(**shape.road.model_dump(exclude={"letter"})),
         elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
         indices=settings.indices,

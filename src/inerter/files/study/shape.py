@@ -39,6 +39,7 @@ from inerter.files.common.shape import (
     ElementEntry,
     ElementName,
     Range,
+    RoadTable,
     WithVehicle,
     layouts,
     of_quantities,
@@ -105,7 +106,7 @@ class AnyCar(Shape):
 
 
 ROAD_EXAMPLE = 'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'
-RoadShape = create_model("RoadShape", __base__=Shape, **of_quantities(ROAD))
+RoadShape = create_model("RoadShape", __base__=RoadTable, **of_quantities(ROAD))
 
 
 def _search(value: Any) -> str:

@@ -37,7 +37,7 @@ def problem(number):
     for other in others[: int(rng.integers(1, 3))]:
         here = it.evaluate_many(car, other, at, NORM)[0, 0]
         best = it.optimise(car, other, NORM).value
-        between = float(best ** rng.uniform(0.2, 0.9) * here**1.0) ** 0.5 if len(limits) else None
+        between = float(best ** rng.uniform(0.2, 0.9) * here**1.0) ** 0.5 if limits else None
         share = float(rng.uniform(0.3, 0.95))
         limits.append(it.at_most(other, between or float(np.exp((1 - share) * np.log(best) + share * np.log(here)))))
     if len(limits) == 2:  # the second is one that some design keeps with the first

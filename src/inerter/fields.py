@@ -16,7 +16,7 @@ _QUANTITY, _MOUNT = "inerter quantity", "inerter mount"
 
 @dataclasses.dataclass(frozen=True)
 class Field:
-    """A positive number of `unit`."""
+    """A positive number of `unit`; one with a `default` may be left out, and may be zero if that is."""
 
     name: str
     unit: str  # SI
@@ -24,6 +24,7 @@ class Field:
     example: str = ""  # of a value with its unit
     key: str = ""  # in files, if that is not the name
     words: str = ""  # to go before "of ...", if that is not the name
+    default: float | None = None  # in `unit`
 
     @property
     def in_words(self) -> str:
@@ -41,13 +42,13 @@ def quantity(unit: str, sentence: str, example: str, *, key: str = "", words: st
     ... class Wheel:
     ...     mass: float = dataclasses.field(metadata=quantity("kg", "With its tyre.", "25 kg"))
     >>> fields_of(Wheel)
-    (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words=''),)
+    (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words='', default=None),)
     """
     return {_QUANTITY: Field("", unit, sentence, example, key, words)}
 
 
 def mount(sentence: str) -> Mapping[str, Any]:
-    """The metadata of a dataclass field that is a network; files give it in their layouts."""
+    """The metadata of a dataclass field that is a network; files give it in their layouts, unless it may be None."""
     return {_MOUNT: sentence}
 
 
@@ -58,12 +59,22 @@ def fields_of(kind: type) -> tuple[Field, ...]:
 
 def mounts_of(kind: type) -> tuple[str, ...]:
     """The networks of a dataclass, in their order."""
-    return _stated(kind)[1]
+    return tuple(_stated(kind)[1])
+
+
+def needed_mounts_of(kind: type) -> tuple[str, ...]:
+    """Those networks of a dataclass that cannot be left out, in their order."""
+    return tuple(name for name, needed in _stated(kind)[1].items() if needed)
 
 
 @cache
-def _stated(kind: Any) -> tuple[tuple[Field, ...], tuple[str, ...]]:
+def _stated(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
     every = dataclasses.fields(kind)
-    stated = [(f.name, f.metadata[_QUANTITY]) for f in every if _QUANTITY in f.metadata]
-    quantities = tuple(dataclasses.replace(field, name=name, key=field.key or name) for name, field in stated)
-    return quantities, tuple(f.name for f in every if _MOUNT in f.metadata)
+    quantities = tuple(_quantity_of(field) for field in every if _QUANTITY in field.metadata)
+    return quantities, {f.name: f.default is dataclasses.MISSING for f in every if _MOUNT in f.metadata}
+
+
+def _quantity_of(field: dataclasses.Field[Any]) -> Field:
+    stated: Field = field.metadata[_QUANTITY]
+    default = field.default if isinstance(field.default, float) else None
+    return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, default=default)

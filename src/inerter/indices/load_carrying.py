@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
+from inerter.indices.excitation import OneInput
 from inerter.indices.question import Combination, Question
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
@@ -45,10 +46,9 @@ class LoadCarrying:
                 "Set measures.load_input and measures.load_output."
             )
         return Question(
-            inputs=(measures.load_input,),
             outputs=(Weighted(measures.load_output),),
             combination=Combination.PEAK_GAIN,
-            road=None,
+            excitation=OneInput(measures.load_input),
             unit=self.unit,
             amplitude=self.amplitude,
         )

@@ -1,4 +1,4 @@
-"""What an index is, and the question that it puts to a mechanism: excitation, outputs, filters, how they combine.
+"""What an index is, and the question that it puts to a mechanism: outputs, filters, how they combine, excitation.
 
 A method reads a `Question` and never asks which index it came from.
 """
@@ -10,7 +10,9 @@ from enum import Enum, auto
 from typing import Protocol, cast
 
 from inerter.errors import PerformanceIndexError
+from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
+from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter, as_filter
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism, Weighted
@@ -31,19 +33,19 @@ class Question:
 
     A filter is a `Filter` or a `LinearSystem` with one input and one output.
 
-    Raises `PerformanceIndexError` if filters are not as many as outputs, or if an output is named twice;
-    `LinearSystemError` for what is no filter.
+    Raises `PerformanceIndexError` if filters are not as many as outputs, if an output is named twice, or for what is no
+    excitation; `LinearSystemError` for what is no filter.
     """
 
-    inputs: tuple[str, ...]
     outputs: tuple[Weighted, ...]
     combination: Combination
-    road: Road | None  # whose velocity drives all inputs, each with its delay; None: a unit force
+    excitation: Road | Excitation  # kept as an excitation
     unit: str
     filter: Given | tuple[Given, ...] = None  # of each output, or one of all
-    amplitude: float | None = None  # of the force [N], for methods that see nonlinear elements
+    amplitude: float | None = None  # of a sinusoidal input, for methods that see nonlinear elements
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "excitation", as_excitation(self.excitation, "An index"))
         several = self.filter if isinstance(self.filter, tuple) else (self.filter,) * len(self.outputs)
         if len(several) != len(self.outputs):
             raise PerformanceIndexError(
@@ -59,6 +61,15 @@ class Question:
     def filters(self) -> tuple[Filter | None, ...]:
         """Of each output."""
         return cast(tuple[Filter | None, ...], self.filter)
+
+    @property
+    def drive(self) -> Excitation:
+        """The excitation."""
+        return cast(Excitation, self.excitation)
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """How the sources reach the inputs of the mechanism that is driven, in the order in which they do."""
+        return tuple(sorted(self.drive.arrivals(mechanism), key=lambda arrival: arrival.delay))
 
 
 class Index(Protocol):
@@ -118,10 +129,9 @@ def on_road(
     if not outputs:
         raise PerformanceIndexError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
     return Question(
-        inputs=tuple(road.name for road in mechanism.roads),
         outputs=outputs,
         combination=Combination.SUM_OF_RMS,
-        road=index.road,
+        excitation=index.road,
         unit=index.unit,
         filter=filter,
     )

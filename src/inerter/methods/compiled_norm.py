@@ -65,7 +65,7 @@ class CompiledQuestion:
         """
         order = self.problem.pade_order
         none = np.zeros(0, dtype=complex)
-        gaps = np.diff(self.problem.delays)
+        gaps = np.ascontiguousarray(np.diff(self.problem.delays))
         if order is None:
             return gaps, (none, none, 0.0), self._drifts
         approximant = pade(order)
@@ -77,8 +77,14 @@ class CompiledQuestion:
         d = self.problem.descriptor
         moves = np.any(d.X_eta, axis=1) | np.any(d.X_x, axis=1)
         drifts = np.flatnonzero(~moves)
-        walks = drift_covariance(d.X_u[drifts], self.problem.delays, ("road",) * len(d.inputs))
+        walks = drift_covariance(d.X_u[drifts], self.problem.delays, self.problem.sources)
         return (drifts, walks) if walks is not None else (drifts[:0], np.zeros((0, 0)))
+
+    @cached_property
+    def apart(self) -> tuple[CompiledQuestion, ...]:
+        """One for each source, where there are several: their squares add up."""
+        sources = tuple(dict.fromkeys(self.problem.sources))
+        return tuple(CompiledQuestion(self.problem.of_source(s)) for s in sources) if len(sources) > 1 else ()
 
     @property
     def is_peak(self) -> bool:
@@ -88,11 +94,20 @@ class CompiledQuestion:
     @cached_property
     def serves(self) -> NDArray[np.bool_]:
         """Which outputs compiled code may value: those that are finite at a design beside the middle of the bounds."""
-        middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._free.items()}
-        special = np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1))
         if self.is_peak:
-            return np.array([self._exact(special).status.ok])
-        return np.asarray(~np.isinf(self._norms(special)))
+            return np.array([self._exact(self._special).status.ok])
+        return np.asarray(~np.isinf(self._norms(self._special)))
+
+    @cached_property
+    def seen(self) -> NDArray[np.bool_]:
+        """Which outputs the source reaches, as those of one half of a car do not see what the two sides share."""
+        return np.asarray(self._norms(self._special) > 0.0)
+
+    @cached_property
+    def _special(self) -> Array:
+        """A design beside the middle of the bounds."""
+        middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._free.items()}
+        return np.asarray(np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1)))
 
     @property
     def _free(self) -> dict[str, Any]:
@@ -149,13 +164,37 @@ class CompiledQuestion:
 
     def _compiled_norms(self, points: Array) -> Array:
         result = np.full((points.shape[0], self.serves.size), np.inf)
-        if np.all(self.serves):
-            norms, _, good = h2_kernels.norms(points, *self.arguments, np.empty(0))
-            norms[~(good & self._steady(points, norms))] = np.nan
-            return np.asarray(norms)
-        if np.any(self.serves):
-            result[:, self.serves] = CompiledQuestion(self.problem.part(self.serves))._compiled_norms(points)
-        return result
+        if not np.all(self.serves):
+            if np.any(self.serves):
+                result[:, self.serves] = CompiledQuestion(self.problem.part(self.serves))._compiled_norms(points)
+            return result
+        norms, _, good = self._with_gradients(points, np.empty(0))
+        norms[~(good & self._steady(points, norms))] = np.nan
+        return norms
+
+    def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Norms, gradients of their sum with `weights`, none without, and whether all went well, by compiled code.
+
+        Of several sources, squares are added up; what does not see one gets nothing of it.
+        """
+        if not self.apart:
+            norms, gradients, good = h2_kernels.norms(points, *self.arguments, weights)
+            return np.asarray(norms), np.asarray(gradients), np.asarray(good)
+        squares, good = np.zeros((points.shape[0], self.serves.size)), np.ones(points.shape[0], dtype=bool)
+        parts = [(one.seen, CompiledQuestion(one.problem.part(one.seen))) for one in self.apart if np.any(one.seen)]
+        found = []
+        for seen, one in parts:
+            norms, _, fine = one._with_gradients(points, np.empty(0))
+            squares[:, seen] += norms**2
+            found.append(norms)
+            good &= fine
+        total = np.sqrt(squares)
+        gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
+        for row in range(gradients.shape[0]):
+            for (seen, one), norms in zip(parts, found, strict=True):
+                shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
+                gradients[row] += one._with_gradients(points[row : row + 1], shares)[1][0]
+        return total, gradients, good
 
     def _steady(self, points: Array, norms: Array) -> NDArray[np.bool_]:
         """Whether norms stay as they are where the points are moved by some roundings.
@@ -163,11 +202,11 @@ class CompiledQuestion:
         That is asked of filters beyond first order: under light damping the states of a filter cancel in its output,
         and the error bound of compiled code may then be exceeded a little.
         """
-        if all(one is None or one.order < 2 for one in self.problem.question.filters):
+        if self.problem.highest_filter < 2:
             return np.ones(points.shape[0], dtype=bool)
         if not points.shape[1]:
             return np.zeros(points.shape[0], dtype=bool)
-        moved = [h2_kernels.norms(points * (1.0 + by), *self.arguments, np.empty(0))[0] for by in _MOVED]
+        moved = [self._with_gradients(points * (1.0 + by), np.empty(0))[0] for by in _MOVED]
         with np.errstate(invalid="ignore"):
             return np.asarray(np.all(np.abs(np.array(moved) - norms) <= _STEADY * norms, axis=(0, 2)))
 
@@ -180,7 +219,7 @@ class CompiledQuestion:
         weights = self.problem.weights
         if not np.all(self.serves):
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradients, good = h2_kernels.norms(point[None], *self.arguments, weights)
+        norms, gradients, good = self._with_gradients(point[None], weights)
         found = value = float(norms[0] @ weights)
         if not (good[0] and self._steady(point[None], norms)[0]):
             value = self._exact_index(point)
@@ -201,7 +240,7 @@ class CompiledQuestion:
         """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        ahead, behind = h2_kernels.norms(ends, *self.arguments, np.empty(0))[0] @ self.problem.weights
+        ahead, behind = self._with_gradients(ends, np.empty(0))[0] @ self.problem.weights
         slope = (ahead - behind) / (2.0 * _ASTRIDE)
         return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
 
@@ -245,12 +284,12 @@ def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tup
 def evaluate_problems(
     mechanism: Mechanism, questions: Sequence[Question], conventions: Conventions, points: Mapping[str, Array]
 ) -> Array:
-    """Indices (designs, indices), nan where they are not ok; questions that share road and filters share one solve."""
+    """Indices (designs, indices), nan where they are not ok; those with one excitation and filter share one solve."""
     problems = [linear_problem(mechanism, question, conventions) for question in questions]
     groups: dict[Any, list[int]] = {}
     for i, (question, problem) in enumerate(zip(questions, problems, strict=True)):
         alone = question.combination is Combination.PEAK_GAIN
-        key = ("peak", i) if alone else (question.road, question.inputs, _shared_filter(problem.question))
+        key = ("peak", i) if alone else (question.excitation, _shared_filter(problem.question))
         groups.setdefault(key, []).append(i)
     result: Array = np.empty((next(iter(points.values())).size if points else 1, len(questions)))
     for members in groups.values():

@@ -141,9 +141,9 @@ class ExpectedValue:
 
         None for a peak gain, and where there is a gap or friction alone holds a part.
         """
-        system = piecewise(vehicle)
-        conventions = CONVENTIONS[self.conventions]
-        question = under(conventions, system.mechanism, index.question(system.mechanism))
+        mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
+        question = under(conventions, mechanism, index.question(mechanism))
+        system = piecewise(question.drive.driven(mechanism))
         if question.combination is Combination.PEAK_GAIN:
             return None
         if not is_nonlinear(system):
@@ -164,8 +164,8 @@ class ExpectedValue:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
         question = under(conventions, mechanism, index.question(mechanism))
         linear = _linear(vehicle, question, conventions)
-        system = piecewise(vehicle)
-        if conventions.hold is None and not is_nonlinear(system):
+        system = piecewise(question.drive.driven(mechanism))
+        if not _is_held(system, question, conventions) and not is_nonlinear(system):
             assert linear is not None
             return replace(linear.estimate(close(linear.descriptor, {})), standard_error=0.0)
         if question.combination is Combination.PEAK_GAIN:
@@ -189,7 +189,8 @@ class ExpectedValue:
                 "such as LoadCarrying(amplitude=1000.0)."
             )
         (output,) = question.outputs
-        forced = Forced(system, question.inputs[0], output.output, question.amplitude, *question.filters)
+        (arrival,) = question.arrivals(system.mechanism)
+        forced = Forced(system, arrival, output.output, question.amplitude, *question.filters)
         poles, known = np.zeros(0, dtype=complex), np.zeros(0)
         if linear is not None:
             closed = close(linear.descriptor, {})
@@ -220,6 +221,13 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
 def is_nonlinear(system: PiecewiseSystem) -> bool:
     """Whether a friction or gap that is not zero is there."""
     return bool(np.any(system.mechanics.limit > 0.0))
+
+
+def _is_held(system: PiecewiseSystem, question: Question, conventions: Conventions) -> bool:
+    """Whether the conventions make the answer another one than the norm, for linear designs too."""
+    if conventions.hold is None:
+        return False
+    return not question.drive.is_random or drive(system, question, conventions).hold is not None
 
 
 def _linear(vehicle: Vehicle, question: Question, conventions: Conventions) -> LinearProblem | None:

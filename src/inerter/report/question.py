@@ -15,7 +15,7 @@ from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES, amplitude_of
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
-from inerter.networks.elements import Element, Free
+from inerter.networks.elements import Element, Free, Tied
 from inerter.units import format_quantity
 from inerter.vehicle.registry import VEHICLES
 
@@ -111,6 +111,8 @@ def _value(study: Study, name: str, element: Element) -> str:
         return f"swept, {len(study.sweep.values)} values from {ends[0]} to {ends[1]}"
     if isinstance(element.value, Free):
         return f"free, {_given(element.value.lower, element.unit)} to {_given(element.value.upper, element.unit)}"
+    if isinstance(element.value, Tied):
+        return f"tied, {element.value}"
     return _given(element.value, element.unit)
 
 

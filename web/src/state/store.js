@@ -15,7 +15,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {{history: DocumentHistory, answers: {[panel: string]: Answer}, work: {[id: string]: Job}, quantities: {[key: string]: {value?: number, sentence?: string}}, records: any[], view: View, about: any, connection: Connection, message: string | null}} State */
 
 /** @typedef {{type: "changed", change: Change, gesture: string | null}
- *  | {type: "rested"} | {type: "undone"} | {type: "redone"}
+ *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
  *  | {type: "asked", panel: string, question: string}
  *  | {type: "answered", panel: string, question: string, value: any}
  *  | {type: "refused", panel: string, question: string, sentence: string}
@@ -49,6 +49,7 @@ const NOTHING = { key: "", value: null, sentence: null, waiting: false, of: null
 /** @type {{[type: string]: (state: State, action: any) => State}} */
 const STEPS = {
   changed: (state, { change, gesture }) => ({ ...state, history: changed(state.history, after(state.history.present, change), gesture) }),
+  began: (state) => ({ ...state, history: beginning(state.history.present) }),
   rested: (state) => ({ ...state, history: rested(state.history) }),
   undone: (state) => ({ ...state, history: undone(state.history) }),
   redone: (state) => ({ ...state, history: redone(state.history) }),

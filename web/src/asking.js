@@ -21,15 +21,15 @@ export function keepAsking(store, api, client) {
   function look() {
     const state = store.get();
     if (state.connection !== "ready" && state.connection !== "compiling") return;
-    for (const { panel, path, body } of questions(state)) {
+    for (const { panel, path, body, learnt } of questions(state)) {
       const question = JSON.stringify(body);
       if (panel in underWay || settled[panel] === question) continue;
-      void ask(panel, path, body, question);
+      void ask({ panel, path, body, learnt }, question);
     }
   }
 
-  /** @param {string} panel @param {string} path @param {any} body @param {string} question */
-  async function ask(panel, path, body, question) {
+  /** @param {import("./questions.js").Question} asked @param {string} question */
+  async function ask({ panel, path, body, learnt }, question) {
     underWay[panel] = question;
     store.dispatch({ type: "asked", panel, question });
     sequence += 1;
@@ -38,6 +38,7 @@ export function keepAsking(store, api, client) {
       const value = await api.post(path, sent);
       settled[panel] = question;
       store.dispatch({ type: "answered", panel, question, value });
+      if (learnt) store.dispatch(learnt(value));
     } catch (error) {
       if (error instanceof Lost) lose();
       else {

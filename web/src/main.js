@@ -9,7 +9,7 @@ import { Page } from "./page.js";
 import { html } from "./parts/html.js";
 import { fromAddress, keepRemembering, remembered, unpacked } from "./remembering.js";
 import { createStore } from "./state/store.js";
-import { findWork } from "./working.js";
+import { beginAtBest, findWork } from "./working.js";
 
 const TOKEN = "inerter.token";
 const BEGUN = "inerter.begun";
@@ -34,10 +34,12 @@ function enter(text) {
   void connect();
 }
 
-/** The document to begin with: that of the link, that of before a reload, that of the command line. */
+/** The document to begin with: that of the link, that of before a reload, that of the command line.
+ * @returns {Promise<import("./state/document.js").Document | {study: any} | null>} */
 async function firstDocument() {
   const linked = address.state === null ? null : await unpacked(address.state);
   if (linked) return linked;
+  if (address.state !== null) store.dispatch({ type: "said", message: "The link holds no state that this page can read." });
   const { study } = await api.get("start");
   const begun = JSON.stringify(study);
   const before = remembered();
@@ -46,15 +48,14 @@ async function firstDocument() {
   return study && Object.keys(study).length > 0 ? { study } : before;
 }
 
+let begun = false;
+
 async function connect() {
   try {
     const about = await api.get("about");
     store.dispatch({ type: "told", about });
-    const document = await firstDocument();
-    if (address.state !== null && document === null) store.dispatch({ type: "said", message: "This link holds no state that the page can read." });
-    if (document && store.get().history.past.length === 0) store.dispatch({ type: "changed", change: /** @type {any} */ ("layout" in document ? { type: "restored", document } : { type: "opened", study: document.study }), gesture: null });
-    store.dispatch({ type: "began" });
     if (!about.kernels.ready) await compiled();
+    if (!begun) await begin();
     store.dispatch({ type: "connected", connection: "ready" });
     await findWork(store, api);
   } catch (error) {
@@ -66,6 +67,18 @@ async function connect() {
       setTimeout(connect, AGAIN);
     } else throw error;
   }
+}
+
+/** Brings the first document; undoing ends there. */
+async function begin() {
+  const document = await firstDocument();
+  if (document && "layout" in document) store.change({ type: "restored", document });
+  else if (document) {
+    store.change({ type: "opened", study: document.study });
+    await beginAtBest(store, api);
+  }
+  store.dispatch({ type: "began" });
+  begun = true;
 }
 
 /** Waits until the kernels are compiled, and tells which one is under way. */

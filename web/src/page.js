@@ -11,6 +11,7 @@ import { ValuesPanel } from "./panels/values.js";
 import { WorkPanel } from "./panels/work.js";
 import { html, useEffect, useState } from "./parts/html.js";
 import { open } from "./remembering.js";
+import { openStudy } from "./working.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./api.js").Api} Api */
@@ -67,10 +68,9 @@ function inFrames(told) {
 
 /** @param {Store} store @param {Api} api */
 async function start(store, api) {
-  const names = await api.get("examples");
-  const first = names.find((/** @type {any} */ { name }) => /quarter-car/.test(name)) ?? names[0];
-  const { study } = await api.get(`examples/${encodeURIComponent(first.name)}`);
-  store.change({ type: "opened", study });
+  const { examples } = await api.get("examples");
+  const first = examples.find((/** @type {any} */ { name }) => name === "quarter-car") ?? examples[0];
+  if (first) await openStudy(store, api, first.study);
 }
 
 /** @param {{store: Store}} props */

@@ -5,7 +5,7 @@ import { takenApart } from "./state/scale.js";
 
 /** @typedef {import("./state/store.js").State} State */
 /** @typedef {import("./state/document.js").Document} Document */
-/** @typedef {{panel: string, path: string, body: any}} Question */
+/** @typedef {{panel: string, path: string, body: any, learnt?: (value: any) => import("./state/store.js").Action}} Question  `learnt` is what else an answer tells */
 
 /** The design that is edited. @param {Document} document */
 export const designOf = ({ layout, values }) => ({ layout, values: values[layout] ?? {}, name: layout });
@@ -65,8 +65,12 @@ function comparisons({ view }, document) {
 
 /** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Question[]} */
 function unitsOf(state, document) {
-  const items = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
-  return items.length === 0 ? [] : [{ panel: "units", path: "quantity", body: { items: items.map(({ text, unit }) => (unit === null ? { text } : { text, unit })) } }];
+  const asked = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
+  if (asked.length === 0) return [];
+  const items = asked.map(({ text, unit }) => (unit === null ? { text } : { text, unit }));
+  /** @param {{items: any[]}} value @returns {import("./state/store.js").Action} */
+  const learnt = (value) => ({ type: "measured", quantities: Object.fromEntries(asked.map(({ key }, i) => [key, value.items[i]])) });
+  return [{ panel: "units", path: "quantities", body: { items }, learnt }];
 }
 
 /** The key by which the size of a unit is kept. @param {string} written @param {string | null} unit */
@@ -100,7 +104,7 @@ export function numbersOf(about, { study }) {
   const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
   const rows = [
     ...(model?.fields ?? []).map((/** @type {any} */ field) => ({ ...field, place: ["vehicle", field.key] })),
-    ...(about?.roads ?? []).map((/** @type {any} */ field) => ({ ...field, place: ["road", field.key] })),
+    ...(about?.road ?? []).map((/** @type {any} */ field) => ({ ...field, place: ["road", field.key] })),
   ];
   return rows.filter(({ place, unit }) => unit && valueAtPlace(study, place) !== undefined);
 }

@@ -1,6 +1,7 @@
 // What outlives a moment: the link that holds the state, the tab's own memory, files that are opened and downloaded.
 
 import { empty } from "./state/document.js";
+import { openStudy as beginWith } from "./working.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./state/document.js").Document} Document */
@@ -83,7 +84,7 @@ export async function open(store, api, files) {
   for (const file of await studiesFirst(files)) {
     try {
       if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
-      else if (/\.toml$/i.test(file.name)) await openStudy(store, api, file);
+      else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
       else say(store, `${file.name} is no file that this page knows: it takes study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat).`);
     } catch (error) {
       say(store, `${file.name}: ${/** @type {Error} */ (error).message}`);
@@ -105,7 +106,7 @@ const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test
 const say = (store, message) => store.dispatch({ type: "said", message });
 
 /** @param {Store} store @param {Api} api @param {File} file */
-async function openStudy(store, api, file) {
+async function openStudyFile(store, api, file) {
   const { study, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
   const other = problems?.[0]?.sentence;
   const isStudy = study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
@@ -113,7 +114,7 @@ async function openStudy(store, api, file) {
     say(store, `${file.name} is no study file, and nothing was changed. ${other ?? ""}`.trim());
     return;
   }
-  store.change({ type: "opened", study });
+  await beginWith(store, api, study);
   say(store, problems.length ? `${file.name} is open; ${problems.length === 1 ? "one entry needs" : `${problems.length} entries need`} another value.` : `${file.name} is open.`);
 }
 

@@ -2,22 +2,23 @@
 
 import { Lost } from "./api.js";
 import { kindOf } from "./kinds.js";
+import { isRange } from "./state/document.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./api.js").Api} Api */
 
-/** The best values of a layout, taken into the document; returns what to tell. @param {Store} store @param {Api} api @param {{study: any, layout: string, index: string, method: string}} asked */
+/** The best values of a layout, taken into the document; returns what to tell. @param {Store} store @param {Api} api @param {{study: any, layouts: string[], index: string, method: string}} asked */
 export async function optimise(store, api, asked) {
-  const { study, layout, index, method } = asked;
-  const body = { study, layouts: [layout], indices: [index], method, methods: [method] };
+  const { study, layouts, index, method } = asked;
+  const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
     if (!sees(store.get(), method, "neither")) {
-      await begin(store, api, { kind: "optimise", title: `${layout}: best ${index}`, ...body });
+      await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")}: best ${index}`, ...body });
       store.dispatch({ type: "viewed", view: { tab: "work" } });
       return "Under way: see Work.";
     }
     const { designs } = await api.post("panel/optimise", { ...body, client: "page.optimise", sequence: Date.now() });
-    return takeOptimum(store, designs[0]);
+    return takeOptima(store, designs);
   } catch (error) {
     return /** @type {Error} */ (error).message;
   }
@@ -26,15 +27,41 @@ export async function optimise(store, api, asked) {
 /** @param {import("./state/store.js").State} state @param {string} method @param {string} what */
 const sees = (state, method, what) => state.about.methods.find((/** @type {any} */ { name }) => name === method)?.sees === what;
 
-/** The values of an optimum become the present values of its layout. @param {Store} store @param {any} best */
-export function takeOptimum(store, best) {
-  const values = best.texts ?? textsOf(store.get(), best.parameters ?? {});
-  if (best.status && best.status !== "ok" && Object.keys(values).length === 0) return best.message;
-  if (Object.keys(values).length === 0) return "No value is free: nothing to choose. Make one free by its button.";
-  store.change({ type: "valued", layout: best.layout, values });
-  const bounds = best.active_bounds ?? [];
-  const at = bounds.length ? `, at a bound: ${bounds.map((/** @type {any} */ each) => each.name ?? each).join(", ")}` : "";
-  return `Best ${best.index} of ${best.layout} taken over${at}.`;
+/** The values of optima become the present values of their layouts, in one step. @param {Store} store @param {any[]} designs @param {string | null} gesture */
+export function takeOptima(store, designs, gesture = null) {
+  const found = designs.map((best) => ({ best, values: best.texts ?? textsOf(store.get(), best.parameters ?? {}) }));
+  const taken = found.filter(({ values }) => Object.keys(values).length > 0);
+  if (taken.length === 0) return designs.find(({ message }) => message)?.message ?? "No value is free: nothing to choose. Make one free by its button.";
+  store.change({ type: "valuedAll", values: Object.fromEntries(taken.map(({ best, values }) => [best.layout, values])) }, gesture);
+  return `The best ${taken[0].best.index} of ${taken.map(({ best }) => best.layout + atBounds(best)).join(", ")}.`;
+}
+
+/** @param {any} best */
+function atBounds({ active_bounds: bounds }) {
+  const names = Array.isArray(bounds) ? bounds : Object.keys(bounds ?? {});
+  return names.length ? ` (at a bound: ${names.map((/** @type {any} */ each) => each.name ?? each).join(", ")})` : "";
+}
+
+/** Opens a study, with free values at their best for its first index by norms: a fair beginning. @param {Store} store @param {Api} api @param {any} study */
+export async function openStudy(store, api, study) {
+  const gesture = `open ${Date.now()}`;
+  store.change({ type: "opened", study }, gesture);
+  await beginAtBest(store, api, gesture);
+}
+
+/** @param {Store} store @param {Api} api @param {string | null} gesture */
+export async function beginAtBest(store, api, gesture = null) {
+  const { study } = store.get().history.present;
+  const index = study.study?.indices?.[0];
+  const free = Object.values(study.elements ?? {}).some(isRange);
+  const method = store.get().about.methods.find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
+  if (!index || !free || !method || store.get().connection === "compiling") return;
+  try {
+    const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
+    if (store.get().history.present.study === study) takeOptima(store, designs, gesture);
+  } catch {
+    // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
+  }
 }
 
 /** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */

@@ -46,7 +46,7 @@ export function indicesOf(state) {
 /** @param {{value: any, layout: string, baseline: string, stale: boolean}} props */
 function Indices({ value, layout, baseline, stale }) {
   const design = value.designs?.find((/** @type {any} */ each) => each.layout === layout) ?? value.designs?.[0];
-  const other = value.baseline ?? value.designs?.find((/** @type {any} */ each) => each.layout === baseline);
+  const other = value.designs?.find((/** @type {any} */ each) => each.layout === baseline);
   if (!design) return null;
   const alone = layout === baseline;
   return html`<div class="scroll" tabindex="0" role="region" aria-label="Indices"><table class=${stale ? "stale" : ""} data-sequence=${value.sequence}>
@@ -54,8 +54,8 @@ function Indices({ value, layout, baseline, stale }) {
     <tbody>${design.results.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title}</span></th>
-        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)} <span class="unit">${result.unit}</span><${Notes} result=${result} /></td>
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span></th>
+        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}<${Notes} result=${result} /></td>
         ${!alone && html`<td class="number">${reference ? number(reference) : "–"}</td><td class=${`number ${better(result.improvement_percent)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}</td>`}
       </tr>`;
     })}</tbody>
@@ -104,13 +104,14 @@ function Optimise({ store, api, indices }) {
   if (!chosen) return null;
   return html`<form class="row optimise" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
+    const all = /** @type {SubmitEvent} */ (event).submitter?.getAttribute("value") === "all";
     setTold("Searching…");
-    setTold(await optimise(store, api, { study, layout, index: chosen, method }));
+    setTold(await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method }));
   }}>
     <label>Best values for <select name="index" value=${chosen} onChange=${(/** @type {Event} */ event) => setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
       ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
     </select></label>
-    <button class="main">Optimise</button>
+    <button class="main" value="one">Optimise</button> <button value="all">All layouts</button>
     <p class="quiet" role="status">${told}</p>
   </form>`;
 }

@@ -3,7 +3,7 @@
 import { designOf } from "../questions.js";
 import { html, useState } from "../parts/html.js";
 import { download, linkTo, open } from "../remembering.js";
-import { begin } from "../working.js";
+import { begin, openStudy } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../api.js").Api} Api */
@@ -52,10 +52,10 @@ export function Menu({ store, api }) {
   </div>`;
 }
 
-/** The study with the present layout and baseline alone, its values those of the page, each as it stands. @param {Store} store */
+/** What is asked for the study of the present layout alone, fixed at the values of the page. @param {Store} store */
 function fixedDesign(store) {
-  const { study, layout, values } = store.get().history.present;
-  return { study, values: values[layout] ?? {}, layout };
+  const document = store.get().history.present;
+  return { study: document.study, designs: [designOf(document)] };
 }
 
 /** @param {string | undefined} title */
@@ -63,10 +63,10 @@ const fileName = (title) => (title ?? "study").toLowerCase().replace(/[^a-z0-9]+
 
 /** @param {{store: Store, api: Api}} props */
 function Open({ store, api }) {
-  const [examples, setExamples] = useState(/** @type {{name: string, title: string}[]} */ ([]));
+  const [examples, setExamples] = useState(/** @type {{name: string, study: import("../state/document.js").Study}[]} */ ([]));
   const close = (/** @type {Event} */ event) => /** @type {HTMLElement} */ (event.currentTarget).closest("details")?.removeAttribute("open");
   return html`<details class="menu" onToggle=${async (/** @type {Event} */ event) => {
-    if (/** @type {HTMLDetailsElement} */ (event.currentTarget).open && examples.length === 0) setExamples(await api.get("examples").catch(() => []));
+    if (/** @type {HTMLDetailsElement} */ (event.currentTarget).open && examples.length === 0) setExamples((await api.get("examples").catch(() => ({ examples: [] }))).examples);
   }}><summary>Open</summary><div class="menu-body">
     <label class="file">A study file or record… <input type="file" multiple onChange=${(/** @type {Event} */ event) => {
       const input = /** @type {HTMLInputElement} */ (event.currentTarget);
@@ -74,11 +74,10 @@ function Open({ store, api }) {
       input.value = "";
       close(event);
     }} /></label>
-    ${examples.map(({ name, title }) => html`<button type="button" key=${name} onClick=${async (/** @type {Event} */ event) => {
+    ${examples.map(({ name, study }) => html`<button type="button" key=${name} onClick=${async (/** @type {Event} */ event) => {
       close(event);
-      const { study } = await api.get(`examples/${encodeURIComponent(name)}`);
-      store.change({ type: "opened", study });
-    }}>${title || name}</button>`)}
+      void openStudy(store, api, study);
+    }}>${study.title || name}</button>`)}
   </div></details>`;
 }
 

@@ -188,7 +188,7 @@ function drawStrut(pen, store, tree, x, top, bottom) {
   for (const line of plan.lines) trace(line, 0, 0, 1);
   for (const one of plan.placed) {
     const kind = kindOf(state, one.name);
-    for (const line of kind?.drawing ?? []) trace(line.x.map((/** @type {number} */ a, /** @type {number} */ i) => [a, line.y[i]]), one.x, one.y, -1);
+    for (const line of kind?.drawing ?? []) trace(line, one.x, one.y, -1);
   }
   pen.stroke();
 }

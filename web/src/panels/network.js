@@ -262,7 +262,7 @@ function Symbol({ one, state, chosen, editing, drag }) {
 }
 
 /** @param {{drawing: any[]}} kind */
-const symbolPath = (kind) => pathOf(kind.drawing.map((line) => line.x.map((/** @type {number} */ x, /** @type {number} */ i) => /** @type {[number, number]} */ ([x, line.y[i]]))), -1);
+const symbolPath = (kind) => pathOf(kind.drawing, -1);
 
 /** The value of an element as it is written. @param {State} state @param {string} name */
 function valueOf(state, name) {
@@ -382,7 +382,7 @@ function Text({ store, text }) {
       <input id="network-text" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off" aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
         onInput=${(/** @type {Event} */ event) => store.dispatch({ type: "changed", change: { type: "drawn", text: /** @type {HTMLInputElement} */ (event.currentTarget).value }, gesture: "text" })}
         onBlur=${() => store.dispatch({ type: "rested" })} />
-      ${wrong && html`<div class="marks" aria-hidden="true">${text.slice(0, wrong.at)}<u>${text.slice(wrong.at, wrong.at + Math.max(1, /^[A-Za-z0-9_]+/.exec(text.slice(wrong.at))?.[0].length ?? 1)) || " "}</u></div>`}
+      ${wrong && html`<div class="marks" aria-hidden="true">${text.slice(0, wrong.at[0])}<u>${text.slice(...wrong.at) || " "}</u></div>`}
     </div>
     ${wrong && html`<p id="network-problem" class="problem" role="alert">${wrong.sentence}</p>`}
     ${missing.map(

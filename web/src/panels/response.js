@@ -21,6 +21,7 @@ export function ResponsePanel({ store }) {
   return html`<div>
     ${sentence && html`<p class="problem" role="alert">${sentence}</p>`}
     <div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(String(each))}>${each}</button>`)}</div>
-    ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]" yLabel=${`${first.label ?? "gain"} [${first.unit ?? ""}]`} log=${true} logY=${true} title=${`Frequency response of ${index}`} theme=${state.view.theme} />`}
+    ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]" yLabel=${`gain [${first.unit ?? ""}]`} log=${true} logY=${true} title=${`Frequency response of ${index}`} theme=${state.view.theme} />
+      <p class="quiet">${first.title}: solid ${layout}, dashed the baseline.</p>`}
   </div>`;
 }

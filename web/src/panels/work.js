@@ -7,7 +7,7 @@ import { html, useState } from "../parts/html.js";
 import { numbersOf } from "../questions.js";
 import { isRange } from "../state/document.js";
 import { shown, takenApart, quantity } from "../state/scale.js";
-import { begin, stop, takeOptimum } from "../working.js";
+import { begin, stop, takeOptima } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../state/store.js").State} State */
@@ -78,7 +78,7 @@ function OptimumResult({ store, job }) {
   const { result } = job;
   return html`${result.designs.map(
     (/** @type {any} */ design) => html`<p key=${`${design.layout} ${design.index}`}>${Object.entries(design.texts).map(([name, text]) => `${name} = ${rounded(String(text))}`).join(", ")}
-      <button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptimum(store, design) })}>Take it into the editor</button></p>`,
+      <button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptima(store, [design]) })}>Take it into the editor</button></p>`,
   )}`;
 }
 
@@ -98,7 +98,7 @@ function RunResult({ store, api, job }) {
   return html`<div class="scroll" tabindex="0" role="region" aria-label="Results"><table>
     <thead><tr><th scope="col">layout</th><th scope="col">index</th><th scope="col">method</th><th scope="col">value</th><th scope="col">better by</th><th scope="col"></th></tr></thead>
     <tbody>${rows.slice(0, many).map((row, i) => html`<tr key=${i}><td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td><td class="number">${shown(row.value)} <span class="unit">${row.unit ?? ""}</span></td><td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
-      <td>${row.parameters && Object.keys(row.parameters).length > 0 && html`<button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptimum(store, row) })}>Take</button>`}</td></tr>`)}</tbody>
+      <td>${row.parameters && Object.keys(row.parameters).length > 0 && html`<button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptima(store, [row]) })}>Take</button>`}</td></tr>`)}</tbody>
   </table></div>
   ${rows.length > many && html`<p class="quiet">${rows.length} rows in all: they are in summary.csv.</p>`}
   <${Files} api=${api} job=${job} />`;

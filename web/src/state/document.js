@@ -17,6 +17,7 @@ import { freshName, names, parse, renamed } from "../network/algebra.js";
  *  | {type: "restored", document: Document}
  *  | {type: "placed", place: string[], value: unknown}
  *  | {type: "valued", layout: string, values: {[element: string]: string}}
+ *  | {type: "valuedAll", values: Values}
  *  | {type: "ranged", place: string, from: string, to: string}
  *  | {type: "freed", name: string, from: string, to: string}
  *  | {type: "fixed", name: string, text: string}
@@ -45,6 +46,7 @@ const CHANGES = {
     ...document,
     values: { ...document.values, [layout]: { ...document.values[layout], ...values } },
   }),
+  valuedAll: (document, { values }) => ({ ...document, values: { ...document.values, ...values } }),
   ranged: (document, { place, from, to }) => ({ ...document, ranges: { ...document.ranges, [place]: { from, to } } }),
   freed: (document, { name, from, to }) => {
     const entry = document.study.elements?.[name];

@@ -74,7 +74,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"Improvement over {baseline} by each method." + _uncertain(every, " Bars with caps: one standard error."),
             partial(_methods, every),
         )
-    if criteria(every):
+    if criteria(every) and bool(np.isfinite(every["front_value"]).any()):
         yield StudyFigure(
             "front",
             f"Trade-off between {' and '.join(criterion_title(every, name) for name in criteria(every))}: no design of "

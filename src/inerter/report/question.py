@@ -11,6 +11,7 @@ import xarray as xr
 
 from inerter.fields import fields_of
 from inerter.figures.labels import capital, index_title, indices
+from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
 from inerter.files.study.study import Study
@@ -19,7 +20,6 @@ from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
 from inerter.networks.elements import Free, Tied
 from inerter.units import format_quantity
-from inerter.vehicle.registry import VEHICLES
 
 _ALSO = {  # the same value in the unit in which it is usually told
     "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
@@ -39,8 +39,12 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    rows += [(capital(f.in_words), _told(study, f"vehicle.{f.key}")) for f in fields_of(VEHICLES[study.model])]
-    rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
+    swept = {sweep.words for sweep in study.sweeps}
+    told = [row for row in vehicle_words(study.model, study.vehicle) if row[0] not in swept]
+    rows += [(capital(name), unit if value is None else _given(value, unit)) for name, value, unit in told]
+    rows += [(capital(s.words), _told(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
+    if study.road is not None:
+        rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
     for name in study.indices:
         symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)

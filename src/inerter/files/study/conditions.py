@@ -36,11 +36,17 @@ class StudyCondition:
 def what_of(study: Study, place: Place) -> tuple[str, str] | None:
     """Whether a place is one of the vehicle or of the road, and what it is called there; None if of neither."""
     names = {
-        "vehicle": {f.key: ("vehicle", f.name) for f in fields_of(VEHICLES[study.model])},
+        "vehicle": _of_vehicle(study),
         "road": {f.key: ("road", f.name) for f in ROAD},
         "elements": {name: ("vehicle", name) for name in study.elements},
     }
     return names.get(place.section, {}).get(place.key)
+
+
+def _of_vehicle(study: Study) -> dict[str, tuple[str, str]]:
+    coordinates = {f"coordinates.{name}": ("vehicle", name) for name in study.vehicle.get("coordinates", {})}
+    fields = fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ()
+    return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates}
 
 
 def condition_of(study: Study, stated: StudyCondition) -> Condition:

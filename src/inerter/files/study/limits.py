@@ -11,8 +11,8 @@ from pydantic import Discriminator, Field, PlainValidator, Tag
 from inerter.errors import InerterError
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest, some
+from inerter.files.common.tables import Shape
 from inerter.indices.names import index_names
 from inerter.methods.asking import Asked
 from inerter.methods.method import asked_of

@@ -11,9 +11,10 @@ from pydantic import AfterValidator, ConfigDict, Field, PlainValidator, create_m
 from inerter.errors import RowError
 from inerter.fields import fields_of
 from inerter.files.common.entries import layout_name, one_of
-from inerter.files.common.layouts import in_si
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.common.shape import ANY, Shape, Shapes, if_given, of_choices, one_of_shapes
+from inerter.files.common.shape import ANY, if_given, of_choices, one_of_shapes
+from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.vehicles import in_si
 from inerter.indices.names import index_names, index_words
 from inerter.indices.registry import INDICES, index_choices
 from inerter.units import shown

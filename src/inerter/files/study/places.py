@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inerter.fields import Field, fields_of
 from inerter.files.common.shape import ROAD
+from inerter.files.common.vehicle_shapes import SEAT, Inertia
 from inerter.indices.registry import INDICES, index_settings
 from inerter.methods.registry import method_settings
 from inerter.networks.elements import Element, Free, Value
@@ -114,18 +115,39 @@ class _Section(NamedTuple):
 
 
 def _vehicle_numbers(study: Study) -> dict[str, Number]:
-    return {f.key: Number(f.unit, f.in_words, study.vehicle.get(f.key)) for f in fields_of(VEHICLES[study.model])}
+    values, found = study.vehicle, {}
+    for f in fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ():
+        found[f.key] = Number(f.unit, f.in_words, values.get(f.key), f.default == 0.0)
+    for name, value in values.get("coordinates", {}).items():
+        what, unit = ("inertia", "kg m^2") if isinstance(value, Inertia) else ("mass", "kg")
+        found[f"coordinates.{name}"] = Number(unit, f"{what} of {name}", value)
+    for name, road in values.get("roads", {}).items():
+        found[f"roads.{name}.distance"] = Number("m", f"distance of {name}", road["distance"], may_vanish=True)
+    if SEAT in values:
+        found[f"{SEAT}.mass"] = Number("kg", "mass on the seat", values[SEAT]["mass"])
+    return found
 
 
 def _put_vehicle(study: Study, key: str, number: float) -> Study:
-    return replace(study, vehicle={**study.vehicle, key: number})
+    return replace(study, vehicle=_put(study.vehicle, key.split("."), number))
+
+
+def _put(table: Mapping[str, Any], keys: list[str], number: float) -> dict[str, Any]:
+    """A table with a number in the place of another of the same sort."""
+    first, *others = keys
+    old = table.get(first)
+    new = _put(old, others, number) if others and isinstance(old, dict) else type(old or number)(number)
+    return {**table, first: new}
 
 
 def _road_numbers(study: Study) -> dict[str, Number]:
+    if study.road is None:
+        return {}
     return {f.key: Number(f.unit, f.in_words, getattr(study.road, f.name)) for f in ROAD}
 
 
 def _put_road(study: Study, key: str, number: float) -> Study:
+    assert study.road is not None
     names = {f.key: f.name for f in ROAD}
     return replace(study, road=replace(study.road, **{names[key]: number}))
 

@@ -9,11 +9,12 @@ from typing import Any
 
 from inerter.errors import NetworkError, StudyError
 from inerter.files.common.kind_entry import entry_of
-from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
+from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_toml
+from inerter.files.common.vehicles import in_si, vehicle_entry
 from inerter.files.study.conditions import OVER, StudyCondition, condition_of
 from inerter.files.study.limits import StudyLimit
 from inerter.files.study.own_indices import OwnIndex
@@ -28,7 +29,7 @@ from inerter.methods.registry import DEFAULT, make_method, method_settings
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
 from inerter.signals.road import Road
-from inerter.vehicle.vehicle import VehicleModel
+from inerter.vehicle.vehicle import Vehicle
 
 POINTS = 25  # of a front
 
@@ -55,8 +56,8 @@ class Study:
     title: str
     path: Path = field(compare=False)
     model: str
-    vehicle: dict[str, float]
-    road: Road
+    vehicle: dict[str, Any]
+    road: Road | None  # of indices that are asked on one
     elements: dict[str, Element]  # a free element's value is named after its key, so that it is one variable
     layouts: dict[str, StrutLayout]
     indices: tuple[str, ...]
@@ -82,6 +83,10 @@ class Study:
     def methods(self) -> tuple[str, ...]:
         """All methods that it uses."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
+
+    def knows(self, name: str) -> bool:
+        """Whether there is an index that the study can call so."""
+        return name in self.own_indices or name in index_names()
 
     def symbol(self, name: str) -> str:
         """The symbol of the index that the study calls so."""
@@ -139,7 +144,7 @@ class Study:
         found = with_numbers(self, zip((sweep.place for sweep in self.sweeps), swept, strict=True))
         return replace(found, sweeps=())
 
-    def design(self, layout: str, *swept: float) -> VehicleModel:
+    def design(self, layout: str, *swept: float) -> Vehicle:
         """The vehicle with the struts of `layout`; `swept` are values of the swept places, as in `at`.
 
         Raises `StudyError` for an unknown layout, or for values where nothing is swept; `NetworkError` where one of
@@ -160,7 +165,7 @@ class Study:
         return {
             "title": self.title,
             "vehicle": vehicle_entry(self.model, self.vehicle),
-            "road": in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD}),
+            **({"road": self._road()} if self.road else {}),
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             **({"indices": own} if (own := {n: index.entry() for n, index in self.own_indices.items()}) else {}),
@@ -168,6 +173,9 @@ class Study:
             "study": self._settings(),
             **({"methods": own} if (own := self._of_methods()) else {}),
         }
+
+    def _road(self) -> dict[str, str]:
+        return in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
 
     def _of_methods(self) -> dict[str, Any]:
         return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}

@@ -80,17 +80,15 @@ def pareto(
     if not isinstance(seed, Integral) or seed < 0:
         raise DesignError(f"The seed is a whole number from 0 on, got {seed!r}.")
     with one_blas_thread(), running_on(executor):
-        ends = [optimise(vehicle, one, method, subject_to=limits, seed=int(seed)) for one in criteria]
-        failed = next((end.status for end in ends if not np.isfinite(end.value) or _is_missed(end)), None)
-        if failed is not None:
-            return _empty(criteria, int(seed), failed)
+        ends = []
+        for one in criteria:
+            end = optimise(vehicle, one, method, subject_to=limits, seed=int(seed))
+            if not np.isfinite(end.value) or end.status.kind is StatusKind.INFEASIBLE:
+                return _empty(criteria, int(seed), end.status)
+            ends.append(end)
         trade = _trade(vehicle, criteria, method, limits, free, ends, int(seed))
         found = trade.front(int(points))
         return _front(trade, found, int(seed))
-
-
-def _is_missed(end: Optimum) -> bool:
-    return end.status.kind is StatusKind.INFEASIBLE
 
 
 def _checked(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[Asked, ...]:

@@ -17,8 +17,9 @@ from inerter.indices.question import Index, Question
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, without_tied_values
 from inerter.norms.hinf import Peak
+from inerter.systems.arrivals import inputs_of
 from inerter.systems.graph import full_graph
-from inerter.systems.outputs import check_inputs, find, main_outputs, outputs
+from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 from inerter.work.pool import Pool
@@ -243,11 +244,13 @@ def check_request(vehicle: Vehicle, index: Asked, method: object) -> None:
 
 
 def _check_names(mechanism: Mechanism, question: Question) -> None:
-    check_inputs(mechanism, question.inputs, PerformanceIndexError)
-    unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(mechanism)]
+    driven = question.drive.driven(mechanism)
+    check_inputs(driven, inputs_of(question.arrivals(driven)), PerformanceIndexError)
+    unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(driven)]
     if unusual:  # finding all names takes longer than most norms
-        known = outputs(mechanism, full_graph(mechanism))
+        known = outputs(driven, full_graph(driven))
         for name in unusual:
+            check_bounded(mechanism, driven, name)
             find(known, name, PerformanceIndexError)
 
 

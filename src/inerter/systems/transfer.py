@@ -52,7 +52,11 @@ class _Row:
 
     @staticmethod
     def of(output: Output, nodal: _Nodal) -> _Row:
-        whole = nodal.whole
+        carried = any(output.external)  # in the units of forces, and then all else too
+
+        def whole(row: Any) -> Row:
+            return {i: c << (nodal.value_bits if carried else 0) for i, c in nodal.whole(row).items()}
+
         return _Row(
             (whole(output.displacement), whole(output.velocity), whole(output.acceleration)),
             (whole(output.road), whole(output.road_velocity)),

@@ -18,6 +18,7 @@ from inerter.networks.transform import name_free_values, with_values
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]
 GROUND: Port = {}
+GROUND_ACCELERATION = "ground_acceleration"  # the input of a mechanism on moving ground [m/s^2]
 TRACKS = ("", "left", "right")
 
 
@@ -94,7 +95,8 @@ class Mechanism:
     """Any number of coordinates, struts, tyres, roads and forces.
 
     Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`;
-    `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`.
+    `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and
+    `_relative_velocity` are those over the ground, which are the same unless the ground moves.
 
     Raises `MechanismError` where a part names a coordinate or a road that is not there, where a mass is not positive,
     where names clash, and where a coordinate is attached to nothing; `DesignError` where one free name has two ranges.
@@ -106,6 +108,7 @@ class Mechanism:
     roads: tuple[RoadInput, ...] = ()
     forces: tuple[Force, ...] = ()
     measures: Measures = field(default_factory=Measures)
+    ground_moves: bool = False  # coordinates are then relative to it: see `on_moving_ground`
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
@@ -122,6 +125,16 @@ class Mechanism:
     def mechanism(self) -> Mechanism:
         """Itself: a mechanism is a vehicle."""
         return self
+
+    def on_moving_ground(self) -> Mechanism:
+        """The same mechanism seen from ground that moves up with an acceleration, the input `GROUND_ACCELERATION`.
+
+        Every mass feels it, m times as a force; roads lie still on the ground, and coordinates are relative to it.
+        """
+        if self.ground_moves:
+            return self
+        masses = {c.name: -c.inertia for c in self.coordinates if not c.angle}
+        return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, masses)), ground_moves=True)
 
     def mounts(self) -> Iterator[Strut | Tyre]:
         """Struts, then tyres."""
@@ -221,7 +234,8 @@ def _check_numbers(mechanism: Mechanism) -> None:
             )
         if road.track not in TRACKS:
             raise MechanismError(
-                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one; got {road.track!r}.'
+                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one, '
+                f"got {road.track!r}."
             )
 
 

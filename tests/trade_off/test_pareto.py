@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -10,10 +11,19 @@ from campaigns import sampled
 from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
 import inerter as it
+from inerter.methods.sampled import SampledObjective
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 NORM = it.Norm()
+
+
+@dataclass(frozen=True)
+class WithoutGradients(it.Norm):
+    """Norms of which a search knows the values alone, as of what is simulated."""
+
+    def objective(self, vehicle, index):
+        return SampledObjective(self.estimate, vehicle, index)
 
 
 def strut(kind):
@@ -65,13 +75,13 @@ KINDS = ["S2", "S3", "S1 k", "S3 k", "four"]
 
 @pytest.mark.parametrize(
     ("kind", "pair", "number"),
-    sampled(product(KINDS, range(3), range(3)), [("S3", 0, 0), ("S3 k", 1, 1)]),
+    sampled(product(KINDS, range(3), range(3)), [("S3", 0, 0)]),
 )
 def test_no_random_design_dominates_a_point(kind, pair, number):
     car, indices = random_quarter_car(np.random.default_rng([number, 77]), strut(kind)), list(TWO[pair])
-    front = it.pareto(car, indices, NORM, points=15)
+    points, count = (9, 20_000) if (kind, pair, number) == ("S3", 0, 0) else (15, 100_000)
+    front = it.pareto(car, indices, NORM, points=points)
     assert all(status.ok for status in front.statuses)
-    count = 20_000 if (kind, pair, number) == ("S3 k", 1, 1) else 100_000
     check_undominated(front, random_designs(car, indices, count))
     check_undominated(front, random_designs(car, indices, count // 5, 1, front.parameters))
     ends = [it.optimise(car, index, NORM).value for index in indices]
@@ -81,7 +91,7 @@ def test_no_random_design_dominates_a_point(kind, pair, number):
     assert np.all(np.diff(front.values[:, 1]) < 0.0)
     if len(front.values) > 1:
         closed = [gap for i, gap in enumerate(gaps(front)) if (i, i + 1) not in front.jumps]
-        assert len(front.values) == 15
+        assert len(front.values) == points
         assert max(closed) <= 2.5 * np.median(closed)
 
 
@@ -95,7 +105,7 @@ def test_each_point_is_a_design_that_can_be_taken_on():
     assert np.array_equal(front.values, again.values)
 
 
-@pytest.mark.parametrize("share", [0.25, 0.75])
+@pytest.mark.parametrize("share", sampled([0.25, 0.75], [0.25]))
 def test_points_are_optima_with_the_other_criterion_as_a_limit(share):
     car = paper_quarter_car(strut("S3 k"))
     front = it.pareto(car, [J1, J5], NORM, points=9)
@@ -106,13 +116,13 @@ def test_points_are_optima_with_the_other_criterion_as_a_limit(share):
 
 def test_limits_hold_along_a_front():
     car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b")))
-    front = it.pareto(car, [J1, J5], NORM, points=9, subject_to=[it.at_most(J3, 540.0)])
+    front = it.pareto(car, [J1, J5], NORM, points=5, subject_to=[it.at_most(J3, 540.0)])
     for design, held in zip(front.designs, front.limits, strict=True):
         value = it.evaluate(design, J3, NORM).value
         assert value <= 540.0 * (1.0 + 1e-6)
         assert held[0].value == value
     assert any(held[0].active for held in front.limits)
-    others = random_designs(car, [J1, J5, J3], 20_000)
+    others = random_designs(car, [J1, J5, J3], 2_000)
     check_undominated(front, others[others[:, 2] <= 540.0][:, :2])
 
 
@@ -133,7 +143,7 @@ def test_a_front_that_no_design_reaches():
         _ = front.knee
 
 
-@pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], ["S3"]))
+@pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], []))
 def test_three_criteria(kind):
     car = paper_quarter_car(strut(kind))
     front = it.pareto(car, [J1, J3, J5], NORM, points=15)
@@ -162,6 +172,7 @@ def test_hypervolume_of_two_criteria_is_an_area():
 def test_hypervolume_of_three_criteria_is_a_volume():
     pytest.importorskip("moocore", reason="the volume of three criteria needs moocore (extra fronts)")
     front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3, J5], NORM, points=6)
+    check_undominated(front, random_designs(paper_quarter_car(strut("S3")), [J1, J3, J5], 2_000), 1e-6)
     reference = front.nadir * 1.05
     rng = np.random.default_rng(0)
     size = reference - front.ideal
@@ -185,9 +196,15 @@ def test_the_knee_is_farthest_from_the_line_of_the_ends():
 def test_a_front_of_what_is_simulated():
     screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
     car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
-    quick = it.pareto(car, [J1, it.LoadCarrying(amplitude=1e3)], it.StatisticalLinearisation(), points=5)
-    assert len(quick.values) == 5
+    quick = it.pareto(car, [J1, J3], it.StatisticalLinearisation(), points=3)
+    assert len(quick.values) == 3
     assert np.all(np.diff(quick.values[:, 1]) < 0.0)
+
+
+def test_a_front_without_gradients_is_the_same():
+    car = paper_quarter_car(strut("S3"))
+    exact, found = it.pareto(car, [J1, J5], NORM, points=3), it.pareto(car, [J1, J5], WithoutGradients(), points=3)
+    assert found.values == pytest.approx(exact.values, rel=2e-3)
 
 
 @pytest.mark.campaign

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from inerter.indices.question import Index
 from inerter.methods.combined import Part, combined
 from inerter.networks.elements import Element, Free, Tied
-from inerter.vehicle.changed import with_elements
+from inerter.vehicle.changed import mounted, with_elements
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -142,10 +142,9 @@ def without_tied_values(vehicle: Vehicle) -> Loose | None:
 
     What they lie between is half to twice the value in the middle of what they follow from.
     """
-    mechanism = vehicle.mechanism()
-    if not any(isinstance(e.value, Tied) for mount in mechanism.mounts() for e in mount.network.elements()):
+    if not any(isinstance(element.value, Tied) for part in mounted(vehicle) for element in part):
         return None
-    free = mechanism.free_values()
+    free = vehicle.free_values()
     found: dict[str, Tied] = {}
     names = (name for i in count(1) if (name := f"tied{i}") not in free)
     middle = {name: (value.lower * value.upper) ** 0.5 or value.upper for name, value in free.items()}

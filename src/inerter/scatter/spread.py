@@ -111,10 +111,11 @@ def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
     """The vehicle with a free value in the place of each fixed one that scatters, by its name."""
     parts = dict(scatter.spread)
     free = vehicle.free_values()
+    chosen = {id(element) for name in parts if name not in free for element in labelled(vehicle, name)}
 
     def loose(element: Element) -> Element:
         value, name = element.value, element.label
-        if name not in parts or name in free or isinstance(value, Free | Tied):
+        if id(element) not in chosen or isinstance(value, Free | Tied):
             return element
         return element.with_value(Free((1.0 - parts[name]) * value, (1.0 + parts[name]) * value, name))
 

@@ -21,6 +21,7 @@ _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 _UNIT = re.compile(r"(?:[^\W\d_]++(?:(?:\^|\*\*)-?\d|[²³])?+|[()\s*/·.])+")
 _FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # the weight of a mass, for those who mean it
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
+PURE = "1"  # the unit of what is a mere number
 _LONGEST = 100
 _FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
 _MOST_DIGITS = 6  # of a value with an interval
@@ -99,6 +100,8 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     '7.544 kN s/m'
     """
     rounded = float(f"{value:.{digits}g}")
+    if unit == PURE:
+        return f"{rounded:.12g}"
     if rounded == 0.0 or not math.isfinite(rounded):
         return f"{rounded:g} {unit}"
     choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))

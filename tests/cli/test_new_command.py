@@ -11,12 +11,12 @@ from inerter.fields import fields_of
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.schema import study_schema
-from inerter.files.study.shape import models
+from inerter.files.study.shape import judged_models
 from inerter.files.study.starting import starting_text
 from inerter.vehicle.registry import VEHICLES
 
 
-@pytest.mark.parametrize("model", models())
+@pytest.mark.parametrize("model", judged_models())
 def test_a_start_for_every_vehicle(model, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert call(["new", model]) == 0

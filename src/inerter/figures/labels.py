@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from inerter.units import format_quantity, parse_quantity
+from inerter.units import PURE, format_quantity, parse_quantity
 
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
@@ -110,6 +110,31 @@ def index_unit(results: xr.Dataset, index: str) -> str:
     return str(results["index_unit"].sel(index=index).item())
 
 
+def titled(title: str, name: str, form: str = "{} ({})") -> str:
+    """What an index is, with what the study calls it, unless that says the same.
+
+    >>> titled("ride comfort", "J1"), titled("dynamic tyre load", "tyre-load")
+    ('ride comfort (J1)', 'dynamic tyre load')
+    """
+    return title if name.replace("-", " ") in title else form.format(title, name)
+
+
+def criteria(results: xr.Dataset) -> list[str]:
+    """The indices of the trade-off that the study asks for; none if it asks for none."""
+    names: list[str] = results["criterion"].values.tolist() if "front_value" in results else []
+    return names
+
+
+def criterion_title(results: xr.Dataset, name: str) -> str:
+    """The name of an index of a trade-off in words."""
+    return str(results["criterion_title"].sel(criterion=name).item())
+
+
+def criterion_unit(results: xr.Dataset, name: str) -> str:
+    """The unit of an index of a trade-off."""
+    return str(results["criterion_unit"].sel(criterion=name).item())
+
+
 def flat_range(entry: xr.Dataset) -> str:
     """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
@@ -137,7 +162,7 @@ def with_unit(value: float, unit: str, error: float = np.nan) -> str:
     if not shows_error(value, error):
         return format_quantity(value, unit)
     own = scale([value], unit)
-    return f"{measured(value * own.factor, error * own.factor)} {own.unit}"
+    return f"{measured(value * own.factor, error * own.factor)} {own.unit}".removesuffix(f" {PURE}")
 
 
 def shows_error(value: float, error: float) -> bool:
@@ -193,7 +218,7 @@ def scale(values: ArrayLike, unit: str) -> Scale:
     sizes = np.abs(np.asarray(values, dtype=float))
     sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
     _, _, prefixed = format_quantity(float(np.median(sizes)) if sizes.size else 1.0, unit).partition(" ")
-    return Scale(1.0, unit) if prefixed == unit else Scale(1.0 / parse_quantity(f"1 {prefixed}", unit), prefixed)
+    return Scale(1.0, unit) if prefixed in ("", unit) else Scale(1.0 / parse_quantity(f"1 {prefixed}", unit), prefixed)
 
 
 def axis_label(what: str, unit: str) -> str:

@@ -23,6 +23,7 @@ from inerter.figures.labels import (
     scale,
     swept_label,
     swept_places,
+    titled,
     typeset,
 )
 from inerter.figures.style import log_axis, suits_log_axis
@@ -50,7 +51,7 @@ def index_maps(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequenc
     valued = [name for name in layouts(results) if name not in others]
     unit = scale(data["value"].sel(layout=valued).values, index_unit(results, index))
     values = data["value"].sel(layout=valued) * unit.factor
-    label = axis_label(f"{capital(index_title(results, index))} {index}", unit.unit)
+    label = axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit)
     for ax, name in zip(axes, valued, strict=False):
         _draw(data, values.sel(layout=name).values, ax, _sequential(values.values), label)
         ax.set_title(f"{name} (baseline)" if others else name)

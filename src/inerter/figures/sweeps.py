@@ -27,6 +27,7 @@ from inerter.figures.labels import (
     scale,
     swept_element,
     swept_label,
+    titled,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
 
@@ -92,7 +93,7 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
     for one, line in zip(sweeps, lines, strict=True):
         for name in layouts(results):
             _curve(one, left, name, "value", unit.factor, line)
-    left.set_ylabel(axis_label(f"{capital(index_title(results, index))} {index}", unit.unit))
+    left.set_ylabel(axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit))
     for ax in right:
         for one, line in zip(sweeps, lines, strict=True):
             for name in compared(results):

@@ -13,7 +13,7 @@ _BEGINNING = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 @made_of_rows
 def index_names() -> dict[str, str]:
-    """The symbol of each index by its symbol and by its words, which are those of its class.
+    """The symbol of each index by its symbol and by its words, which are its `key` or those of its class.
 
     Raises `RowError` if two indices have the same.
     """
@@ -28,5 +28,7 @@ def index_names() -> dict[str, str]:
 
 @made_of_rows
 def index_words() -> dict[str, str]:
-    """The words of each index by its symbol."""
-    return {symbol: _BEGINNING.sub("-", kind.__name__).lower() for symbol, kind in INDICES.items()}
+    """The words of each index by its symbol: its `key`, or else those of its class."""
+    return {
+        symbol: getattr(kind, "key", _BEGINNING.sub("-", kind.__name__).lower()) for symbol, kind in INDICES.items()
+    }

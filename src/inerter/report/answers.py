@@ -12,6 +12,7 @@ from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.report.budgets import end_of_range
 from inerter.report.findings import Telling, Writer, best_layouts, headlines
+from inerter.report.fronts import front_sentences
 from inerter.report.ways import ways
 
 
@@ -20,7 +21,11 @@ def answers(
 ) -> list[str]:
     """A sentence for each index, and one for each budget of a layout that is the best for some index."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
-    return [*headlines(results, Telling(write, ways(study), static)), *_of_budgets(results, study, budgets, write)]
+    return [
+        *headlines(results, Telling(write, ways(study), static)),
+        *front_sentences(results, write),
+        *_of_budgets(results, study, budgets, write),
+    ]
 
 
 def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome], write: Writer) -> Iterator[str]:

@@ -24,6 +24,7 @@ from inerter.figures.labels import (
     scale,
     shows_error,
     swept_places,
+    titled,
     typeset,
     with_unit,
 )
@@ -69,7 +70,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
     for name in _names(results):
         entries = [_entry(by_method(results, method), index, name, unit) for method in methods(results)]
         rows.append(Row(name, [Cell(_typeset(entry.first), _typeset(entry.second)) for entry in entries]))
-    caption = f"{index_title(results, index)} ({index}) {_what(results, unit)}"
+    caption = f"{titled(index_title(results, index), index)} {_what(results, unit)}"
     return Table(typeset(caption[:1].upper() + caption[1:]), ["Layout", *methods(results)], rows)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 import xarray as xr
 
+from inerter.errors import StatusKind
 from inerter.figures.labels import (
     NOTICEABLE,
     by_method,
@@ -215,7 +216,7 @@ def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
     title = f"Best {index_title(results, index)}"
     names = best_layouts(results, index)
     if not names:
-        return f"{title}: no layout has a finite value."
+        return f"{title}: {_none(results, index)}."
     ways = {method: telling.way(results, method) for method in methods(results)} or {"": ""}
     parts: list[str] = []
     for method, way in ways.items():
@@ -233,7 +234,7 @@ def _verdict(results: xr.Dataset, index: str, telling: Telling) -> str:
     """By one method: the best layouts, the value, and how it compares with the baseline."""
     names, baseline = best_layouts(results, index), results.attrs["baseline"]
     if not names:
-        return "no layout has a finite value"
+        return _none(results, index)
     design = results.sel(layout=names[0], index=index)
     value = telling.write(float(design["value"]), index_unit(results, index), error_of(design))
     limit = f", {_STATIC}" if (index, names[0]) in telling.static else ""
@@ -242,7 +243,7 @@ def _verdict(results: xr.Dataset, index: str, telling: Telling) -> str:
         return f"{answer}; no other layout is better than this baseline"
     improvement = float(design["improvement"])
     if not np.isfinite(improvement):
-        return f"{answer}; {baseline} has no finite value" if baseline else answer
+        return f"{answer}; {_without(results, index, baseline)}" if baseline else answer
     if improvement < NOTICEABLE:
         return f"{answer}, no better than {baseline}"
     return f"{answer}, {_better(design)} better than {baseline}"
@@ -269,7 +270,7 @@ def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
     found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
-        return f"Best {title}: no layout has a finite value."
+        return f"Best {title}: {_none(results, index)}."
     if not compared(results):
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
@@ -288,6 +289,19 @@ def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
         f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
         f"improvement over the sweep lies {_range(least, largest)}."
     )
+
+
+def _without(results: xr.Dataset, index: str, layout: str) -> str:
+    """That a layout has no value, and why."""
+    status = str(results["status"].sel(layout=layout, index=index).item())
+    infeasible = status.startswith(StatusKind.INFEASIBLE.value)
+    return f"no {layout} keeps the limits" if infeasible else f"{layout} has no finite value"
+
+
+def _none(results: xr.Dataset, index: str) -> str:
+    """Why there is no best layout."""
+    kinds = {str(status).partition(":")[0] for status in results["status"].sel(index=index).values.ravel()}
+    return "no layout keeps the limits" if kinds == {StatusKind.INFEASIBLE.value} else "no layout has a finite value"
 
 
 def _range(least: float, largest: float) -> str:

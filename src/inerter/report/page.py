@@ -20,7 +20,9 @@ from inerter.report.answers import answers
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
 from inerter.report.findings import over_the_sweep
-from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
+from inerter.report.fronts import front_tables
+from inerter.report.limits import limit_tables
+from inerter.report.question import computation, condition_rows, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
 from inerter.writing import write_text
 
@@ -66,6 +68,9 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             by_method=method_tables(results),
             remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
             budgets=budget_tables(budgets, study),
+            fronts=front_tables(results),
+            limits=limit_tables(results),
+            conditions=condition_rows(study),
             trade_offs=[] if swept else trade_off_tables(results),
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),

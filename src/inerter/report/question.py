@@ -11,14 +11,15 @@ import xarray as xr
 
 from inerter.fields import fields_of
 from inerter.figures.labels import capital, index_title, indices
+from inerter.files.common.vehicles import vehicle_words
+from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
 from inerter.files.study.study import Study
-from inerter.indices.registry import INDICES, amplitude_of
+from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
 from inerter.networks.elements import Free, Tied
 from inerter.units import format_quantity
-from inerter.vehicle.registry import VEHICLES
 
 _ALSO = {  # the same value in the unit in which it is usually told
     "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
@@ -38,13 +39,19 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    rows += [(capital(f.in_words), _told(study, f"vehicle.{f.key}")) for f in fields_of(VEHICLES[study.model])]
-    rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
+    swept = {sweep.words for sweep in study.sweeps}
+    told = [row for row in vehicle_words(study.model, study.vehicle) if row[0] not in swept]
+    rows += [(capital(name), unit if value is None else _given(value, unit)) for name, value, unit in told]
+    rows += [(capital(s.words), _told(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
+    if study.road is not None:
+        rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
     for name in study.indices:
         symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
         rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
+        texts = [one for one in index_choices(symbol) if one.key in settings]
+        rows += [(f"{capital(one.key.replace('_', ' '))} of {name}", settings[one.key]) for one in texts]
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
         rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
@@ -54,6 +61,17 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
 def element_rows(study: Study) -> list[tuple[str, str, str]]:
     """The elements: name, kind, and value or bounds."""
     return [(name, element.key, _told(study, name)) for name, element in study.elements.items()]
+
+
+def condition_rows(study: Study) -> list[tuple[str, str, str]]:
+    """The operating conditions: name or number, share of all, and the numbers that are others."""
+    total, known = sum(condition.share for condition in study.conditions), places(study)
+    rows = []
+    for i, condition in enumerate(study.conditions, start=1):
+        numbers = [f"{label} = {_given(value, known[label].unit)}" for label, value in condition.numbers.items()]
+        told = ", ".join(numbers) or "as above"
+        rows.append((condition.name or f"{i}", f"{100.0 * condition.share / total:.3g} %", told))
+    return rows
 
 
 def layout_rows(study: Study) -> list[LayoutText]:
@@ -88,6 +106,11 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         )
         if not is_blind(study.optimise):
             yield f"What was made smallest is the value by {study.optimise}: {words_of(study.optimise)}."
+    if study.limits:
+        yield f"Every design keeps these limits: {'; '.join(limit.label for limit in study.limits)}."
+    if study.conditions:
+        how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
+        yield f"An index is its {how}; limits hold in each. Frequency responses are those of the vehicle as it stands."
     yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."
 
@@ -102,7 +125,9 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    for name in study.indices:
+    amplitudes = [symbol for symbol in INDICES if amplitude_of(symbol)]
+    asked = [name for name in study.indices if study.symbol(name) in amplitudes]
+    for name in asked or amplitudes:
         field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
         if field is not None and field.key in settings:
             yield f"The sinusoidal force of {name} has an amplitude of {_given(settings[field.key], field.unit)}."

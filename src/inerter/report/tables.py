@@ -29,6 +29,7 @@ from inerter.figures.labels import (
     swept_element,
     swept_places,
     swept_words,
+    titled,
     typeset,
     with_unit,
 )
@@ -113,7 +114,7 @@ def map_tables(results: xr.Dataset) -> list[Table]:
 
 
 def _title(results: xr.Dataset, index: str) -> str:
-    return f"{index_title(results, index)} ({index})"
+    return titled(index_title(results, index), index)
 
 
 def _improvement(design: xr.Dataset, baseline: str) -> str:

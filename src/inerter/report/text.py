@@ -28,6 +28,7 @@ from inerter.figures.labels import (
 )
 from inerter.report.by_method import method_lines
 from inerter.report.findings import extremes, over_the_sweep, place_text
+from inerter.report.limits import limit_lines
 
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -64,6 +65,7 @@ def summary_table(results: xr.Dataset) -> str:
         [
             *block(results, index),
             *_compared(every, index),
+            *limit_lines(every, index, WIDTH),
             *(["", *method_lines(every, index, WIDTH)] if several else []),
         ]
         for index in indices(results)

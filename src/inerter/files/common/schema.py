@@ -113,12 +113,12 @@ def _tidied(schema: dict[str, Any]) -> dict[str, Any]:
         del found["default"]
     examples = [value for text in schema.get("examples", ()) if (value := example_value(text)) is not None]
     found.pop("examples", None)
-    for key in ("anyOf", "oneOf"):
-        alternatives = [one for one in found.pop(key, ()) if one not in ({"type": "null"}, NEVER)]
-        if len(alternatives) == 1:
-            found = {**alternatives[0], **found}
-        elif alternatives:
-            found[key] = alternatives
+    several = [one for key in ("anyOf", "oneOf") for one in found.pop(key, ())]
+    alternatives = [one for one in several if one not in ({"type": "null"}, NEVER)]
+    if len(alternatives) == 1:
+        found = {**alternatives[0], **found}
+    elif alternatives:
+        found["anyOf"] = alternatives
     return {**found, "examples": examples} if examples else found
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import OK, InerterError, Status, StatusKind
+from inerter.files.study.limits import kept, limits_in
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.note import after, parts_of
@@ -104,6 +105,7 @@ class Outcome:
     notes: list[list[str | float]] = field(default_factory=list)  # the parts of each: words, and numbers between them
     realisations: dict[str, int] = field(default_factory=dict)  # method -> roads of the case's own index
     samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
+    limits: list[list[float]] = field(default_factory=list)  # of each: value, whether it holds back, its cost
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
 
     @property
@@ -172,7 +174,8 @@ def _prefix(study: Study, method: str) -> str:
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
     study = study.at(case.swept)
-    vehicle = study.design(case.layout).mechanism()
+    design = study.design(case.layout)
+    vehicle = design if study.conditions else design.mechanism()  # whose numbers conditions change
     fields: dict[str, Any] = {
         "parameters": {},
         "active_bounds": {},
@@ -184,15 +187,18 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     found: Optimum | None = None
     if study.optimise is not None and vehicle.free_values():
         method = study.method(study.optimise, threads)
-        found = optimise(vehicle, study.index(case.index), method, seed=study.seed)
+        limits = [limit for several in limits_in(study) for limit in several]
+        free = vehicle
+        found = optimise(free, study.asked(case.index), method, subject_to=limits, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
         fields = {name: getattr(found, name) for name in fields}
+        fields["limits"] = [list(one) for one in kept(study, free, found.limits)]
 
     def estimate(method: str, index: str) -> Estimate:
         if found is not None and (method, index) == (study.optimise, case.index):
             return found.estimate
         try:
-            return evaluate(vehicle, study.index(index), study.method(method, threads))
+            return evaluate(vehicle, study.asked(index), study.method(method, threads))
         except FAILURES as error:
             if len(study.evaluate) == 1:
                 raise
@@ -203,7 +209,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
     bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
-    left_out = design_notes(study, vehicle)
+    left_out = design_notes(study, vehicle.mechanism())
     notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
     notes += [parts_of(note) for note in left_out]
     return Outcome(

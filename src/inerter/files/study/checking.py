@@ -13,11 +13,14 @@ from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
+from inerter.files.study.limits import limits_in, questions_limited
 from inerter.files.study.study import Study
+from inerter.methods.asking import objective_of
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.methods.method import Compiled
+from inerter.methods.method import Compiled, asked_of
 from inerter.methods.registry import is_blind
 from inerter.networks.parser import names
+from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
 
@@ -56,7 +59,8 @@ def _tried(every: Cases) -> list[int]:
 def _check_design(study: Study, layout: str) -> None:
     vehicle = study.design(layout)
     mechanism = vehicle.mechanism()
-    questions = [study.index(name).question(mechanism) for name in study.indices]
+    asked = [one for name in study.indices for one in asked_of(vehicle, study.asked(name))]
+    questions = [index.question(case.mechanism()) for case, index in asked]
     if any(map(is_blind, study.methods)):
         for question in questions:
             linear_problem(mechanism, question, CONVENTIONS[study.conventions])
@@ -67,7 +71,8 @@ def _check_design(study: Study, layout: str) -> None:
         check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
-            method.objective(vehicle, study.index(name))
+            objective_of(vehicle, study.asked(name), method)
+        bounds_of(vehicle, [limit for several in limits_in(study) for limit in several], method)
 
 
 def study_notes(study: Study) -> list[str]:
@@ -90,7 +95,7 @@ def kernels(study: Study) -> list[Any]:
     for name in study.methods:
         method = study.method(name)
         if isinstance(method, Compiled):
-            for index in study.indices:
-                question = study.index(index).question(design.mechanism())
+            questions = [study.index(index).question(design.mechanism()) for index in study.indices]
+            for question in [*questions, *questions_limited(study, design)]:
                 found += method.kernels(question, search=name == study.optimise)
     return list(dict.fromkeys(found))

@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.toml import read_shape
+from inerter.files.common.tables import Shape
+from inerter.files.common.toml import read_tables, shape_of
+from inerter.files.common.vehicles import values_of, vehicle_problems
+from inerter.files.study.conditions import OVER
+from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.own_indices import own_index, own_index_problems
-from inerter.files.study.shape import StudyFile, shapes
-from inerter.files.study.study import Study, elements_used
-from inerter.files.study.sweeps import sweeps_of
-from inerter.indices.registry import index_settings
+from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, shapes
+from inerter.files.study.study import POINTS, Study, elements_used
+from inerter.files.study.sweeps import conditions_of, sweeps_of
+from inerter.indices.registry import index_settings, is_on_road
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
 from inerter.signals.road import Road
 from inerter.units import shown
 from inerter.writing import characters
+
+_LEAST_OF_THREE = 6  # points of a front of three indices
+WHAT = "a study file"
 
 
 def load_study(path: str | Path) -> Study:
@@ -31,15 +38,34 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a study file", *shapes())
+    return study_of(read_tables(path, WHAT), path)
+
+
+def study_of(tables: Mapping[str, Any], path: Path) -> Study:
+    """The study that the tables of a file say; `path`, where they are from or may go to, is for messages and the title.
+
+    Raises `StudyError` as `load_study` does.
+    """
+    shape = shape_of(tables, path, *shapes())
     study = _resolve(path, shape)
+    problems = [
+        *vehicle_problems(study.model, study.vehicle),
+        *layout_problems(study.model, study.vehicle, study.elements, study.layouts),
+        *_road_problems(study, shape),
+    ]
+    limits, limit_problems = limits_of(study, shape.study.subject_to or {})
+    study = replace(study, limits=limits)
     swept, sweep_problems = ((), []) if shape.study.sweep is None else sweeps_of(study, shape.study.sweep)
     study = replace(study, sweeps=swept)
-    problems = [
-        *layout_problems(study.model, study.elements, study.layouts),
+    conditions, condition_problems = conditions_of(study, shape.conditions)
+    study = replace(study, conditions=conditions)
+    problems += [
         *sweep_problems,
-        *_setting_problems(study),
-        *own_index_problems(study.indices, study.own_indices),
+        *condition_problems,
+        *limit_problems,
+        *_setting_problems(study, shape),
+        *own_index_problems(study.indices, study.own_indices, [*study.trade_off, *(limit.of for limit in limits)]),
+        *_front_problems(study, shape),
         *method_problems(study),
     ]
     if not problems:
@@ -50,9 +76,8 @@ def load_study(path: str | Path) -> Study:
 
 
 def _resolve(path: Path, shape: StudyFile) -> Study:
-    vehicle = shape.vehicle.model_dump()
-    model = vehicle.pop("model")
-    layouts = {name: StrutLayout(struts_of(model, entry)) for name, entry in shape.layouts.items()}
+    model, vehicle = values_of(shape.vehicle)
+    layouts = {name: StrutLayout(struts_of(model, vehicle, entry)) for name, entry in shape.layouts.items()}
     settings = shape.study
     baseline = settings.baseline
     if baseline is None and len(layouts) > 1:
@@ -62,7 +87,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         path=path,
         model=model,
         vehicle=vehicle,
-        road=Road(**shape.road.model_dump(exclude={"letter"})),
+        road=None if shape.road is None else Road(**shape.road.model_dump(exclude={"letter"})),
         elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
         indices=settings.indices,
@@ -75,9 +100,19 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         relative_error=settings.relative_error,
         settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
         own_indices={name: own_index(entry) for name, entry in shape.indices.items()},
+        over=settings.conditions or OVER[0],
         method_settings=_method_settings(shape),
+        trade_off=settings.trade_off,
+        points=settings.points or POINTS,
         budgets=settings.budgets,
     )
+
+
+def _road_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    asked = [*study.indices, *study.trade_off, *(name for name in shape.study.subject_to or {} if study.knows(name))]
+    on_roads = [name for name in dict.fromkeys(asked) if is_on_road(study.symbol(name))]
+    if study.road is None and on_roads:
+        yield at(("road",), fault=f"missing, but {some(on_roads)} needs it", expected=ROAD_EXAMPLE)
 
 
 def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
@@ -88,12 +123,34 @@ def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
     return {name: table for name, table in given.items() if table}
 
 
-def _setting_problems(study: Study) -> Iterator[Problem]:
+def _setting_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    if shape.study.conditions is not None and not study.conditions:
+        place, wanted = ("study", "conditions"), "sections [[conditions]], or no conditions in [study]"
+        yield at(place, got=shown(shape.study.conditions), fault="there are none", expected=wanted)
     if study.baseline is not None and study.baseline not in study.layouts:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
         wanted = f"a layout, one of {known}"
         yield at(("study", "baseline"), got=shown(study.baseline), expected=wanted, hint=hint)
+
+
+def _front_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    place = ("study", "trade_off")
+    if shape.study.points is not None and not study.trade_off:
+        yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
+    if not study.trade_off:
+        return
+    several = len({study.asked(name) for name in study.trade_off})
+    if several not in (2, 3) or several < len(study.trade_off):
+        got = f"{len(study.trade_off)} indices" if several == len(study.trade_off) else "the same index twice"
+        yield at(place, got=got, expected="two or three that differ")
+    if several == 3 and study.points < _LEAST_OF_THREE:
+        few = f"at least {_LEAST_OF_THREE} points for three indices"
+        yield at(("study", "points"), got=str(study.points), expected=few)
+    if study.sweeps:
+        yield at(place, fault="given beside a sweep", expected="one of the two")
+    if study.optimise is None:
+        yield at(place, fault="nothing is optimised", expected="optimise, or no trade_off")
 
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:

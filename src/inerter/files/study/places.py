@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inerter.fields import Field, fields_of
 from inerter.files.common.shape import ROAD
+from inerter.files.common.vehicle_shapes import SEAT, Inertia
 from inerter.indices.registry import INDICES, index_settings
 from inerter.methods.registry import method_settings
 from inerter.networks.elements import Element, Free, Value
@@ -19,7 +20,7 @@ from inerter.vehicle.registry import VEHICLES
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
-_ELEMENTS = "elements"
+_ELEMENTS, _LIMITS = "elements", "subject_to"
 _LOWER, _UPPER = "from", "to"  # the keys of the bounds of a free value
 
 
@@ -56,8 +57,10 @@ def place_of(text: str) -> Place:
     return Place(section, key) if key else Place(_ELEMENTS, section)
 
 
-def by_place(table: Any) -> Any:
+def by_place(table: Any, *, entries: bool = True) -> Any:
     """A table of a file by places: a place that is written without quotes is a table in a table.
+
+    Tables may be `entries` too, where they hold no others.
 
     >>> by_place({"road": {"speed": ["20 m/s", "30 m/s"]}, "k": {"from": "1 N/m", "to": "2 N/m"}})
     {'road.speed': ['20 m/s', '30 m/s'], 'k': {'from': '1 N/m', 'to': '2 N/m'}}
@@ -66,8 +69,13 @@ def by_place(table: Any) -> Any:
         return table
     found: dict[Any, Any] = {}
     for key, entry in table.items():
-        further = isinstance(entry, dict) and any(isinstance(inner, dict | list) for inner in entry.values())
-        found |= by_place({f"{key}.{name}": inner for name, inner in entry.items()}) if further else {key: entry}
+        further = isinstance(entry, dict)
+        if further and entries:
+            further = any(isinstance(inner, dict | list) for inner in entry.values())
+        if further:
+            found |= by_place({f"{key}.{name}": inner for name, inner in entry.items()}, entries=entries)
+        else:
+            found[key] = entry
     return found
 
 
@@ -107,18 +115,39 @@ class _Section(NamedTuple):
 
 
 def _vehicle_numbers(study: Study) -> dict[str, Number]:
-    return {f.key: Number(f.unit, f.in_words, study.vehicle[f.key]) for f in fields_of(VEHICLES[study.model])}
+    values, found = study.vehicle, {}
+    for f in fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ():
+        found[f.key] = Number(f.unit, f.in_words, values.get(f.key), f.default == 0.0)
+    for name, value in values.get("coordinates", {}).items():
+        what, unit = ("inertia", "kg m^2") if isinstance(value, Inertia) else ("mass", "kg")
+        found[f"coordinates.{name}"] = Number(unit, f"{what} of {name}", value)
+    for name, road in values.get("roads", {}).items():
+        found[f"roads.{name}.distance"] = Number("m", f"distance of {name}", road["distance"], may_vanish=True)
+    if SEAT in values:
+        found[f"{SEAT}.mass"] = Number("kg", "mass on the seat", values[SEAT]["mass"])
+    return found
 
 
 def _put_vehicle(study: Study, key: str, number: float) -> Study:
-    return replace(study, vehicle={**study.vehicle, key: number})
+    return replace(study, vehicle=_put(study.vehicle, key.split("."), number))
+
+
+def _put(table: Mapping[str, Any], keys: list[str], number: float) -> dict[str, Any]:
+    """A table with a number in the place of another of the same sort."""
+    first, *others = keys
+    old = table.get(first)
+    new = _put(old, others, number) if others and isinstance(old, dict) else type(old or number)(number)
+    return {**table, first: new}
 
 
 def _road_numbers(study: Study) -> dict[str, Number]:
+    if study.road is None:
+        return {}
     return {f.key: Number(f.unit, f.in_words, getattr(study.road, f.name)) for f in ROAD}
 
 
 def _put_road(study: Study, key: str, number: float) -> Study:
+    assert study.road is not None
     names = {f.key: f.name for f in ROAD}
     return replace(study, road=replace(study.road, **{names[key]: number}))
 
@@ -160,11 +189,21 @@ def _with_part(element: Element, part: str, number: float) -> Element:
 
 
 def _setting_numbers(study: Study) -> dict[str, Number]:
-    return {key: Number(f.unit, f.in_words, study.settings.get(key)) for key, f in index_settings().items()}
+    settings = {key: Number(f.unit, f.in_words, study.settings.get(key)) for key, f in index_settings().items()}
+    limits = {
+        f"{_LIMITS}.{limit.of}.{limit.sense}": Number(limit.unit, limit.words, limit.value) for limit in study.limits
+    }
+    return {**settings, **limits}
 
 
 def _put_setting(study: Study, key: str, number: float) -> Study:
-    return replace(study, settings={**study.settings, key: number})
+    if not key.startswith(f"{_LIMITS}."):
+        return replace(study, settings={**study.settings, key: number})
+    found = (
+        replace(limit, value=number) if key == f"{_LIMITS}.{limit.of}.{limit.sense}" else limit
+        for limit in study.limits
+    )
+    return replace(study, limits=tuple(found))
 
 
 def _index_numbers(study: Study) -> dict[str, Number]:

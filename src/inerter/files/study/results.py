@@ -23,7 +23,7 @@ from inerter.methods.registry import is_blind
 from inerter.networks.elements import Free
 
 Array = NDArray[np.float64]
-_OK = StatusKind.OK.value
+_OK, _INFEASIBLE = StatusKind.OK.value, StatusKind.INFEASIBLE.value
 
 
 class Gathered:
@@ -69,6 +69,9 @@ class Gathered:
             arrays[name][number] = getattr(outcome, name)
         if self._uncertain:
             self._enter_scatter(number, outcome)
+        for i, found in enumerate(outcome.limits):
+            for name, number_told in zip(LIMITED, found, strict=True):
+                arrays[name][number, i] = number_told
         if not self.study.sweeps:
             self.designs[case] = outcome
 
@@ -103,7 +106,7 @@ class Gathered:
         for m, method in enumerate(self.study.evaluate):
             values = outcome.values.get(method, {})
             value = values.get(index, np.nan)
-            arrays["value"][number, m] = value
+            arrays["value"][number, m] = np.nan if outcome.status.get(method) == _INFEASIBLE else value
             arrays["other_value"][number, m] = [values.get(other, np.nan) for other in self.study.indices]
             error = outcome.standard_errors.get(method, {}).get(index)
             arrays["standard_error"][number, m] = np.nan if error is None else error
@@ -175,7 +178,7 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
 
 def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
-    indices = {name: study.index(name) for name in study.indices}
+    indices = {name: study.asked(name) for name in study.indices}
     swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}
     design = ("layout", "index", *swept)
     sizes = {
@@ -185,9 +188,11 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "method": len(study.evaluate),
         "other": len(indices),
         "parameter": len(parameters),
+        "limit": len(study.limits),
     }
     variables = {}
-    for name, (more, empty, long_name) in {**_VARIABLES, **(UNCERTAIN if is_uncertain(study) else {})}.items():
+    uncertain, limited = UNCERTAIN if is_uncertain(study) else {}, LIMITED if study.limits else {}
+    for name, (more, empty, long_name) in {**_VARIABLES, **uncertain, **limited}.items():
         dims = (*design, *more)
         array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
         variables[name] = (dims, array, {"long_name": long_name})
@@ -199,9 +204,12 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "other": list(indices),
         "parameter": list(parameters),
         "parameter_unit": ("parameter", list(parameters.values())),
-        "index_unit": ("index", [index.unit for index in indices.values()]),
+        "index_unit": ("index", [study.unit(name) for name in indices]),
         "index_title": ("index", [index.title for index in indices.values()]),
     }
+    if study.limits:
+        coords["limit"] = [limit.label for limit in study.limits]
+        coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
     for sweep in study.sweeps:
         attributes = {"units": sweep.unit, "long_name": sweep.words}
         coords[sweep.label] = (sweep.label, list(sweep.values), attributes)
@@ -237,13 +245,18 @@ _VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
 }
 
 
+LIMITED: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+    "limit_value": (("limit",), np.nan, "what is limited, where it comes closest to its limit"),
+    "limit_active": (("limit",), False, "whether the limit holds the optimum back"),
+    "limit_cost": (("limit",), np.nan, "change of the index for one per cent more of the limit"),
+}
 UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "improvement_error": (("method",), np.nan, "standard error of the improvement"),
     "realisations": (("method",), 0, "random roads that were averaged"),
     "over_linear": ((), np.nan, "improvement over the best linear design by the method of the search"),
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
 }
-PERCENT = {"improvement", "improvement_error", "over_linear", "over_linear_error"}
+PERCENT = {"limit_cost", "improvement", "improvement_error", "over_linear", "over_linear_error"}
 
 
 def _ratio_error(one: Estimate, other: Estimate) -> float:

@@ -12,6 +12,7 @@ from pydantic import (
     PlainValidator,
     Tag,
     create_model,
+    model_validator,
 )
 
 from inerter.errors import RowError
@@ -23,6 +24,7 @@ from inerter.files.common.entries import (
     SWEPT,
     TEXT,
     one_of,
+    positive_number,
     some_names,
     some_of,
     some_of_file,
@@ -36,13 +38,16 @@ from inerter.files.common.shape import (
     ElementName,
     Range,
     RoadTable,
-    Shape,
-    Shapes,
+    WithVehicle,
     if_given,
     layouts,
     of_quantities,
     vehicle_shapes,
 )
+from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.vehicles import models
+from inerter.files.study.conditions import OVER
+from inerter.files.study.limits import LimitEntry, LimitShape
 from inerter.files.study.own_indices import index_shapes, indices_of
 from inerter.files.study.places import by_place
 from inerter.indices.registry import index_settings
@@ -53,6 +58,7 @@ from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
 
 _MOST_ROADS = 100_000
+_MOST_OF_FRONT = 1000
 SPACINGS = ("linear", "log")
 
 
@@ -77,8 +83,26 @@ SweepEntry = Annotated[
 ]
 
 
+def _by_place(table: Any) -> Any:
+    return by_place(table, entries=False)
+
+
+class ConditionTable(Shape):
+    """Numbers by their places, and how much of the time they are so."""
+
+    model_config = ConfigDict(extra="allow")
+    share: Annotated[float, checked(positive_number, lambda: {"type": "number", "exclusiveMinimum": 0})] = Field(
+        default=1.0, description="How much of the time it is so, beside the others.", examples=["share = 0.3"]
+    )
+    name: Annotated[str, TEXT] = Field(default="", description="What it is called.", examples=['name = "loaded"'])
+
+
+ConditionShape = Annotated[ConditionTable, BeforeValidator(_by_place)]
+Over = Annotated[str | None, word("a way to take an index over conditions", OVER)]
+
+
 def _car(value: Any) -> str:
-    cars = tuple(models())
+    cars = tuple(judged_models())
     if isinstance(value, str) and value in VEHICLES and value not in cars:
         raise ValueError(
             f"Got {shown(value)}, which has no road to be judged on; expected {' or '.join(map(shown, cars))}. "
@@ -87,9 +111,9 @@ def _car(value: Any) -> str:
     return one_of("a vehicle model", cars)(value)
 
 
-def models() -> list[str]:
-    """The models that are judged on a road."""
-    return [model for model, kind in VEHICLES.items() if kind.moved == "road"]
+def judged_models() -> list[str]:
+    """The models that are judged, on a road or under a force."""
+    return [model for model in models() if model not in VEHICLES or VEHICLES[model].moved != "displacement"]
 
 
 class AnyCar(Shape):
@@ -99,6 +123,7 @@ class AnyCar(Shape):
     model: Annotated[str, PlainValidator(_car)] = Field(examples=['model = "quarter-car"'])
 
 
+ROAD_EXAMPLE = 'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'
 RoadShape = create_model("RoadShape", __base__=RoadTable, **of_quantities(ROAD))
 
 
@@ -108,6 +133,15 @@ def _search(value: Any) -> str:
 
 class Settings(Shape):
     """What is asked of the layouts, and how it is answered; beside these there are the settings of indices."""
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("indices"))  # of a trade-off
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_a_trade_off(cls, table: Any) -> Any:
+        """The indices of a trade-off are asked for by themselves too."""
+        alone = isinstance(table, dict) and "trade_off" in table and "indices" not in table
+        return {**table, "indices": table["trade_off"]} if alone else table
 
     indices: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = Field(
         description="What is asked of each layout.", examples=['indices = ["J1", "J3", "J5"]']
@@ -155,11 +189,28 @@ class Settings(Shape):
         description="Elements: for which values of each is a layout better than the baseline?",
         examples=['budgets = ["f"]'],
     )
+    subject_to: Annotated[dict[str, LimitEntry], BeforeValidator(by_place)] | None = Field(
+        default=None,
+        description="Limits on other indices: what is best is the best that keeps them.",
+        examples=['subject_to = { tyre-load = { at_most = "600 N" } }'],
+    )
+    conditions: Over = Field(
+        default=None,
+        description="What an index is over the [[conditions]].",
+        examples=['conditions = "worst"'],
+    )
+    trade_off: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = Field(
+        default=(), description="Two indices whose front is sought.", examples=['trade_off = ["J1", "J3"]']
+    )
+    points: Annotated[int | None, whole(3, _MOST_OF_FRONT)] = Field(
+        default=None, description="How many designs of a front.", examples=["points = 25"]
+    )
 
 
-class StudyFile(Shape):
+class StudyFile(WithVehicle):
     """The whole file, but for what is made of quantities and rows."""
 
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("road"))  # where it needs none
     title: Annotated[str | None, TEXT] = Field(
         default=None, description="A line for reports; the name of the file if left out.", examples=['title = "My car"']
     )
@@ -173,6 +224,11 @@ class StudyFile(Shape):
     )
     layouts: Any
     indices: Any
+    conditions: list[ConditionShape] = Field(
+        default=[],
+        description="Numbers of this file, by their places, as they are in one operating condition.",
+        examples=['[[conditions]] with "road.speed" = "15 m/s"'],
+    )
     study: Any
 
 
@@ -188,8 +244,10 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     settings = create_model("Settings", __base__=Settings, **if_given(index_settings().values()))
     method, own = _method_shapes()
     index, kinds = index_shapes()
-    vehicle, vehicles = vehicle_shapes(models(), AnyCar)
-    cars = " or ".join(map(shown, models()))
+    vehicle, vehicles = vehicle_shapes(judged_models(), AnyCar)
+    *others, last = map(shown, judged_models())
+    cars = f"{', '.join(others)} or {last}"
+    some_road: Any = RoadShape | None
     layout, tables = layouts()
     section: dict[str, Any] = (
         {"methods": (method, Field(default_factory=method, description="Settings of methods, a table for each."))}
@@ -207,11 +265,8 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
             ),
         ),
         road=(
-            RoadShape,
-            Field(
-                description="What the vehicle drives on, and how fast.",
-                examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'],
-            ),
+            some_road,
+            Field(description="What the vehicle drives on, and how fast.", examples=[ROAD_EXAMPLE]),
         ),
         layouts=(layout, Field(description="How elements are joined: | side by side, - end to end.")),
         indices=(index, Field(default_factory=dict, description="Indices of your own: a kind, with its settings.")),
@@ -233,6 +288,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         **tables,
         ("study",): settings,
         ("study", "sweep", "*", "<range>"): SweepRange,
+        ("study", "subject_to", "*", "<limit>"): LimitShape,
         **own,
     }
 

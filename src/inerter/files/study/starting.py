@@ -13,7 +13,7 @@ from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
 from inerter.files.study.schema import study_schema
-from inerter.files.study.shape import models
+from inerter.files.study.shape import judged_models
 from inerter.indices.registry import INDICES, make_index
 from inerter.methods.registry import DEFAULT
 from inerter.networks.elements import Damper, Inerter, Network, Spring
@@ -42,9 +42,9 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
 
     Raises `StudyError` for a vehicle that study files do not know.
     """
-    if model not in models():
-        hint = nearest(model, models()) or " It is for: inerter simulate." * (model in VEHICLES)
-        known = " or ".join(map(shown, models()))
+    if model not in judged_models():
+        hint = nearest(model, judged_models()) or " It is for: inerter simulate." * (model in VEHICLES)
+        known = " or ".join(map(shown, judged_models()))
         raise StudyError(f"{shown(model)} is no vehicle of study files; expected {known}.{hint}")
     kind = VEHICLES[model]
     car = kind.key.replace("-", " ")

@@ -9,22 +9,29 @@ from typing import Any
 
 from inerter.errors import NetworkError, StudyError
 from inerter.files.common.kind_entry import entry_of
-from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
+from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_toml
+from inerter.files.common.vehicles import in_si, vehicle_entry
+from inerter.files.study.conditions import OVER, StudyCondition, condition_of
+from inerter.files.study.limits import StudyLimit
 from inerter.files.study.own_indices import OwnIndex
 from inerter.files.study.places import Place, with_numbers
 from inerter.indices.names import index_names
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
+from inerter.methods.asking import Asked
+from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
 from inerter.signals.road import Road
-from inerter.vehicle.vehicle import VehicleModel
+from inerter.vehicle.vehicle import Vehicle
+
+POINTS = 25  # of a front
 
 
 @dataclass(frozen=True)
@@ -49,8 +56,8 @@ class Study:
     title: str
     path: Path = field(compare=False)
     model: str
-    vehicle: dict[str, float]
-    road: Road
+    vehicle: dict[str, Any]
+    road: Road | None  # of indices that are asked on one
     elements: dict[str, Element]  # a free element's value is named after its key, so that it is one variable
     layouts: dict[str, StrutLayout]
     indices: tuple[str, ...]
@@ -63,14 +70,23 @@ class Study:
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
+    limits: tuple[StudyLimit, ...] = ()  # which optima keep
+    conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
+    over: str = OVER[0]  # how
     own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
+    trade_off: tuple[str, ...] = ()  # two or three indices, whose front of each layout is asked for
+    points: int = POINTS  # of each front
     budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
     @property
     def methods(self) -> tuple[str, ...]:
         """All methods that it uses."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
+
+    def knows(self, name: str) -> bool:
+        """Whether there is an index that the study can call so."""
+        return name in self.own_indices or name in index_names()
 
     def symbol(self, name: str) -> str:
         """The symbol of the index that the study calls so."""
@@ -81,7 +97,24 @@ class Study:
         """The index that the study calls so, as it asks it."""
         return make_index(self.symbol(name), self.road, self.settings_of(name))
 
-    def settings_of(self, name: str) -> dict[str, float]:
+    def asked(self, name: str) -> Asked:
+        """That index over the conditions of the study, if there are any."""
+        index = self.index(name)
+        if not self.conditions:
+            return index
+        use = Conditions(condition_of(self, condition) for condition in self.conditions)
+        return use.mean(index) if self.over == OVER[0] else use.worst(index)
+
+    def in_each(self, index: Asked) -> list[Asked]:
+        """An index in each of the conditions by itself; as it is if there are none."""
+        return [Conditions([condition_of(self, c)]).mean(index) for c in self.conditions] or [index]
+
+    def unit(self, name: str) -> str:
+        """The unit of that index, which may depend on what is asked of the vehicle."""
+        index = self.index(name)
+        return index.unit or index.question(self.design(next(iter(self.layouts))).mechanism()).unit
+
+    def settings_of(self, name: str) -> dict[str, Any]:
         """The settings of that index by their keys: its own, else those of the study; others are among them."""
         own = self.own_indices.get(name)
         return {**self.settings, **own.settings} if own else self.settings
@@ -111,7 +144,7 @@ class Study:
         found = with_numbers(self, zip((sweep.place for sweep in self.sweeps), swept, strict=True))
         return replace(found, sweeps=())
 
-    def design(self, layout: str, *swept: float) -> VehicleModel:
+    def design(self, layout: str, *swept: float) -> Vehicle:
         """The vehicle with the struts of `layout`; `swept` are values of the swept places, as in `at`.
 
         Raises `StudyError` for an unknown layout, or for values where nothing is swept; `NetworkError` where one of
@@ -132,13 +165,17 @@ class Study:
         return {
             "title": self.title,
             "vehicle": vehicle_entry(self.model, self.vehicle),
-            "road": in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD}),
+            **({"road": self._road()} if self.road else {}),
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             **({"indices": own} if (own := {n: index.entry() for n, index in self.own_indices.items()}) else {}),
+            **({"conditions": [c.entry(self) for c in self.conditions]} if self.conditions else {}),
             "study": self._settings(),
             **({"methods": own} if (own := self._of_methods()) else {}),
         }
+
+    def _road(self) -> dict[str, str]:
+        return in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
 
     def _of_methods(self) -> dict[str, Any]:
         return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}
@@ -155,9 +192,19 @@ class Study:
             "realisations": self.realisations,
             "relative_error": self.relative_error,
             **in_si(index_settings().values(), self.settings),
+            "subject_to": self._limits() or None,
+            "conditions": self.over if self.conditions else None,
+            "trade_off": list(self.trade_off) or None,
+            "points": self.points if self.trade_off else None,
             "budgets": list(self.budgets) or None,
         }
         return {key: value for key, value in settings.items() if value is not None}
+
+    def _limits(self) -> dict[str, dict[str, str | float]]:
+        found: dict[str, dict[str, str | float]] = {}
+        for limit in self.limits:
+            found.setdefault(limit.of, {})[limit.sense] = limit.entry()
+        return found
 
 
 def elements_used(study: Study) -> dict[str, list[str]]:

@@ -36,6 +36,11 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
         *(f"{name} [{unit}]" for name, unit in parameters),
         *("at_bound", "starts", "agreed"),
         *(f"{name} of this design [{unit}]" for name, unit in units),
+        *(
+            text
+            for limit in study.limits
+            for text in (f"{limit.words} [{limit.unit}]", f"cost of {limit.words}_percent")
+        ),
     ]
 
 
@@ -70,6 +75,11 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
                     *map(_number, row["parameter_value"]),
                     *(at_bound, row["starts"], row["agreed"]),
                     *map(_number, row["other_value"]),
+                    *(
+                        _number(row[name][i])
+                        for i in range(len(study.limits))
+                        for name in ("limit_value", "limit_cost")
+                    ),
                 ]
 
 

@@ -1,17 +1,19 @@
-"""The sweeps of a study file: the values of each swept place, or what is wrong with them."""
+"""Sweeps and conditions of a study file: the values that places take, or what is wrong with them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import prod
+from typing import Any
 
 import numpy as np
 
 from inerter.errors import InerterError
-from inerter.files.common.entries import MOST_POINTS
+from inerter.files.common.entries import MOST_POINTS, quantity_text
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import nearest, some
+from inerter.files.study.conditions import StudyCondition, what_of
 from inerter.files.study.places import Number, Place, element_at, number_at, place_of, places, with_numbers
 from inerter.files.study.shape import SweepRange
 from inerter.files.study.study import Study, Sweep, elements_used
@@ -20,7 +22,7 @@ from inerter.units import are_alike, format_quantity, parse_quantity, shown, uni
 
 Entry = SweepRange | tuple[str, ...]
 _MOST = 2  # places at once: what a map shows
-_PLACE = ("study", "sweep")
+_PLACE, _CONDITIONS = ("study", "sweep"), "conditions"
 
 
 def sweeps_of(study: Study, entries: Mapping[str, Entry]) -> tuple[tuple[Sweep, ...], list[Problem]]:
@@ -112,3 +114,37 @@ def _spread(number: Number, entry: SweepRange, low: float, high: float) -> tuple
         raise EntryError(got='spacing = "log" from zero', expected=wanted)
     space = np.geomspace if entry.spacing == "log" else np.linspace
     return tuple(float(value) for value in space(low, high, entry.points))
+
+
+def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCondition, ...], list[Problem]]:
+    """The conditions that a file states, and what is wrong with them."""
+    conditions, problems = [], []
+    for i, entry in enumerate(entries, start=1):
+        numbers = {}
+        for label, given in (entry.model_extra or {}).items():
+            where = (f"{_CONDITIONS}[{i}]", label)
+            try:
+                place = place_of(label)
+                numbers[place.label] = _number(study, place, given)
+            except EntryError as error:
+                problems.append(replace(error.problem, place=where))
+            except InerterError as error:
+                problems.append(at(where, str(error)))
+        conditions.append(StudyCondition(numbers, entry.share, entry.name))
+    swept = {sweep.label for sweep in study.sweeps}
+    for i, condition in enumerate(conditions, start=1):
+        for label in condition.numbers.keys() & swept:
+            both = f"{label} is swept, and in a condition"
+            problems.append(at((f"{_CONDITIONS}[{i}]", label), fault=both, expected="one of the two"))
+    return tuple(conditions), problems
+
+
+def _number(study: Study, place: Place, given: Any) -> float:
+    number = number_of(study, place)
+    if what_of(study, place) is None:
+        raise EntryError(
+            got=place.label,
+            fault="not what a condition can change",
+            expected="a number of the vehicle or the road, or the value of an element",
+        )
+    return value_of(number, quantity_text(given))

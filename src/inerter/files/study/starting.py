@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from inerter.errors import InerterError, StudyError
@@ -12,6 +12,7 @@ from inerter.files.common.keys import keys_of
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
+from inerter.files.common.vehicle_shapes import MECHANISM
 from inerter.files.study.schema import study_schema
 from inerter.files.study.shape import judged_models
 from inerter.indices.registry import INDICES, make_index
@@ -20,6 +21,7 @@ from inerter.networks.elements import Damper, Inerter, Network, Spring
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.signals.road import Road
 from inerter.units import shown
+from inerter.vehicle.quarter_car import QuarterCar
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import VehicleModel
 
@@ -31,6 +33,30 @@ _LAYOUTS = {
     "S3": ("k | c - b", "with an inerter in series with the damper"),
 }
 _JOINED = "# How they are joined: | side by side (parallel), - end to end (series, binds tighter), brackets group."
+_MOST_ASKED = 3
+_PARTS = (  # a quarter car, part by part
+    "",
+    "[vehicle.coordinates]                     # What moves, each with its mass",
+    'body = "250 kg"',
+    'wheel = "35 kg"',
+    "",
+    "[vehicle.struts]                          # What is between two ports; without a lower one, on the ground",
+    "strut = { upper = { body = 1 }, lower = { wheel = 1 } }",
+    "",
+    "[vehicle.tyres]                           # What is between a port and a road",
+    'tyre = { port = { wheel = 1 }, road = "road", network = "kt" }',
+    "",
+    "[vehicle.roads]                           # Where the roads are met",
+    "road = {}",
+    "",
+    "[vehicle.forces]                          # External forces, by where they act",
+    "load = { body = 1 }",
+    "",
+    "[vehicle.measures]                        # Which outputs answer which index",
+    "comfort = { body_acceleration = 1 }",
+    'load_input = "load"',
+    'load_output = "body_displacement"',
+)
 _ELEMENTS = (
     "# What networks are made of, by names of your own. The unit of a value tells what it is:",
     "# A value is fixed, or free between two bounds; then the optimiser chooses it, for each layout and index anew.",
@@ -46,8 +72,8 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
         hint = nearest(model, judged_models()) or " It is for: inerter simulate." * (model in VEHICLES)
         known = " or ".join(map(shown, judged_models()))
         raise StudyError(f"{shown(model)} is no vehicle of study files; expected {known}.{hint}")
-    kind = VEHICLES[model]
-    car = kind.key.replace("-", " ")
+    kind = _Quarter if model == MECHANISM else VEHICLES[model]
+    car = model.replace("-", " ")
     blocks = [
         [
             f"# A study of {_a(car)}: which values make each layout best, and which layout is the best of all?",
@@ -56,13 +82,19 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
             "# What a key means: inerter explain road.speed",
         ],
         [as_line("title", f"{car.capitalize()}: with an inerter and without")],
-        ["[vehicle]", as_line("model", model), *_quantities(fields_of(kind))],
+        ["[vehicle]", as_line("model", model), *(_PARTS if kind is _Quarter else _quantities(fields_of(kind)))],
         *([["[road]", *_quantities(ROAD)]] if _moved_by_road(kind) else []),
         [*_elements(kind)],
         [_JOINED, *_mounts(kind), "[layouts]", *(_line(as_line(n, text), why) for n, (text, why) in _LAYOUTS.items())],
         [*_settings(kind)],
     ]
     return "\n\n".join("\n".join(block) for block in blocks) + "\n"
+
+
+class _Quarter(QuarterCar):
+    """What a mechanism begins as."""
+
+    key = MECHANISM
 
 
 def _line(text: str, remark: str) -> str:
@@ -89,6 +121,7 @@ def _elements(kind: type[VehicleModel]) -> Iterator[str]:
     first, second = _ELEMENTS
     told = ", ".join(f"{element.unit} {element.key}" for element in ELEMENTS.values())
     yield from (first, f"# {told}.", second, "[elements]")
+    yield from [_line(as_line("kt", "150 kN/m"), "spring, fixed: the tyre")] if kind is _Quarter else []
     for element, ends in _FREE.items():
         fixed = element is Spring and _moved_by_road(kind)
         value = element.example if fixed else dict(zip(("from", "to"), ends, strict=True))
@@ -105,16 +138,17 @@ def _mounts(kind: type[VehicleModel]) -> Iterator[str]:
 
 def _settings(kind: type[VehicleModel]) -> Iterator[str]:
     """What is asked, and below it what else can be."""
-    asked = [symbol for symbol in INDICES if _answers(kind, symbol)]
+    possible = [symbol for symbol in INDICES if _answers(kind, symbol)]
+    asked = possible[:_MOST_ASKED]
     titles = ", ".join(f"{symbol} {INDICES[symbol].title}" for symbol in asked)
-    required = {field.key: field.example for symbol in asked for field in _required(INDICES[symbol])}
-    given = {"indices": asked, "optimise": DEFAULT, "baseline": next(iter(_LAYOUTS)), **required}
+    given = {"indices": asked, "optimise": DEFAULT, "baseline": next(iter(_LAYOUTS))}
     keys = [key for key in keys_of(study_schema()) if key.place.startswith("study.") and key.place.count(".") == 1]
     sentences = {key.name: key.sentence for key in keys}
     yield from ("[study]", f"# {titles}")
     for name, value in given.items():
-        yield _line(as_line(name, value), sentences.get(name, ""))
+        yield _line(as_line(name, value), sentences[name])
     yield from ("", "# What else can be asked (take the # away):")
+    yield from [f"# More indices: {', '.join(possible[_MOST_ASKED:])}"] if possible[_MOST_ASKED:] else []
     for key in keys:
         if key.name not in given and key.example is not None:
             yield f"# {key.sentence}"
@@ -128,17 +162,15 @@ def _made(kind: type[VehicleModel]) -> VehicleModel:
     return kind(**values, **dict.fromkeys(needed_mounts_of(kind), network))
 
 
-def _required(kind: Any) -> list[Field]:
-    """Settings of an index that it cannot do without."""
-    bare = {f.name for f in dataclasses.fields(kind) if f.default is f.default_factory is dataclasses.MISSING}
-    return [field for field in fields_of(kind) if field.name in bare]
-
-
 def _answers(kind: type[VehicleModel], symbol: str) -> bool:
-    """Whether the vehicle can be asked for the index."""
-    settings: Mapping[str, float] = {field.key: 1.0 for field in _required(INDICES[symbol])}
+    """Whether the vehicle can be asked for the index, without any setting of it."""
+    bare = {
+        f.name for f in dataclasses.fields(INDICES[symbol]) if f.default is f.default_factory is dataclasses.MISSING
+    }
+    if bare - {"road"}:
+        return False
     try:
-        make_index(symbol, Road(roughness=1.0, speed=1.0), settings).question(_made(kind).mechanism())
+        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).question(_made(kind).mechanism())
     except InerterError:
         return False
     return True

@@ -127,7 +127,7 @@ def _vehicle_shape(model: str) -> type[Shape]:
 
 
 class WithVehicle(Shape):
-    """A file with a vehicle, of which what refers to it has to know: mounts and forces that it names itself, its roads."""
+    """A file with a vehicle: what it names itself, mounts and forces, is known to what refers to it."""
 
     @model_validator(mode="before")
     @classmethod

@@ -98,10 +98,10 @@ def test_many_norms_by_quadrature():
         check_one(seed)
 
 
-def check_simulated(count, coherence, lowest, seed=0):
+def check_simulated(count, coherence, lowest, near, seed=0):
     """Norms against multisines simulated on both tracks: mean squares with their scatter.
 
-    What a norm has beyond the lines of these roads is the difference to the sum over the lines, and little.
+    What a norm has beyond the lines of these roads is the difference to the sum over the lines, `near` of it at most.
     """
     vehicle, road = car(np.random.default_rng(seed)), it.Road(5e-7, 22.0, coherence=coherence)
     outputs = ["sprung_acceleration", "roll_acceleration", "front_left_travel"]
@@ -113,18 +113,18 @@ def check_simulated(count, coherence, lowest, seed=0):
     for output, lines in zip(outputs, on_lines, strict=True):
         squares = np.array([run.rms(output) ** 2 for run in runs])
         norm = it.evaluate(vehicle, it.RandomResponse({output: 1.0}, road), it.Norm()).value
-        assert abs(lines - norm**2) < 0.05 * norm**2, output
+        assert abs(lines - norm**2) < near * norm**2, output
         assert abs(squares.mean() - lines) < 4.5 * squares.std(ddof=1) / math.sqrt(count) + 1e-3 * lines, output
 
 
 def test_simulated_roads_have_the_coherence():
-    check_simulated(4, it.Coherence.first_order(0.3), lowest=0.25)
+    check_simulated(4, it.Coherence.first_order(0.3), lowest=0.25, near=0.2)
 
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("coherence", [it.Coherence.first_order(0.3), it.Coherence.isotropic(1.52)])
 def test_64_simulated_roads(coherence):
-    check_simulated(64, coherence, lowest=0.1, seed=3)
+    check_simulated(64, coherence, lowest=0.1, near=0.05, seed=3)
 
 
 @pytest.mark.campaign

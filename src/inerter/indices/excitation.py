@@ -69,7 +69,7 @@ class RoadVelocity:
         return mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """One at each road input; of two tracks with a coherence two, from their mean and from half their difference."""
+        """One at each road input; with a coherence two, from the mean of the tracks and half of their difference."""
         if not mechanism.roads:
             raise PerformanceIndexError("A road drives a mechanism at its tyres, and this one stands on none.")
         if self.road.coherence is not None and any(r.track for r in mechanism.roads):

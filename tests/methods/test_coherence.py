@@ -118,7 +118,7 @@ def check_simulated(count, coherence, lowest, near, seed=0):
 
 
 def test_simulated_roads_have_the_coherence():
-    check_simulated(4, it.Coherence.first_order(0.3), lowest=0.25, near=0.2)
+    check_simulated(3, it.Coherence.first_order(0.3), lowest=0.125, near=0.15)
 
 
 @pytest.mark.campaign

@@ -103,10 +103,12 @@ from inerter.roads.profile import Profile as Profile
 from inerter.roads.reading import profile as profile
 from inerter.roads.reading import read_profile as read_profile
 from inerter.roads.spectrum import road_spectrum as road_spectrum
+from inerter.signals.coherence import Coherence as Coherence
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
 from inerter.signals.harmonics import multisine as multisine
 from inerter.signals.harmonics import sine as sine
+from inerter.signals.harmonics import two_tracks as two_tracks
 from inerter.signals.records import held_noise as held_noise
 from inerter.signals.road import ROAD_CLASSES as ROAD_CLASSES
 from inerter.signals.road import Road as Road

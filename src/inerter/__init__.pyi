@@ -98,6 +98,10 @@ from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
 from inerter.records.result import Response as Response
 from inerter.records.writers import write_record as write_record
+from inerter.scatter.robust import Quantile as Quantile
+from inerter.scatter.robust import robust as robust
+from inerter.scatter.tolerance import Tolerance as Tolerance
+from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.roads.iri import iri as iri
 from inerter.roads.profile import Profile as Profile
 from inerter.roads.reading import profile as profile
@@ -126,10 +130,10 @@ from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
-from inerter.vehicle.absorber import Absorber as Absorber
-from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.trade_off.front import Front as Front
 from inerter.trade_off.pareto import pareto as pareto
+from inerter.vehicle.absorber import Absorber as Absorber
+from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate

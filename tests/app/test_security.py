@@ -59,7 +59,8 @@ BEARER = ("authorization", f"Bearer {TOKEN}")
 @pytest.mark.parametrize(
     "token",
     [[], [("authorization", "")], [("authorization", "Bearer")], [("authorization", f"Bearer {TOKEN}x")],
-     [("authorization", TOKEN)], [("authorization", "Basic " + TOKEN)], [BEARER, BEARER], [("cookie", f"token={TOKEN}")]],
+     [("authorization", TOKEN)], [("authorization", f"Basic {TOKEN}")], [BEARER, BEARER],
+     [("cookie", f"token={TOKEN}")]],
 )  # fmt: skip
 def test_nothing_is_told_without_the_token(client: TestClient, endpoint: Any, token: Any) -> None:
     status, _, text = asked(client, endpoint.path, [("host", HOST), *token], endpoint.verb, b"{}")

@@ -207,9 +207,10 @@ def tree_of(network: Network) -> Answer:
 
 def optimum(study: Study, body: Body) -> Answer:
     """The best design of each layout for each index that is asked for, as a study finds and judges it."""
+    wanted = tuple(body.get("indices") or study.indices)
     asked = replace(
         study,
-        indices=tuple(body.get("indices") or study.indices),
+        indices=tuple(dict.fromkeys([*study.indices, *wanted])),  # each design is judged by all
         optimise=body.get("method") or study.optimise or methods_that(searches)[0],
         evaluate=tuple(body.get("methods") or study.evaluate),
         sweep=None,
@@ -219,7 +220,7 @@ def optimum(study: Study, body: Body) -> Answer:
         study.design(layout)
     for name in asked.methods:
         asked.method(name)
-    found = [run_case(asked, Case(layout, index)) for layout in layouts for index in asked.indices]
+    found = [run_case(asked, Case(layout, index)) for layout in layouts for index in wanted]
     return {"designs": [_told(study, outcome) for outcome in found]}
 
 

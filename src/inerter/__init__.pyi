@@ -122,10 +122,10 @@ from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
-from inerter.vehicle.absorber import Absorber as Absorber
-from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.trade_off.front import Front as Front
 from inerter.trade_off.pareto import pareto as pareto
+from inerter.vehicle.absorber import Absorber as Absorber
+from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar
 from inerter.vehicle.mechanism import GROUND as GROUND
 from inerter.vehicle.mechanism import Coordinate as Coordinate

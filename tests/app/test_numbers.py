@@ -146,6 +146,22 @@ def test_budgets_and_comparisons_are_those_of_python(client: TestClient) -> None
     assert (row["name"], row["improvement_percent"]) == ("mine", -two.percent)
 
 
+def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient) -> None:
+    body = {"kind": "front", "study": DOCUMENT, "layouts": ["S3"], "points": 4, "wait": 30}
+    told = client.post("/api/work", json=body).json()["result"]
+    study = study_from(DOCUMENT)
+    found = it.pareto(study.design("S3"), [study.index("J1"), study.index("J3")], it.Norm(), points=4, seed=0)
+    (front,) = told["fronts"]
+    assert [list(point["values"].values()) for point in front["points"]] == found.values.tolist()
+    assert front["knee"] == found.knee
+    point = front["points"][front["knee"]]
+    answer = client.post(
+        "/api/panel/indices", json={"study": DOCUMENT, "layouts": ["S3"], "values": {"S3": point["texts"]}}
+    )
+    values = {row["index"]: row["value"] for row in answer.json()["designs"][0]["results"]}
+    assert values == pytest.approx(point["values"], rel=1e-9)  # the search values by kernels, a design by itself
+
+
 def test_tables_read_back_as_the_same(client: TestClient) -> None:
     request = {"study": DOCUMENT, "layouts": ["S3"]}
     panel = client.post("/api/panel/indices", json=request).json()["designs"][0]

@@ -91,6 +91,7 @@ def test_work_that_waits_is_stopped_at_once(client: TestClient) -> None:
         {"kind": "compare", "study": DOCUMENT, "layouts": ["S1"]},
         {"kind": "compare", "study": DOCUMENT, "designs": [{"layout": "S1"}] * 5},
         {"kind": "identify"},
+        {"kind": "front", "study": DOCUMENT, "indices": ["J1"]},
         {"kind": "optimise", "study": DOCUMENT, "layouts": ["S9"]},
     ],
 )

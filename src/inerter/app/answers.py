@@ -226,9 +226,16 @@ def optimum(study: Study, body: Body) -> Answer:
 
 def _told(study: Study, outcome: Outcome) -> Answer:
     """An outcome, with its values as texts that read back as the same."""
-    units = {name: study.elements[name].unit for name in outcome.parameters}
-    texts = {name: f"{value!r} {units[name]}" for name, value in outcome.parameters.items()}
-    return {**outcome.to_json(), "notes": ["".join(map(str, note)) for note in outcome.notes], "texts": texts}
+    return {
+        **outcome.to_json(),
+        "notes": ["".join(map(str, note)) for note in outcome.notes],
+        "texts": texts_of(study, outcome.parameters),
+    }
+
+
+def texts_of(study: Study, values: Mapping[str, float]) -> dict[str, str]:
+    """Values of elements as texts that read back as the same."""
+    return {name: f"{value!r} {study.elements[name].unit}" for name, value in values.items()}
 
 
 def budget(study: Study, body: Body) -> Answer:

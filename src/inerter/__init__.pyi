@@ -101,6 +101,10 @@ from inerter.roads.profile import Profile as Profile
 from inerter.roads.reading import profile as profile
 from inerter.roads.reading import read_profile as read_profile
 from inerter.roads.spectrum import road_spectrum as road_spectrum
+from inerter.scatter.robust import Quantile as Quantile
+from inerter.scatter.robust import robust as robust
+from inerter.scatter.tolerance import Tolerance as Tolerance
+from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
 from inerter.signals.harmonics import multisine as multisine

@@ -162,6 +162,18 @@ def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient)
     assert values == pytest.approx(point["values"], rel=1e-9)  # the search values by kernels, a design by itself
 
 
+def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
+    design, spread = {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}, {"c": 0.1, "b": 0.05}
+    body = {"study": DOCUMENT, "design": design, "index": "J1", "spread": spread, "samples": 64}
+    told = client.post("/api/panel/tolerance", json=body).json()
+    study = study_from(DOCUMENT)
+    car = study.design("S3").with_values({"c": 3000.0, "b": 60.0})
+    found = it.tolerance(car, study.index("J1"), it.Norm(), spread=spread, samples=64, seed=0)
+    assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total)
+    assert told["quantiles"]["0.95"] == found.quantile(0.95)
+    assert sum(told["histogram"]["counts"]) == found.values.size
+
+
 def test_tables_read_back_as_the_same(client: TestClient) -> None:
     request = {"study": DOCUMENT, "layouts": ["S3"]}
     panel = client.post("/api/panel/indices", json=request).json()["designs"][0]

@@ -1,166 +1,40 @@
-"""Kinds of long work: each is a function from a request and a folder to a result. A further kind is one more row."""
+"""Kinds of long work. A further one is one more row, and a function from a request and a folder to a result."""
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
 
-from inerter.app.designs import designs_of
-from inerter.app.documents import PATH, study_from
-from inerter.app.panels import optimum
-from inerter.errors import DesignError, RecordError, StudyError
-from inerter.figures.study import draw_study
-from inerter.files.common.folder import FIGURES, REPORT, Intent, claimed
-from inerter.files.common.toml import tables_of
-from inerter.files.identification.loading import identification_of
-from inerter.files.identification.running import read, run_identification
-from inerter.files.study.budgets import BudgetOutcome
-from inerter.files.study.cases import Outcome
-from inerter.files.study.running import StudyResult, run_study
-from inerter.files.study.study import Study
-from inerter.methods.compare import compare
-from inerter.report.identification import OWN, write_fit, write_identification
-from inerter.report.identification_data import identification_data
-from inerter.report.identified_values import elements_block
-from inerter.report.page import write_report
-from inerter.report.study_data import as_text
-
-Body = Mapping[str, Any]
 Tell = Callable[[int, int, str], None]  # how much is done, of how much, and what; raises `Stopped` if it is to stop
 RESULTS = "results"  # the folder of results in that of the work
 
 
 @dataclass(frozen=True)
 class WorkKind:
-    """A kind of work: what it is, the keys of its request beside `study`, and what does it."""
+    """A kind of work: what it is, the keys of its request beside `study`, and the function that does it.
+
+    That takes the request, the folder of the work, and how to tell how far it is.
+    """
 
     key: str
     title: str
     keys: tuple[str, ...]
-    run: Callable[[Body, Path, Tell], Any]
+    home: str
 
 
-def _optimise(body: Body, folder: Path, tell: Tell) -> Any:
-    study = study_from(body["study"])
-    layouts, indices = body.get("layouts") or list(study.layouts), body.get("indices") or list(study.indices)
-    cases = [(layout, index) for layout in layouts for index in indices]
-    found: list[Any] = []
-    for layout, index in cases:
-        tell(len(found), len(cases), f"{layout} {index}")
-        found += optimum(study, {**body, "layouts": [layout], "indices": [index]})["designs"]
-    tell(len(found), len(cases), "")
-    return {"designs": found}
-
-
-def _run(body: Body, folder: Path, tell: Tell) -> Any:
-    return _studied(study_from(body["study"]), folder, tell)
-
-
-def _sweep(body: Body, folder: Path, tell: Tell) -> Any:
-    document = dict(body["study"])
-    if not isinstance(asked := document.get("study"), Mapping):
-        raise StudyError("A sweep needs a study document with a section [study].")
-    settings = {key: value for key, value in asked.items() if key != "budgets"}
-    if body.get("sweep"):
-        settings["sweep"] = body["sweep"]
-    if body.get("indices"):
-        settings["indices"] = body["indices"]
-    document["study"] = settings
-    study = study_from(document)
-    if study.sweep is None:
-        raise StudyError('A sweep needs `sweep`, such as {"k": {"from": "10 kN/m", "to": "300 kN/m", "points": 30}}.')
-    wanted = body.get("layouts") or list(study.layouts)
-    for layout in wanted:
-        study.design(layout)
-    layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
-    return _studied(replace(study, layouts=layouts), folder, tell)
-
-
-def _studied(study: Study, folder: Path, tell: Tell) -> Any:
-    """What `inerter run` does, in the folder of the work."""
-
-    def show(result: StudyResult, into: Path) -> None:
-        tell(done[0], done[0], "figures and report")
-        draw_study(result.data, into / FIGURES)
-        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets)
-
-    def told(count: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
-        done[0] = count
-        tell(count, total, f"{last.layout} {last.index}" if last else "")
-
-    done = [0]
-    result = run_study(
-        study,
-        folder / RESULTS,
-        jobs=max((os.cpu_count() or 2) - 1, 1),
-        progress=told,
-        compiling=lambda title, number, total: tell(0, 0, f"compiling kernels {number} of {total}: {title}"),
-        finish=show,
-    )
-    return json.loads("".join(as_text(result)))
-
-
-def _compare(body: Body, folder: Path, tell: Tell) -> Any:
-    study = study_from(body["study"])
-    designs = designs_of(study, body)
-    if not 2 <= len(designs) <= 4:
-        raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
-    first, *others = designs
-    indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
-    asked = [(design, index, method) for design in others for index in indices for method in methods]
-    rows: list[dict[str, Any]] = []
-    for design, index, method in asked:
-        tell(len(rows), len(asked), f"{design.name} {index}")
-        found = compare(design.mechanism, first.mechanism, study.index(index), study.method(method))
-        rows.append(
-            {
-                "name": design.name,
-                "index": index,
-                "method": method,
-                "unit": found.first.unit,
-                "value": found.first.value,
-                "first_value": found.second.value,
-                "difference": found.difference.value,
-                "standard_error": found.difference.standard_error,
-                "improvement_percent": -found.percent,
-                "improvement_error_percent": found.percent_error,
-                "status": found.status.kind.value,
-                "message": found.status.message,
-            }
-        )
-    return {"designs": [design.told(study) for design in designs], "comparisons": rows}
-
-
-def _identify(body: Body, folder: Path, tell: Tell) -> Any:
-    records = [Path(record) for record in body.get("records") or ()]
-    if not records:
-        raise RecordError("Which records? Send their files to /api/records, and give the ids as `records`.")
-    request = identification_of({"model": {}, **(body.get("config") or {})}, PATH)
-    request = replace(request, name=body.get("model") or request.name)
-    request.models()
-    readings = []
-    for number, path in enumerate(records):
-        tell(number, len(records), f"reading {path.name}")
-        readings.append(read(path, request.record))
-    with claimed(Intent(folder / RESULTS, "identify", OWN, tuple(records))) as results:
-        found = run_identification(readings, request, lambda part: tell(round(1000.0 * part), 1000, "fitting"))
-        write_fit(found, results.draft)
-        results.publish()
-        write_identification(found, results.draft, lambda part: tell(round(1000.0 * part), 1000, "drawing"))
-    return {**identification_data(found), "device": tables_of(elements_block(found).encode(), PATH, "a device")}
-
-
+_STUDIED, _DESIGNS = "inerter.app.studied", ("indices", "methods")
 KINDS = {
     kind.key: kind
     for kind in (
-        WorkKind("optimise", "The best values", ("layouts", "indices", "method", "methods"), _optimise),
-        WorkKind("run", "The whole study, with its report", (), _run),
-        WorkKind("sweep", "The best designs over swept values", ("sweep", "layouts", "indices"), _sweep),
-        WorkKind("compare", "Two to four designs beside each other", ("designs", "indices", "methods"), _compare),
-        WorkKind("identify", "What a measured device is made of", ("records", "model", "config"), _identify),
+        WorkKind("optimise", "The best values", ("layouts", "method", *_DESIGNS), f"{_STUDIED}:optimise"),
+        WorkKind("run", "The whole study, with its report", (), f"{_STUDIED}:run"),
+        WorkKind("sweep", "The best designs over swept values", ("sweep", "layouts", "indices"), f"{_STUDIED}:sweep"),
+        WorkKind("compare", "Two to four designs beside each other", ("designs", *_DESIGNS), f"{_STUDIED}:compared"),
+        WorkKind(
+            "identify",
+            "What a measured device is made of",
+            ("records", "model", "config"),
+            "inerter.app.identified:identify",
+        ),
     )
 }

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from inerter.app.panels import answered
-from inerter.app.wire import Refused, encoded, refusal_of
+from inerter.app.calls import load
+from inerter.app.wire import Refused, refusal_of
 from inerter.work.processes import Processes
 
 _PATIENCE = 2.0  # seconds that a call nobody waits for may go on before its process is ended
@@ -29,6 +28,7 @@ class Waiting:
 class Lane:
     """One process, and the requests that wait for it, one for each page and panel."""
 
+    homes: tuple[str, ...]  # modules that the process loads when it begins
     worker: Processes = field(default_factory=lambda: Processes(1))
     waiting: dict[tuple[str, str], Waiting] = field(default_factory=dict)
     running: tuple[tuple[str, str], Waiting] | None = None
@@ -90,33 +90,11 @@ class Lane:
     async def begin(self) -> None:
         """Have the process begin, and load what it answers with."""
         with suppress(Exception):  # should it fail, so does the first request, which says why
-            await asyncio.wrap_future(await asyncio.to_thread(self.worker.submit, loaded))
+            await asyncio.wrap_future(await asyncio.to_thread(self.worker.submit, load, *self.homes))
 
     def renew(self) -> None:
         """End the process, whatever it does; another begins when it is needed."""
         self.worker.shutdown(wait=False, cancel_futures=True)
-
-
-def loaded() -> bool:
-    """Nothing to do: the process has loaded this module, and with it all that panels call."""
-    return True
-
-
-def panel(key: str, body: Mapping[str, Any]) -> tuple[int, Any]:
-    """The answer of a panel as text, or the status and the body of a refusal: made in another process."""
-    return called(lambda: answered(key, body), body.get("sequence"))
-
-
-def called(call: Callable[[], Any], sequence: Any = None) -> tuple[int, Any]:
-    """What a call gives as text of JSON, or as the status and the body of a refusal."""
-    try:
-        found = call()
-    except Exception as error:
-        refused = refusal_of(error)
-        return refused.status, refused.body
-    if isinstance(found, bytes):
-        return 200, found
-    return 200, encoded(found if sequence is None else {"sequence": sequence, **found})
 
 
 def out_of_date(sequence: float) -> Refused:
@@ -127,8 +105,3 @@ def out_of_date(sequence: float) -> Refused:
 def _refuse(waiting: Waiting, why: Refused) -> None:
     if not waiting.answer.done():
         waiting.answer.set_exception(why)
-
-
-def answer_of(function: Callable[..., Any], *args: Any) -> tuple[int, Any]:
-    """What a function gives, in another process: bytes as they are, other data as JSON; or a refusal."""
-    return called(lambda: function(*args))

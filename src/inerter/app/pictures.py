@@ -18,7 +18,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
 from inerter.networks.elements import Network
 
-FORMATS = {"svg": "image/svg+xml", "png": "image/png"}
+FORMATS = ("svg", "png")
 NETWORKS = "networks"
 
 

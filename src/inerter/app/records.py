@@ -1,4 +1,4 @@
-"""Measured records that were sent: on disk, and what was found in them."""
+"""Measured records that were sent, on disk."""
 
 from __future__ import annotations
 
@@ -8,17 +8,10 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from secrets import token_hex
-from typing import Any
 
 from inerter.app.wire import Refused
-from inerter.figures.curves import thinned
-from inerter.files.identification.loading import RecordRequest
-from inerter.files.identification.running import read
-from inerter.records.readers import FORMATS
-from inerter.units import shown
 
 _MOST = 100  # that are kept
-_SHOWN = 2000  # samples of a channel
 
 
 @dataclass
@@ -29,17 +22,13 @@ class Records:
     known: dict[str, Path] = field(default_factory=dict)
 
     async def take(self, name: str, body: AsyncIterator[bytes]) -> str:
-        """Write what comes to a file, piece by piece; raises `Refused` for a name of no kind of record."""
-        ending = Path(name).suffix.lower()
-        if ending not in FORMATS:
-            known = ", ".join(FORMATS)
-            raise Refused(400, f"Got a file named {shown(name)}; a record is a file that ends in one of {known}.")
+        """Write what comes to a file, piece by piece; raises `Refused` if there are too many."""
         if len(self.known) >= _MOST:
             raise Refused(400, f"There are {_MOST} records already. Delete some of them first.")
         number = token_hex(8)
         folder = self.root / number
         folder.mkdir(parents=True)
-        path = folder / f"{_harmless(Path(name).stem)}{ending}"
+        path = folder / _harmless(name)
         try:
             with path.open("wb") as stream:
                 async for chunk in body:
@@ -62,26 +51,9 @@ class Records:
         del self.known[number]
 
 
-def found_in(path: str) -> dict[str, Any]:
-    """What is in a record, and what is worth knowing about it.
-
-    Raises `RecordError` for a file that cannot be used.
-    """
-    reading = read(Path(path), RecordRequest())
-    record = reading.received
-    return {
-        "name": record.source,
-        "samples": int(record.time.size),
-        "duration": float(record.time[-1] - record.time[0]),
-        "channels": [
-            dict(zip(("name", "time", "values"), (name, *thinned(record.time, values, _SHOWN)), strict=True))
-            for name, values in record.channels().items()
-            if name != "time"
-        ],
-        "notes": list(record.notes),
-        "findings": [{"severity": f.severity, "about": f.about, "sentence": f.sentence} for f in reading.findings],
-    }
-
-
 def _harmless(name: str) -> str:
-    return re.sub(r"[^\w.+-]", "_", name).strip(".")[:80] or "record"
+    """A name of a file that leads nowhere else, with the same ending."""
+    last = re.split(r"[/\\]", name)[-1]
+    stem, dot, ending = last.rpartition(".")
+    plain = re.sub(r"[^\w+-]", "_", stem if dot else ending)[:80] or "record"
+    return plain + (f".{re.sub(r'[^A-Za-z0-9]', '', ending)[:8]}" if dot else "")

@@ -17,7 +17,9 @@ from typing import Any
 
 import uvicorn
 
-from inerter.app.server import Server, application, opened
+from inerter.app.requests import opened
+from inerter.app.routes import application
+from inerter.app.server import Server
 from inerter.errors import StudyError, WorkError
 
 ADDRESS, PORT, TOKEN = "127.0.0.1", 8722, "INERTER_TOKEN"

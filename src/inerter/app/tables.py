@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import chain
 from typing import Any
 
-from inerter.app.panels import answered
+from inerter.app.answers import answered
 from inerter.errors import StudyError
 
 Rows = Iterable[list[Any]]

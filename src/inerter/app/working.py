@@ -6,10 +6,11 @@ import json
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
+from inerter.app.calls import called
 from inerter.app.kinds import KINDS
-from inerter.app.lanes import called
 from inerter.app.wire import decoded, encoded
 from inerter.writing import whole
 
@@ -44,7 +45,7 @@ def work(folder: str) -> dict[str, Any]:
     def run() -> Any:
         nonlocal stopped
         try:
-            return KINDS[request["kind"]].run(request, place, _Telling(place))
+            return resolve_name(KINDS[request["kind"]].home)(request, place, _Telling(place))
         except Stopped:
             stopped = True
             return None

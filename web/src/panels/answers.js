@@ -71,7 +71,8 @@ export function number({ value, standard_error }) {
 /** @param {number | null | undefined} value @param {number | null} [error] */
 export function percent(value, error) {
   if (value === null || value === undefined) return "–";
-  const text = `${value < 0 ? "−" : ""}${Math.abs(value).toFixed(2)} %`;
+  const size = Math.abs(value);
+  const text = `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
   return error ? `${text} ± ${shown(error, 2)}` : text;
 }
 

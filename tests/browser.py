@@ -23,7 +23,7 @@ _READY = 240.0  # seconds, with kernels to compile
 class Served:
     """A workbench that runs, and can be stopped and begun again on its port."""
 
-    study: Path
+    study: Path | None
     port: int
     token: str = _TOKEN
     more: tuple[str, ...] = ()
@@ -38,7 +38,8 @@ class Served:
         return f"{self.origin}/#token={self.token}"
 
     def begin(self) -> None:
-        command = [sys.executable, "-c", "from inerter.cli.start import main; main()", "serve", str(self.study)]
+        command = [sys.executable, "-c", "from inerter.cli.start import main; main()", "serve"]
+        command += [] if self.study is None else [str(self.study)]
         command += ["--port", str(self.port), "--no-browser", *self.more]
         self.process = subprocess.Popen(
             command, stdout=subprocess.PIPE, text=True, env={**os.environ, "INERTER_TOKEN": self.token}

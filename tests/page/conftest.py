@@ -29,7 +29,7 @@ def serve(chromium: Any) -> Iterator[Callable[..., Served]]:
     """A function that begins a workbench."""
     begun: list[Served] = []
 
-    def begin(study: Path, *more: str) -> Served:
+    def begin(study: Path | None, *more: str) -> Served:
         served = Served(study, free_port(), more=more)
         begun.append(served)
         served.begin()

@@ -90,8 +90,21 @@ function Editor({ store }) {
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
       : html`<${Schematic} editing=${editing} tree=${shownTree} stale=${tree === null} />`}
+    ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
     <${Text} store=${store} text=${text} />`;
+}
+
+/** What is selected, and the groups that it is in: each can be selected. @param {{store: Store, tree: Tree, path: Path}} props */
+function Trail({ store, tree, path }) {
+  return html`<div class="row trail" role="group" aria-label="Selected part">
+    <span class="quiet">Selected:</span>
+    ${[...path.keys(), path.length].map((depth) => {
+      const part = partAt(tree, path.slice(0, depth));
+      const text = depth === 0 ? "the whole" : part ? written(part) : "";
+      return html`<button type="button" class="link" key=${depth} aria-pressed=${depth === path.length} onClick=${() => store.dispatch({ type: "viewed", view: { path: path.slice(0, depth) } })}>${text.length > 24 ? `${text.slice(0, 23)}…` : text}</button>`;
+    })}
+  </div>`;
 }
 
 /** @param {Tree} part */

@@ -39,12 +39,13 @@ def _forty_elements() -> str:
 
 
 def _long_names() -> str:
+    """The longest names that a study may have."""
     long = "the_damper_that_the_supplier_calls_by_its_whole_catalogue_number_0123456789"
-    title = "A title of many words, such as a report of a committee on suspension would have it, " * 3
-    layout = "the layout with everything that anybody ever wished for, and then some more of it"
+    title = ("A title of many words, as a committee on suspension would have it, " * 4)[:200]
+    layout, other = (f"{start}-layout-with-everything-anybody-ever-wished-for"[:40] for start in ("the", "another"))
     return (
         f'title = "{title}"\n{HEAD}[elements]\nk = "120 kN/m"\n{long} = {{ from = "100 N s/m", to = "100 kN s/m" }}\n'
-        f'b = "300 kg"\n[layouts]\n"{layout}" = "k | {long}"\n"another one" = "k | {long} - b"\n{TAIL}'
+        f'b = "300 kg"\n[layouts]\n{layout} = "k | {long}"\n{other} = "k | {long} - b"\n{TAIL}'
     )
 
 
@@ -54,6 +55,7 @@ STUDIES: dict[str, Callable[[], str] | None] = {
     "ball_screw": (EXAMPLES / "ball_screw.toml").read_text,
     "forty-elements": _forty_elements,
     "long-names": _long_names,
+    "faulty": lambda: _long_names().replace("120 kN/m", "120").replace("layouts]\n", 'layouts]\n"no name" = "k - "\n'),
     "empty": None,
 }
 

@@ -111,7 +111,7 @@ class RationalMechanism:
 
     def response(self, output: str, source: str) -> tuple[flint.fmpq_poly, flint.fmpq_poly]:
         """Numerator and denominator, from a road's velocity or a force."""
-        stem, _, what = output.rpartition("_")
+        stem, _, what = output.replace("_relative_", "_").rpartition("_")
         loads = []  # (polynomial, constant column)
         if source in self.roads:
             for value, order, nodes, roads in self.branches:
@@ -127,6 +127,8 @@ class RationalMechanism:
         if what in ("displacement", "velocity", "acceleration"):
             power = {"displacement": 0, "velocity": 1, "acceleration": 2}[what]
             top = S**power * moved({self.names.index(stem): flint.fmpq(1)})
+            if source == "ground_acceleration" and what == "acceleration":
+                top += self.denominator
         else:
             assert what in ("force", "load")
             top = flint.fmpq_poly([0])
@@ -218,29 +220,49 @@ def _squared(p):
 
 
 def index_value(mechanism: Mechanism, index) -> float | str | None:
-    """J1, J3 or J5 with the exact conventions; INFINITE; or None where a pole is multiple."""
-    question, exact = index.question(mechanism), RationalMechanism(mechanism)
-    if question.road is None:
-        top, bottom = exact.response(question.outputs[0].output, question.inputs[0])
-        over, under = _filter(question.filters[0]) if question.filters[0] is not None else (S**0, S**0)
-        found = peak_gain(top * over, bottom * under)
+    """An index with the exact conventions; INFINITE; or None where a pole is multiple."""
+    question = index.question(mechanism)
+    driven = question.drive.driven(mechanism)
+    arrivals, exact = question.arrivals(driven), RationalMechanism(driven)
+    if not question.drive.is_random:
+        (arrival,) = arrivals
+        top, bottom = exact.response(question.outputs[0].output, arrival.input)
+        over, under = _filter(question.filters[0])
+        found = peak_gain(top * over * (S if arrival.displacement else 1), bottom * under)
         return found if found is INFINITE else abs(question.outputs[0].weight) * float(found)
-    distances = {road.name: road.distance for road in mechanism.roads}
-    times = [distances[name] / question.road.speed for name in question.inputs]
     total = 0.0
     for output, passed in zip(question.outputs, question.filters, strict=True):
-        pairs = [exact.response(output.output, name) for name in question.inputs]
-        tops, bottom = [top for top, _ in pairs], pairs[0][1]
-        if passed is not None:
-            over, under = _filter(passed)
-            tops, bottom = [top * over for top in tops], bottom * under
-        square = mean_square(tops, bottom, times)
+        square = _square(exact, arrivals, output.output, passed)
         if square is INFINITE or square is None:
             return square
         total += abs(output.weight) * float(square.sqrt())
-    return total * question.road.velocity_intensity
+    return total * question.drive.size
+
+
+def _square(exact: RationalMechanism, arrivals, output: str, passed):
+    """The mean square of an output over all sources; INFINITE; or None."""
+    total, over = flint.arb(0), _filter(passed)
+    for source in {arrival.source for arrival in arrivals}:
+        own = [arrival for arrival in arrivals if arrival.source == source]
+        before = {arrival.filter: _filter(arrival.filter) for arrival in own}
+        bottom, tops = over[1], []
+        for _, under in before.values():
+            bottom = bottom * under
+        for arrival in own:
+            top, below = exact.response(output, arrival.input)
+            top = top * over[0] * before[arrival.filter][0] * rational(arrival.lever)
+            for other, (_, under) in before.items():
+                top = top * (under if other != arrival.filter else 1)
+            tops.append(top)
+        square = mean_square(tops, bottom * below, [arrival.delay for arrival in own])
+        if square is INFINITE or square is None:
+            return square
+        total += square
+    return total
 
 
 def _filter(given):
-    """Numerator and denominator of a filter."""
+    """Numerator and denominator of a filter; one over one of none."""
+    if given is None:
+        return S**0, S**0
     return tuple(flint.fmpq_poly([rational(c) for c in reversed(p)]) for p in (given.numerator, given.denominator))

@@ -88,6 +88,7 @@ class StatusKind(StrEnum):
     DIRECT_TERM = "direct-term"
     INACCURATE = "inaccurate"
     UNBOUNDED = "unbounded"
+    INFEASIBLE = "infeasible"
     FAILED = "failed"
 
 

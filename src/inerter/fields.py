@@ -11,12 +11,12 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-_QUANTITY, _MOUNT = "inerter quantity", "inerter mount"
+_QUANTITY, _MOUNT, _CHOICE = "inerter quantity", "inerter mount", "inerter choice"
 
 
 @dataclasses.dataclass(frozen=True)
 class Field:
-    """A positive number of `unit`."""
+    """A positive number of `unit`; one with a `default` may be left out, and may be zero if that is."""
 
     name: str
     unit: str  # SI
@@ -24,11 +24,24 @@ class Field:
     example: str = ""  # of a value with its unit
     key: str = ""  # in files, if that is not the name
     words: str = ""  # to go before "of ...", if that is not the name
+    default: float | None = None  # in `unit`
 
     @property
     def in_words(self) -> str:
         """What it is called in sentences."""
         return self.words or self.name.replace("_", " ")
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """A text: one of the `options`, or any name if there are none."""
+
+    name: str
+    options: tuple[str, ...]
+    sentence: str
+    example: str = ""
+    key: str = ""  # in files, if that is not the name
+    needed: bool = False  # whether it must be given
 
 
 def quantity(unit: str, sentence: str, example: str, *, key: str = "", words: str = "") -> Mapping[str, Any]:
@@ -41,13 +54,25 @@ def quantity(unit: str, sentence: str, example: str, *, key: str = "", words: st
     ... class Wheel:
     ...     mass: float = dataclasses.field(metadata=quantity("kg", "With its tyre.", "25 kg"))
     >>> fields_of(Wheel)
-    (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words=''),)
+    (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words='', default=None),)
     """
     return {_QUANTITY: Field("", unit, sentence, example, key, words)}
 
 
+def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:
+    """The metadata of a dataclass field that is one of these texts, or without `options` a name; as `quantity`.
+
+    >>> @dataclasses.dataclass(frozen=True)
+    ... class Wheel:
+    ...     side: str = dataclasses.field(default="left", metadata=choice(("left", "right"), "Where it is."))
+    >>> choices_of(Wheel)
+    (Choice(name='side', options=('left', 'right'), sentence='Where it is.', example='left', key='side', needed=False),)
+    """
+    return {_CHOICE: Choice("", options, sentence, example or (options[0] if options else ""), key)}
+
+
 def mount(sentence: str) -> Mapping[str, Any]:
-    """The metadata of a dataclass field that is a network; files give it in their layouts."""
+    """The metadata of a dataclass field that is a network; files give it in their layouts, unless it may be None."""
     return {_MOUNT: sentence}
 
 
@@ -56,14 +81,35 @@ def fields_of(kind: type) -> tuple[Field, ...]:
     return _stated(kind)[0]
 
 
+def choices_of(kind: type) -> tuple[Choice, ...]:
+    """The texts of a dataclass that are chosen, in their order."""
+    return tuple(_choice_of(f) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
+
+
 def mounts_of(kind: type) -> tuple[str, ...]:
     """The networks of a dataclass, in their order."""
-    return _stated(kind)[1]
+    return tuple(_stated(kind)[1])
+
+
+def needed_mounts_of(kind: type) -> tuple[str, ...]:
+    """Those networks of a dataclass that cannot be left out, in their order."""
+    return tuple(name for name, needed in _stated(kind)[1].items() if needed)
 
 
 @cache
-def _stated(kind: Any) -> tuple[tuple[Field, ...], tuple[str, ...]]:
+def _stated(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
     every = dataclasses.fields(kind)
-    stated = [(f.name, f.metadata[_QUANTITY]) for f in every if _QUANTITY in f.metadata]
-    quantities = tuple(dataclasses.replace(field, name=name, key=field.key or name) for name, field in stated)
-    return quantities, tuple(f.name for f in every if _MOUNT in f.metadata)
+    quantities = tuple(_quantity_of(field) for field in every if _QUANTITY in field.metadata)
+    return quantities, {f.name: f.default is dataclasses.MISSING for f in every if _MOUNT in f.metadata}
+
+
+def _choice_of(field: dataclasses.Field[Any]) -> Choice:
+    stated: Choice = field.metadata[_CHOICE]
+    needed = field.default is dataclasses.MISSING
+    return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, needed=needed)
+
+
+def _quantity_of(field: dataclasses.Field[Any]) -> Field:
+    stated: Field = field.metadata[_QUANTITY]
+    default = field.default if isinstance(field.default, float) else None
+    return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, default=default)

@@ -14,6 +14,7 @@ from inerter.errors import UnitError
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
+STANDARD_GRAVITY = 9.80665  # [m/s^2]
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*")
 _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 # Pint evaluates what it is given, so only names, small exponents and separators reach it.

@@ -105,7 +105,7 @@ def test_what_is_no_filter_is_refused_in_a_sentence(case):
 
 
 def question(outputs, passed):
-    return Question(("road",), outputs, Combination.SUM_OF_RMS, it.Road(1e-6, 20.0), "N", filter=passed)
+    return Question(outputs, Combination.SUM_OF_RMS, it.Road(1e-6, 20.0), "N", filter=passed)
 
 
 def test_a_question_takes_a_filter_for_all_outputs_or_one_for_each():

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from inerter.errors import WorkError
 from inerter.work.pieces import WORTH, Cutter, Worked
-from inerter.work.pool import KILLS, Pool, pooled
+from inerter.work.pool import KILLS, Pool, _Start, pooled
 from inerter.work.processes import Processes
 from inerter.work.running import mapped, running_on
 
@@ -226,3 +226,27 @@ def test_what_is_not_asked_for_any_more_is_not_begun() -> None:
         results.close()  # type: ignore[attr-defined]
         start = time.monotonic()
     assert time.monotonic() - start < SOON  # all would take 500 s
+
+
+@pytest.mark.parametrize(
+    ("left", "first", "done", "seconds", "begins"),
+    [
+        (100, 0.6, 2, 1.2, True),  # a minute at this pace
+        (100, 0.6, 2, 1.0, False),  # too early to tell
+        (15, 0.9, 14, 1.45, False),  # only the first took long: it loads what all need
+        (5, 0.6, 2, 1.2, False),  # over before processes are ready
+        (None, 0.6, 3, 2.9, False),  # nobody knows how many there are
+        (None, 0.6, 3, 3.1, True),
+        (None, 3.1, 1, 3.1, True),
+    ],
+)
+def test_processes_start_when_the_pace_tells_that_they_are_worth_it(
+    left: int | None, first: float, done: int, seconds: float, begins: bool
+) -> None:
+    ready: Future[None] = Future()
+    start = _Start(lambda: [ready, Future()], left)
+    assert not start.is_over(1, first)
+    assert not start.is_over(done, seconds)
+    assert bool(start.starting) is begins
+    ready.set_result(None)
+    assert start.is_over(done + 1, seconds + 0.01) is begins  # work goes on here until the first of them is ready

@@ -215,6 +215,10 @@ def optimum(study: Study, body: Body) -> Answer:
         sweep=None,
     )
     layouts = body.get("layouts") or study.layouts
+    for layout in layouts:
+        study.design(layout)
+    for name in asked.methods:
+        asked.method(name)
     found = [run_case(asked, Case(layout, index)) for layout in layouts for index in asked.indices]
     return {"designs": [_told(study, outcome) for outcome in found]}
 

@@ -7,7 +7,7 @@ import json
 import shutil
 import time
 from collections.abc import AsyncIterator, Mapping
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, Executor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -64,7 +64,7 @@ class Jobs:
     """All long work, and the process that does it."""
 
     root: Path
-    worker: Processes = field(default_factory=lambda: Processes(1))
+    worker: Executor = field(default_factory=lambda: Processes(1))
     known: dict[str, Job] = field(default_factory=dict)
     _queue: asyncio.Queue[Job] = field(default_factory=asyncio.Queue)
 

@@ -1,107 +1,121 @@
-"""Processes that answer panels, and which of the waiting requests: of the same page and panel the newest."""
+"""Processes that answer requests one after another, and which requests: of the same page and panel the newest."""
 
 from __future__ import annotations
 
 import asyncio
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, Executor
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from inerter.app.calls import load
 from inerter.app.wire import Refused, refusal_of
-from inerter.work.processes import Processes
 
 _PATIENCE = 2.0  # seconds that a call nobody waits for may go on before its process is ended
+_MOST = 1000  # pages and panels whose newest request is known
+Who = tuple[str, str]  # a page and a panel
+Call = tuple[Any, ...]  # a function that gives a status and a body, and its arguments
 
 
-@dataclass
+@dataclass(eq=False)
 class Waiting:
-    """A request, what it is answered by, and whether anybody still waits for it."""
+    """A request, and what it is answered by."""
 
-    sequence: float
-    call: tuple[Any, ...]
-    answer: asyncio.Future[bytes]
+    call: Call
+    sequence: float = 0.0
+    answer: asyncio.Future[bytes] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
+    outdated: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def refuse(self, why: Refused) -> None:
+        """Answer with a refusal, unless there is an answer already."""
+        if not self.answer.done():
+            self.answer.set_exception(why)
+
+    def overtake(self) -> None:
+        """A newer request has come: nobody waits for this one any more."""
+        self.refuse(out_of_date(self.sequence))
+        self.outdated.set()
 
 
 @dataclass
 class Lane:
-    """One process, and the requests that wait for it, one for each page and panel."""
+    """One process, and the requests that wait for it."""
 
     homes: tuple[str, ...]  # modules that the process loads when it begins
-    worker: Processes = field(default_factory=lambda: Processes(1))
-    waiting: dict[tuple[str, str], Waiting] = field(default_factory=dict)
-    running: tuple[tuple[str, str], Waiting] | None = None
-    outdated: asyncio.Event = field(default_factory=asyncio.Event)
-    _something: asyncio.Event = field(default_factory=asyncio.Event)
+    worker: Executor
+    waiting: asyncio.Queue[Waiting] = field(default_factory=asyncio.Queue)
 
-    async def ask(self, who: tuple[str, str], sequence: float, call: tuple[Any, ...]) -> bytes:
-        """The answer of a call; raises `Refused` if a newer one of the same page and panel has come."""
-        mine = Waiting(sequence, call, asyncio.get_running_loop().create_future())
-        others = [self.waiting.get(who), self.running[1] if self.running and self.running[0] == who else None]
-        if any(other is not None and other.sequence > sequence for other in others):
-            raise out_of_date(sequence)
-        for other in others:
-            if other is not None:
-                _refuse(other, out_of_date(other.sequence))
-        self.waiting.pop(who, None)
-        self.waiting[who] = mine
-        if others[1] is not None:
-            self.outdated.set()
-        self._something.set()
+    async def answer(self, mine: Waiting) -> bytes:
+        """The answer of a request, when its turn has come."""
+        self.waiting.put_nowait(mine)
         return await mine.answer
 
     async def work(self) -> None:
         """Answer what waits, the first first, for ever."""
         while True:
-            while not self.waiting:
-                self._something.clear()
-                await self._something.wait()
-            who = next(iter(self.waiting))
-            self.running = who, self.waiting.pop(who)
-            self.outdated.clear()
-            await self._answer(self.running[1])
-            self.running = None
-
-    async def _answer(self, mine: Waiting) -> None:
-        try:
-            future = asyncio.wrap_future(self.worker.submit(*mine.call))
-            stale = asyncio.ensure_future(self.outdated.wait())
-            await asyncio.wait((future, stale), return_when=asyncio.FIRST_COMPLETED)
-            if not future.done():
-                await asyncio.wait((future,), timeout=_PATIENCE)
-            stale.cancel()
-            if not future.done():
-                future.cancel()
-                await asyncio.to_thread(self.renew)
-                return
-            status, body = future.result()
-        except BrokenExecutor:
-            _refuse(mine, Refused(500, "The process that worked on this has ended, perhaps for want of memory."))
-        except Exception as error:
-            _refuse(mine, refusal_of(error))
-        else:
-            if not mine.answer.done():
-                if status == 200:
-                    mine.answer.set_result(body)
-                else:
-                    mine.answer.set_exception(Refused(status, **body))
+            mine = await self.waiting.get()
+            if not mine.outdated.is_set():
+                await self._do(mine)
 
     async def begin(self) -> None:
         """Have the process begin, and load what it answers with."""
         with suppress(Exception):  # should it fail, so does the first request, which says why
-            await asyncio.wrap_future(await asyncio.to_thread(self.worker.submit, load, *self.homes))
+            await (await self._submitted((load, *self.homes)))
 
-    def renew(self) -> None:
-        """End the process, whatever it does; another begins when it is needed."""
-        self.worker.shutdown(wait=False, cancel_futures=True)
+    async def _do(self, mine: Waiting) -> None:
+        try:
+            status, body = await self._called(mine)
+        except BrokenExecutor:
+            mine.refuse(Refused(500, "The process that worked on this has ended, perhaps for want of memory."))
+        except TimeoutError:  # nobody waits for it
+            await asyncio.to_thread(
+                self.worker.shutdown, wait=False, cancel_futures=True
+            )  # another begins in its place
+        except Exception as error:
+            mine.refuse(refusal_of(error))
+        else:
+            if status != 200:
+                mine.refuse(Refused(status, **body))
+            elif not mine.answer.done():
+                mine.answer.set_result(body)
+
+    async def _submitted(self, call: Call) -> asyncio.Future[Any]:
+        """The call, handed to the process, which may have to begin first."""
+        function, *args = call
+        return asyncio.wrap_future(await asyncio.to_thread(partial(self.worker.submit, function, *args)))
+
+    async def _called(self, mine: Waiting) -> tuple[int, Any]:
+        """What the call gives; raises `TimeoutError` if that takes long, and nobody waits for it any more."""
+        future = await self._submitted(mine.call)
+        overtaken = asyncio.create_task(mine.outdated.wait())
+        try:
+            await asyncio.wait((future, overtaken), return_when=asyncio.FIRST_COMPLETED)
+            return await asyncio.wait_for(future, None if future.done() else _PATIENCE)
+        finally:
+            overtaken.cancel()
+
+
+@dataclass
+class Newest:
+    """The newest request of each page and panel, on whichever lane it is."""
+
+    known: dict[Who, Waiting] = field(default_factory=dict)
+
+    async def ask(self, lane: Lane, who: Who, sequence: float, call: Call) -> bytes:
+        """The answer of a call; raises `Refused` if a newer one has come, or comes meanwhile."""
+        mine, before = Waiting(call, sequence), self.known.pop(who, None)
+        if before is not None and before.sequence > sequence:
+            self.known[who] = before
+            raise out_of_date(sequence)
+        if before is not None:
+            before.overtake()
+        if len(self.known) >= _MOST:
+            del self.known[next(iter(self.known))]
+        self.known[who] = mine
+        return await lane.answer(mine)
 
 
 def out_of_date(sequence: float) -> Refused:
     """What answers a request that a newer one has overtaken."""
     return Refused(409, "A newer request of this page has come.", outdated=True, sequence=sequence)
-
-
-def _refuse(waiting: Waiting, why: Refused) -> None:
-    if not waiting.answer.done():
-        waiting.answer.set_exception(why)

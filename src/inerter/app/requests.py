@@ -104,9 +104,8 @@ async def _panel(server: Server, request: Request, body: bodies.PanelRequest) ->
     lane = "quick" if at_once(key, asked) else "slow"
     if lane == "slow" or key == "optimise":
         await server.warming.wait()
-    found = await server.lanes[lane].ask(
-        (body.client, key), body.sequence, (panel, "inerter.app.answers:answered", key, asked)
-    )
+    call = panel, "inerter.app.answers:answered", key, asked
+    found = await server.newest.ask(server.lanes[lane], (body.client, key), body.sequence, call)
     return as_json(found)
 
 

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
+from concurrent.futures import Executor
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from secrets import token_hex
 from typing import Any
 
 from inerter.app.calls import call
 from inerter.app.jobs import Jobs
-from inerter.app.lanes import Lane
+from inerter.app.lanes import Lane, Newest, Waiting
 from inerter.app.records import Records
 from inerter.app.warming import Warming
+from inerter.work.processes import Processes
 
 _LANES = {  # norms; what simulates; records, figures and tables
     "quick": ("inerter.app.answers",),
@@ -29,13 +30,16 @@ class Server:
 
     root: Path  # the folder of long work and records
     start: dict[str, Any]  # the study of the command line
-    lanes: dict[str, Lane] = field(default_factory=lambda: {n: Lane(homes) for n, homes in _LANES.items()})
+    process: Callable[[], Executor] = lambda: Processes(1)  # what lanes and long work are done by
+    newest: Newest = field(default_factory=Newest)
+    lanes: dict[str, Lane] = field(init=False)
     jobs: Jobs = field(init=False)
     records: Records = field(init=False)
     warming: Warming = field(init=False)
 
     def __post_init__(self) -> None:
-        self.jobs, self.records = Jobs(self.root / "work"), Records(self.root / "records")
+        self.lanes = {name: Lane(homes, self.process()) for name, homes in _LANES.items()}
+        self.jobs, self.records = Jobs(self.root / "work", self.process()), Records(self.root / "records")
         self.warming = Warming(self.root / "kernels.jsonl")
 
     @asynccontextmanager
@@ -60,5 +64,4 @@ class Server:
 
     async def aside(self, home: str, *args: Any) -> bytes:
         """What a function of that name gives in the process for everything that is asked now and then."""
-        who = ("", token_hex(8))
-        return await self.lanes["aside"].ask(who, 0.0, (call, home, *args))
+        return await self.lanes["aside"].answer(Waiting((call, home, *args)))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator
+from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from inerter.app.calls import call
-from inerter.work.processes import Processes
 
 _LOOK = 0.1  # seconds between two looks at what happened
 
@@ -23,7 +23,7 @@ class Warming:
     path: Path
     done: asyncio.Event = field(default_factory=asyncio.Event)
 
-    async def run(self, worker: Processes) -> None:
+    async def run(self, worker: Executor) -> None:
         """Have them compiled; should that fail, each is compiled where it is called."""
         try:
             future = await asyncio.to_thread(worker.submit, call, "inerter.app.warm:warm", str(self.path))

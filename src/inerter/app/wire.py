@@ -16,7 +16,7 @@ from inerter.errors import InerterError, WorkError
 class Refused(Exception):  # noqa: N818 -- an answer, not a fault
     """A request that is refused, with the status of the answer and a sentence."""
 
-    def __init__(self, status: int, sentence: str, **more: Any) -> None:
+    def __init__(self, status: int, /, sentence: str, **more: Any) -> None:
         super().__init__(status, sentence, more)
         self.status, self.body = status, {"sentence": sentence, **more}
 

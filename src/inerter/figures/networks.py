@@ -37,6 +37,7 @@ from inerter.networks.elements import (
     Network,
     Parallel,
     Series,
+    Tied,
     check_network,
 )
 
@@ -133,7 +134,7 @@ def schematic(network: Network, *, values: bool = False) -> Schematic:
 def element_label(element: Element, *, values: bool = False) -> str:
     """The name of an element as it is drawn, with its value (if that is a number) in a second line if asked for."""
     name, value = symbol(element.label), element.value
-    return name if isinstance(value, Free) or not values else f"{name}\n{printed(value, element.unit)}"
+    return name if isinstance(value, Free | Tied) or not values else f"{name}\n{printed(value, element.unit)}"
 
 
 def _side_by_side(parts: Sequence[Schematic]) -> Schematic:

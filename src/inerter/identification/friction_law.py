@@ -16,7 +16,7 @@ from scipy.stats import t as student
 from inerter.errors import IdentificationError
 from inerter.identification.fit import Fit
 from inerter.identification.guess import chain_of
-from inerter.networks.elements import Free, Network
+from inerter.networks.elements import Free, Network, Tied
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 
@@ -264,8 +264,8 @@ def _winding(device: Network) -> float:
     if chain is None or chain.friction is None or chain.spring is None:
         return 0.0
     friction, spring = chain.friction.value, chain.spring.value
-    assert not isinstance(friction, Free)
-    assert not isinstance(spring, Free)
+    assert not isinstance(friction, Free | Tied)
+    assert not isinstance(spring, Free | Tied)
     return 2.0 * friction / spring
 
 

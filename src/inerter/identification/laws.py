@@ -20,7 +20,7 @@ from inerter.identification.guess import Chain
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
 from inerter.identification.suspects import Details, Suspect
 from inerter.kernels.declare import kernel, part
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, free
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, Tied, free
 from inerter.networks.parser import written
 
 Matrix = NDArray[np.float64]
@@ -146,6 +146,7 @@ def _numbers(chain: Chain, values: Values) -> Chained:
 def _value(element: Element | None, values: Values) -> float:
     assert element is not None
     value = element.value
+    assert not isinstance(value, Tied)
     return values[str(value.name)] if isinstance(value, Free) else value
 
 

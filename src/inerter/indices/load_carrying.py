@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
+from inerter.indices.excitation import OneInput
 from inerter.indices.question import Combination, Question
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
@@ -28,6 +29,7 @@ class LoadCarrying:
         ),
     )
     symbol = "J5"
+    key = "load-carrying"
     title = "dynamic load carrying"
     unit = "m/N"
     response = "body displacement per force on the body"
@@ -45,10 +47,9 @@ class LoadCarrying:
                 "Set measures.load_input and measures.load_output."
             )
         return Question(
-            inputs=(measures.load_input,),
             outputs=(Weighted(measures.load_output),),
             combination=Combination.PEAK_GAIN,
-            road=None,
+            excitation=OneInput(measures.load_input),
             unit=self.unit,
             amplitude=self.amplitude,
         )

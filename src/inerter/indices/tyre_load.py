@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
+from inerter.indices.excitation import Excitation
 from inerter.indices.question import Question, on_road
 from inerter.signals.road import Road
 from inerter.systems.filters import high_pass
@@ -21,12 +22,13 @@ class TyreLoad:
     Source: Wang and Su (2008), eq. (5).
     """
 
-    road: Road
+    road: Road | Excitation
     high_pass: float | None = field(
         default=None,
         metadata=quantity("rad/s", "Corner of a filter on J3; none if left out.", "1 Hz", words="high-pass filter"),
     )
     symbol = "J3"
+    key = "tyre-load"
     title = "dynamic tyre load"
     unit = "N"
     response = "tyre force per road velocity"

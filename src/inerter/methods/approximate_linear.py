@@ -16,22 +16,23 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, PerformanceIndexError, Status, StatusKind
-from inerter.indices.question import Combination, Index, Question
+from inerter.indices.question import Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
 from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
-from inerter.methods.linear import CONVENTIONS, arrivals, check_conventions, linear_problem, under
+from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Objective, Sees
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.hinf import Peak
 from inerter.simulation.event_driven import KERNELS
+from inerter.systems.arrivals import Arrival
 from inerter.systems.descriptor import close
 from inerter.systems.graph import full_graph
 from inerter.systems.piecewise import piecewise
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -123,14 +124,18 @@ class ApproximateLinear:
             return [self._known(mechanism, question) for question in questions]
         linears = [self._counterpart(mechanism, question) for question in questions]
         drives = [self._drive(mechanism, question) for question in questions]
-        (system, frictions), runs = with_velocities(piecewise(vehicle)), dict[Excited, Runs]()
-        for question, drive in zip(questions, drives, strict=True):
-            names = runs[drive].outputs if drive in runs else ()
+        driven = [question.drive.driven(mechanism) for question in questions]
+        moved = [(one.ground_moves, drive) for one, drive in zip(driven, drives, strict=True)]
+        systems = {one.ground_moves: with_velocities(piecewise(one)) for one in driven}
+        runs = dict[tuple[bool, Excited], Runs]()
+        for question, way in zip(questions, moved, strict=True):
+            names = runs[way].outputs if way in runs else ()
             names = tuple(dict.fromkeys((*names, *(output.output for output in question.outputs))))
-            runs[drive] = Runs(system, drive, names, frictions, int(self.seed))
+            system, frictions = systems[way[0]]
+            runs[way] = Runs(system, way[1], names, frictions, int(self.seed))
         return [
-            self._answer(question, linear, runs[drive])
-            for question, linear, drive in zip(questions, linears, drives, strict=True)
+            self._answer(question, linear, runs[way])
+            for question, linear, way in zip(questions, linears, moved, strict=True)
         ]
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
@@ -167,13 +172,15 @@ class ApproximateLinear:
 
     def _drive(self, mechanism: Mechanism, question: Question) -> Excited:
         """Which inputs are moved, by what and how late."""
-        named, late = arrivals(mechanism, question)
-        delays = dict(zip(named, late.tolist(), strict=True))
-        on_road = question.road is not None
+        driven = question.drive.driven(mechanism)
+        arrivals = question.arrivals(driven)
+        _check_gains(arrivals)
+        delays = {arrival.input: arrival.delay for arrival in arrivals}
+        on_road = arrivals[0].input in {road.name for road in driven.roads}
         default = NoiseExcitation() if self._raw else MultisineExcitation()
         excitation = (self.road if on_road else self.force) or default
-        rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(mechanism, named[0]))
-        inputs = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
+        rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(driven, arrivals[0].input))
+        inputs = [*(r.name for r in driven.roads), *(f.name for f in driven.forces)]
         return Excited(excitation, rms, tuple(delays.get(name) for name in inputs))
 
     def _counterpart(self, mechanism: Mechanism, question: Question) -> Counterpart | None:
@@ -191,9 +198,10 @@ class ApproximateLinear:
             if not runs.status.ok:
                 return Estimate(math.nan, question.unit, runs.status, notes=notes)
             places = [runs.outputs.index(output.output) for output in question.outputs]
-            pooled = not self._raw or question.combination is Combination.PEAK_GAIN
+            pooled = not self._raw or question.is_peak
             gains = _gains(squares[:, places], inputs[:, None], pooled)
-            estimate = self._from_gains(question, linear, gains * _factor(question, runs.drive.omega), runs)
+            factor = _factor(question, question.arrivals(runs.system.mechanism)[0], runs)
+            estimate = self._from_gains(question, linear, gains * factor, runs)
         status = worst([estimate.status, runs.warning])
         if status.ok and self.relative_error is not None and not self._reached(estimate):
             status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
@@ -231,9 +239,8 @@ class ApproximateLinear:
         """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`."""
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
-        scale = 1.0 if question.road is None else question.road.velocity_intensity
-        weights = scale * np.array([abs(output.weight) for output in question.outputs])
-        if question.combination is Combination.PEAK_GAIN:
+        weights = question.drive.size * np.array([abs(output.weight) for output in question.outputs])
+        if question.is_peak:
             weight = float(weights[0])
             windows = [self._window(drive.omega, times) for times in (1.0, 2.0)]
             (value, scatter, found), (wider, *_) = (
@@ -245,10 +252,12 @@ class ApproximateLinear:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
-            value, peaks, smeared = float(weights @ sizes), (), 0.0
-            scatter = (sums - sums.mean(axis=0)) @ (0.5 * weights / np.maximum(sizes, 1e-300))
+            value, peaks, smeared = float(question.combined(sizes, weights)), (), 0.0
+            scatter = (sums - sums.mean(axis=0)) @ (0.5 * question.slopes(sizes, weights) / np.maximum(sizes, 1e-300))
             if self._raw:
-                logs = np.log(np.sqrt(sums) @ weights)  # a standard error of raw ratios has no expectation, theirs has
+                logs = np.log(
+                    question.combined(np.sqrt(sums), weights)
+                )  # a standard error of raw ratios has no expectation, theirs has
                 value = float(np.exp(np.median(logs)))
                 scatter = math.sqrt(0.5 * math.pi) * value * (logs - logs.mean())
         count = scatter.size
@@ -274,11 +283,24 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
     return np.asarray(ratio + (outputs - ratio * inputs) / size)
 
 
-def _factor(question: Question, omega: Array) -> Array:
-    """From squared gains to what the index adds up (outputs, frequencies)."""
+def _factor(question: Question, arrival: Arrival, runs: Runs) -> Array:
+    """From squared gains to what the index adds up (outputs, frequencies): those of a road are from its height."""
+    omega = runs.drive.omega
     one = np.ones(omega.size)
     squares = np.array([one if f is None else np.abs(f.response(omega)) ** 2 for f in question.filters])
-    return squares if question.road is None else np.asarray(squares / omega**2)
+    if arrival.filter is not None:
+        squares *= np.abs(arrival.filter.response(omega)) ** 2
+    by_height = arrival.displacement or arrival.input not in {road.name for road in runs.system.mechanism.roads}
+    return squares if by_height else np.asarray(squares / omega**2)
+
+
+def _check_gains(arrivals: Sequence[Arrival]) -> None:
+    """Raises `PerformanceIndexError` for what is no single source with one filter: gains are from one signal."""
+    if len({(a.source, a.lever, a.filter) for a in arrivals}) > 1 or arrivals[0].lever != 1.0:
+        raise PerformanceIndexError(
+            "ApproximateLinear() takes gains from one signal, and here several arrive, each by a way of its own. "
+            "Use Norm(), StatisticalLinearisation() or ExpectedValue()."
+        )
 
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:
@@ -289,6 +311,8 @@ def _is_nonlinear(mechanism: Mechanism) -> bool:
 
 def _inertia_felt(mechanism: Mechanism, name: str) -> float:
     """Inertia that resists a force where it acts [kg]."""
+    if mechanism.ground_moves and name == GROUND_ACCELERATION:
+        return 1.0  # an acceleration is a force for each kg
     inertia = {coordinate.name: coordinate.inertia for coordinate in mechanism.coordinates}
     (port,) = (force.port for force in mechanism.forces if force.name == name)
     return 1.0 / sum(lever**2 / inertia[coordinate] for coordinate, lever in port.items() if lever)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status
-from inerter.indices.question import Index
+from inerter.methods.asking import Asked, is_composed
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
 from inerter.vehicle.vehicle import Vehicle
@@ -71,7 +71,7 @@ class Comparison:
 def compare(
     first: Vehicle,
     second: Vehicle,
-    index: Index,
+    index: Asked,
     method: Method,
     *,
     known: Estimate | None = None,
@@ -102,7 +102,7 @@ def compare(
         return _compared(first, second, index, method, known)
 
 
-def _compared(first: Vehicle, second: Vehicle, index: Index, method: Method, known: Estimate | None) -> Comparison:
+def _compared(first: Vehicle, second: Vehicle, index: Asked, method: Method, known: Estimate | None) -> Comparison:
     one, other = evaluate(first, index, method), known or evaluate(second, index, method)
     most, longest = max(one.realisations, other.realisations), max(one.period or 0, other.period or 0) or None
     if most > 0 and isinstance(method, Averaging):
@@ -114,7 +114,7 @@ def _compared(first: Vehicle, second: Vehicle, index: Index, method: Method, kno
             for found, design in ((one, first), (other, second))
         )
     controls: list[Controls | None] = []
-    if most > 0 and isinstance(method, Controlled):
+    if most > 0 and isinstance(method, Controlled) and not is_composed(index):
         controls = [method.controls(design, index, most) for design in (first, second)]
     return Comparison(one, other, difference_of(one, other, controls))
 

@@ -65,7 +65,7 @@ class CompiledQuestion:
         """
         order = self.problem.pade_order
         none = np.zeros(0, dtype=complex)
-        gaps = np.diff(self.problem.delays)
+        gaps = np.ascontiguousarray(np.diff(self.problem.delays))
         if order is None:
             return gaps, (none, none, 0.0), self._drifts
         approximant = pade(order)
@@ -77,22 +77,37 @@ class CompiledQuestion:
         d = self.problem.descriptor
         moves = np.any(d.X_eta, axis=1) | np.any(d.X_x, axis=1)
         drifts = np.flatnonzero(~moves)
-        walks = drift_covariance(d.X_u[drifts], self.problem.delays, ("road",) * len(d.inputs))
+        walks = drift_covariance(d.X_u[drifts], self.problem.delays, self.problem.sources)
         return (drifts, walks) if walks is not None else (drifts[:0], np.zeros((0, 0)))
+
+    @cached_property
+    def apart(self) -> tuple[CompiledQuestion, ...]:
+        """One for each source, where there are several: their squares add up."""
+        sources = tuple(dict.fromkeys(self.problem.sources))
+        return tuple(CompiledQuestion(self.problem.of_source(s)) for s in sources) if len(sources) > 1 else ()
 
     @property
     def is_peak(self) -> bool:
         """Whether the index is a peak gain."""
-        return self.problem.question.combination is Combination.PEAK_GAIN
+        return self.problem.question.is_peak
 
     @cached_property
     def serves(self) -> NDArray[np.bool_]:
         """Which outputs compiled code may value: those that are finite at a design beside the middle of the bounds."""
-        middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._free.items()}
-        special = np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1))
         if self.is_peak:
-            return np.array([self._exact(special).status.ok])
-        return np.asarray(~np.isinf(self._norms(special)))
+            return np.array([self._exact(self._special).status.ok])
+        return np.asarray(~np.isinf(self._norms(self._special)))
+
+    @cached_property
+    def seen(self) -> NDArray[np.bool_]:
+        """Which outputs the source reaches, as those of one half of a car do not see what the two sides share."""
+        return np.asarray(self._norms(self._special) > 0.0)
+
+    @cached_property
+    def _special(self) -> Array:
+        """A design beside the middle of the bounds."""
+        middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._free.items()}
+        return np.asarray(np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1)))
 
     @property
     def _free(self) -> dict[str, Any]:
@@ -125,7 +140,7 @@ class CompiledQuestion:
     def known(self, points: Array) -> Array:
         """The index at each row of `points`; infinite where it is, nan where it is not known."""
         if not self.is_peak:
-            return np.asarray(self.output_norms(points) @ self.problem.weights)
+            return self._combined(self.output_norms(points))
         result = self._compiled(points)
         for i in np.flatnonzero(np.isnan(result)):
             result[i] = self._exact(points[i]).value
@@ -141,7 +156,7 @@ class CompiledQuestion:
     def _compiled(self, points: Array) -> Array:
         """The index by compiled code alone; infinite where the topology makes it so, nan where it is not sure."""
         if not self.is_peak:
-            return np.asarray(self._compiled_norms(points) @ self.problem.weights)
+            return self._combined(self._compiled_norms(points))
         if not self.serves[0]:
             return np.full(points.shape[0], np.inf)
         largest = gain_kernels.peaks_of(points, self.descriptor, self.twofold)[1].max(axis=1)
@@ -149,13 +164,37 @@ class CompiledQuestion:
 
     def _compiled_norms(self, points: Array) -> Array:
         result = np.full((points.shape[0], self.serves.size), np.inf)
-        if np.all(self.serves):
-            norms, _, good = h2_kernels.norms(points, *self.arguments, np.empty(0))
-            norms[~(good & self._steady(points, norms))] = np.nan
-            return np.asarray(norms)
-        if np.any(self.serves):
-            result[:, self.serves] = CompiledQuestion(self.problem.part(self.serves))._compiled_norms(points)
-        return result
+        if not np.all(self.serves):
+            if np.any(self.serves):
+                result[:, self.serves] = CompiledQuestion(self.problem.part(self.serves))._compiled_norms(points)
+            return result
+        norms, _, good = self._with_gradients(points, np.empty(0))
+        norms[~(good & self._steady(points, norms))] = np.nan
+        return norms
+
+    def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Norms, gradients of their sum with `weights`, none without, and whether all went well, by compiled code.
+
+        Of several sources, squares are added up; what does not see one gets nothing of it.
+        """
+        if not self.apart:
+            norms, gradients, good = h2_kernels.norms(points, *self.arguments, weights)
+            return np.asarray(norms), np.asarray(gradients), np.asarray(good)
+        squares, good = np.zeros((points.shape[0], self.serves.size)), np.ones(points.shape[0], dtype=bool)
+        parts = [(one.seen, CompiledQuestion(one.problem.part(one.seen))) for one in self.apart if np.any(one.seen)]
+        found = []
+        for seen, one in parts:
+            norms, _, fine = one._with_gradients(points, np.empty(0))
+            squares[:, seen] += norms**2
+            found.append(norms)
+            good &= fine
+        total = np.sqrt(squares)
+        gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
+        for row in range(gradients.shape[0]):
+            for (seen, one), norms in zip(parts, found, strict=True):
+                shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
+                gradients[row] += one._with_gradients(points[row : row + 1], shares)[1][0]
+        return total, gradients, good
 
     def _steady(self, points: Array, norms: Array) -> NDArray[np.bool_]:
         """Whether norms stay as they are where the points are moved by some roundings.
@@ -163,11 +202,11 @@ class CompiledQuestion:
         That is asked of filters beyond first order: under light damping the states of a filter cancel in its output,
         and the error bound of compiled code may then be exceeded a little.
         """
-        if all(one is None or one.order < 2 for one in self.problem.question.filters):
+        if self.problem.highest_filter < 2:
             return np.ones(points.shape[0], dtype=bool)
         if not points.shape[1]:
             return np.zeros(points.shape[0], dtype=bool)
-        moved = [h2_kernels.norms(points * (1.0 + by), *self.arguments, np.empty(0))[0] for by in _MOVED]
+        moved = [self._with_gradients(points * (1.0 + by), np.empty(0))[0] for by in _MOVED]
         with np.errstate(invalid="ignore"):
             return np.asarray(np.all(np.abs(np.array(moved) - norms) <= _STEADY * norms, axis=(0, 2)))
 
@@ -177,17 +216,27 @@ class CompiledQuestion:
         The adjoint's where it is confirmed, else differences: of compiled values where these are sure, else of values
         without rounding.
         """
-        weights = self.problem.weights
         if not np.all(self.serves):
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradients, good = h2_kernels.norms(point[None], *self.arguments, weights)
-        found = value = float(norms[0] @ weights)
+        norms, gradients, good = self._with_slopes(point[None])
+        found = value = float(self._combined(norms)[0])
         if not (good[0] and self._steady(point[None], norms)[0]):
             value = self._exact_index(point)
         if abs(found - value) <= _SAME * value and self._confirmed(point, value, gradients[0]):
             return value, gradients[0]
-        slopes = _slopes(lambda place: float((self._compiled_norms(place[None]) @ weights)[0]), point, _FAR)
+        slopes = _slopes(lambda place: float(self._combined(self._compiled_norms(place[None]))[0]), point, _FAR)
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
+
+    def _combined(self, norms: Array) -> Array:
+        return self.problem.question.combined(norms, self.problem.weights)
+
+    def _with_slopes(self, points: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """As `_with_gradients` at one point, with those of the index."""
+        question, weights = self.problem.question, self.problem.weights
+        if question.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
+            return self._with_gradients(points, weights)
+        norms = self._with_gradients(points, np.empty(0))[0]
+        return self._with_gradients(points, question.slopes(norms[0], weights))
 
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
@@ -195,13 +244,13 @@ class CompiledQuestion:
         return self.descriptor, self.twofold, self.arrivals
 
     def _exact_index(self, point: Array) -> float:
-        return float(self._exact_norms(point) @ self.problem.weights)
+        return float(self._combined(self._exact_norms(point)))
 
     def _confirmed(self, point: Array, value: float, gradient: Array) -> bool:
         """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        ahead, behind = h2_kernels.norms(ends, *self.arguments, np.empty(0))[0] @ self.problem.weights
+        ahead, behind = self._combined(self._with_gradients(ends, np.empty(0))[0])
         slope = (ahead - behind) / (2.0 * _ASTRIDE)
         return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
 
@@ -225,7 +274,7 @@ class CompiledQuestion:
 
 def kernels_of(question: Question) -> tuple[Any, ...]:
     """The compiled code that values of the question and their gradients call."""
-    if question.combination is Combination.PEAK_GAIN:
+    if question.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
     return (h2_kernels.norms,)
 
@@ -245,16 +294,16 @@ def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tup
 def evaluate_problems(
     mechanism: Mechanism, questions: Sequence[Question], conventions: Conventions, points: Mapping[str, Array]
 ) -> Array:
-    """Indices (designs, indices), nan where they are not ok; questions that share road and filters share one solve."""
+    """Indices (designs, indices), nan where they are not ok; those with one excitation and filter share one solve."""
     problems = [linear_problem(mechanism, question, conventions) for question in questions]
     groups: dict[Any, list[int]] = {}
     for i, (question, problem) in enumerate(zip(questions, problems, strict=True)):
-        alone = question.combination is Combination.PEAK_GAIN
-        key = ("peak", i) if alone else (question.road, question.inputs, _shared_filter(problem.question))
+        alone = question.is_peak
+        key = ("peak", i) if alone else (question.excitation, _shared_filter(problem.question))
         groups.setdefault(key, []).append(i)
     result: Array = np.empty((next(iter(points.values())).size if points else 1, len(questions)))
     for members in groups.values():
-        if questions[members[0]].combination is Combination.PEAK_GAIN:
+        if questions[members[0]].is_peak:
             compiled = CompiledQuestion(problems[members[0]])
             result[:, members[0]] = compiled.known(_rows(compiled.problem.descriptor, points, result.shape[0]))
             continue
@@ -267,7 +316,7 @@ def evaluate_problems(
         places = [o.output for o in outputs]
         for i in members:
             columns = [places.index(o.output) for o in questions[i].outputs]
-            result[:, i] = norms[:, columns] @ problems[i].weights
+            result[:, i] = questions[i].combined(norms[:, columns], problems[i].weights)
     result[np.isinf(result)] = np.nan  # an infinite index has a status that is not ok
     return result
 

@@ -20,7 +20,9 @@ from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.networks.elements.roles import Guard
 from inerter.norms.h2 import h2
 from inerter.norms.stability import balance
-from inerter.systems.descriptor import close
+from inerter.systems.arrivals import inputs_of
+from inerter.systems.descriptor import close, describe
+from inerter.systems.filtered import filtered
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem
@@ -56,10 +58,29 @@ class Counterpart:
 
     def system(self, speeds: Array) -> LinearSystem:
         """The linear system for r.m.s. velocities [m/s] across all frictions with a force; those at zero stick."""
+        return self.problem.system(close(self.problem.descriptor, self._dampers(speeds)))
+
+    def at_inputs(self, speeds: Array) -> LinearSystem:
+        """The same from the inputs of the mechanism themselves."""
+        names = [output.output for output in self.problem.question.outputs]
+        arrivals = self.problem.question.arrivals(self.mechanism)
+        descriptor = filtered(describe(self.mechanism, inputs_of(arrivals), names), self.problem.question.filters)
+        return close(descriptor, self._dampers(speeds))
+
+    def is_road(self, name: str) -> bool:
+        """Whether an input is a road."""
+        return any(road.name == name for road in self.mechanism.roads)
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism with dampers that is driven."""
+        return self.problem.question.drive.driven(self.parts.mechanism)
+
+    def _dampers(self, speeds: Array) -> dict[str, float]:
         forces = GAUSSIAN * np.array(self.parts.forces, dtype=float)
         slowest = forces / (_STUCK * self.parts.scale)
         dampings = forces / np.maximum(speeds[list(self.parts.numbers)], slowest)
-        return self.problem.system(close(self.problem.descriptor, dict(zip(self.parts.dampers, dampings, strict=True))))
+        return dict(zip(self.parts.dampers, dampings.tolist(), strict=True))
 
     def unlike(self, speeds: Array, norms: Array) -> float:
         """By what part of a mean square it changes if frictions slip twice as fast; `norms` are those at `speeds`."""
@@ -70,7 +91,7 @@ class Counterpart:
 def counterpart(mechanism: Mechanism, question: Question, conventions: Conventions) -> Counterpart | None:
     """The counterpart of a design without free values; None where it has none, as beside a closed gap."""
     try:
-        parts = equivalent(mechanism, slipping_freely(mechanism))
+        parts = equivalent(mechanism, slipping_freely(mechanism, question))
         return Counterpart(linear_problem(parts.mechanism, question, conventions), parts)
     except (MechanismError, LinearSystemError):
         return None

@@ -21,6 +21,7 @@ from inerter.methods.equivalent import POORLY, Equivalent, equivalent
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import Peak
+from inerter.systems.arrivals import Arrival, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filtered import filtered
 from inerter.systems.outputs import force_of, velocity_of
@@ -163,13 +164,15 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
             "LoadCarrying(amplitude=1000.0), in N."
         )
     parts = equivalent(mechanism)
+    arrivals = question.arrivals(parts.mechanism)
+    beside = tuple(Arrival(force_of(name), name) for name in parts.dampers)
     descriptor = describe(
         parts.mechanism,
-        (*question.inputs, *map(force_of, parts.dampers)),
+        inputs_of((*arrivals, *beside)),
         (question.outputs[0].output, *map(velocity_of, parts.dampers)),
     )
     filters = (*question.filters, *(None for _ in parts.dampers))
-    return HarmonicBalance(question, filtered(descriptor, filters), parts)
+    return HarmonicBalance(question, filtered(fed(descriptor, (*arrivals, *beside)), filters), parts)
 
 
 def _slowest(omegas: Array) -> float:

@@ -10,7 +10,7 @@ friction sticks and c is infinite.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,13 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, PerformanceIndexError
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Value
+from inerter.indices.question import Question
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value
 from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
+from inerter.systems.arrivals import Arrival, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
 from inerter.systems.outputs import force_of, velocity_of
-from inerter.vehicle.mechanism import Mechanism, Tyre
+from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
 GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
@@ -52,6 +54,7 @@ class Equivalent:
         """Friction forces (designs, frictions) [N] at each row of `points`, the values of the design."""
         result = np.empty((points.shape[0], len(self.forces)))
         for i, (force, gain, place) in enumerate(zip(self.forces, self.gains, self.places, strict=True)):
+            assert not isinstance(force, Tied)
             result[:, i] = gain * (points[:, place] if isinstance(force, Free) else force)
         return result
 
@@ -157,24 +160,29 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     )
 
 
-def slipping_freely(mechanism: Mechanism) -> frozenset[str]:
-    """The dampers of frictions that white noise passes straight to, as of one in a tyre.
+def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
+    """The dampers of frictions that white noise passes straight to, as of one in a tyre on a road.
 
-    With a velocity of infinite variance across them, they are zero. Only what is mounted on a road can be reached so.
+    With a velocity of infinite variance across them, they are zero. What has a mass on both sides cannot be reached so.
     """
-    mechanism = switching(mechanism)
-    roads = {road.name for road in mechanism.roads}
-    on_road = [m for m in mechanism.mounts() if isinstance(m, Tyre) or roads & {*m.upper, *m.lower}]
-    if not any(acts(element) for mount in on_road for element in mount.network.elements()):
+    driven = switching(question.drive.driven(mechanism))
+    arrivals = question.arrivals(driven)
+    if not any(acts(element) for mount in _reachable(driven, arrivals) for element in mount.network.elements()):
         return frozenset()
     found: frozenset[str] = frozenset()
     while True:
-        parts = equivalent(mechanism, found)
+        parts = equivalent(driven, found)
         velocities = [velocity_of(name) for name in parts.dampers]
-        reached = _reached_directly(describe(parts.mechanism, sorted(roads), velocities))
+        reached = _reached_directly(fed(describe(parts.mechanism, inputs_of(arrivals), velocities), arrivals))
         if not reached:
             return found
         found |= {parts.dampers[i] for i in reached}
+
+
+def _reachable(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> list[Strut | Tyre]:
+    """What is mounted on a road that is an input: forces act on masses, whose velocity has no jumps."""
+    roads = {road.name for road in mechanism.roads} & {arrival.input for arrival in arrivals}
+    return [m for m in mechanism.mounts() if roads & ({m.road} if isinstance(m, Tyre) else {*m.upper, *m.lower})]
 
 
 def _reached_directly(descriptor: Descriptor) -> list[int]:
@@ -200,4 +208,5 @@ def _typical_damping(mechanism: Mechanism) -> float:
 
 
 def _size(value: Value) -> float:
+    assert not isinstance(value, Tied)
     return math.sqrt(value.lower * value.upper) if isinstance(value, Free) else value

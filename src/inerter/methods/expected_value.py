@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind
-from inerter.indices.question import Combination, Index, Question
+from inerter.indices.question import Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Objective, Sees
@@ -141,10 +141,10 @@ class ExpectedValue:
 
         None for a peak gain, and where there is a gap or friction alone holds a part.
         """
-        system = piecewise(vehicle)
-        conventions = CONVENTIONS[self.conventions]
-        question = under(conventions, system.mechanism, index.question(system.mechanism))
-        if question.combination is Combination.PEAK_GAIN:
+        mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
+        question = under(conventions, mechanism, index.question(mechanism))
+        system = piecewise(question.drive.driven(mechanism))
+        if question.is_peak:
             return None
         if not is_nonlinear(system):
             return np.zeros(count), np.zeros(_MORE)
@@ -158,17 +158,17 @@ class ExpectedValue:
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
         """The compiled code of simulations, and of the methods that tell where to look."""
         quick = StatisticalLinearisation().kernels(question, search=search)
-        return (*quick, *KERNELS) if search or question.combination is Combination.PEAK_GAIN else KERNELS
+        return (*quick, *KERNELS) if search or question.is_peak else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
         question = under(conventions, mechanism, index.question(mechanism))
         linear = _linear(vehicle, question, conventions)
-        system = piecewise(vehicle)
-        if conventions.hold is None and not is_nonlinear(system):
+        system = piecewise(question.drive.driven(mechanism))
+        if not _is_held(system, question, conventions) and not is_nonlinear(system):
             assert linear is not None
             return replace(linear.estimate(close(linear.descriptor, {})), standard_error=0.0)
-        if question.combination is Combination.PEAK_GAIN:
+        if question.is_peak:
             return self._peak_gain(vehicle, index, system, question, linear, pool)
         wanted = self.realisations or (_FEWEST if self.relative_error else _DEFAULT)
         design = on_roads(system, question, conventions, self.seed, self.period)
@@ -189,7 +189,8 @@ class ExpectedValue:
                 "such as LoadCarrying(amplitude=1000.0)."
             )
         (output,) = question.outputs
-        forced = Forced(system, question.inputs[0], output.output, question.amplitude, *question.filters)
+        (arrival,) = question.arrivals(system.mechanism)
+        forced = Forced(system, arrival, output.output, question.amplitude, *question.filters)
         poles, known = np.zeros(0, dtype=complex), np.zeros(0)
         if linear is not None:
             closed = close(linear.descriptor, {})
@@ -220,6 +221,13 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
 def is_nonlinear(system: PiecewiseSystem) -> bool:
     """Whether a friction or gap that is not zero is there."""
     return bool(np.any(system.mechanics.limit > 0.0))
+
+
+def _is_held(system: PiecewiseSystem, question: Question, conventions: Conventions) -> bool:
+    """Whether the conventions make the answer another one than the norm, for linear designs too."""
+    if conventions.hold is None:
+        return False
+    return not question.drive.is_random or drive(system, question, conventions).hold is not None
 
 
 def _linear(vehicle: Vehicle, question: Question, conventions: Conventions) -> LinearProblem | None:

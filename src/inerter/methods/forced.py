@@ -1,4 +1,4 @@
-"""The steady state under a sine of force: its size over all frequencies, for mechanisms that are not linear."""
+"""The steady state under a sine of an input: its size over all frequencies, for mechanisms that are not linear."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from inerter.norms.hinf import Peak
 from inerter.signals.harmonics import sine
 from inerter.simulation.inputs import tabulate
 from inerter.simulation.start import initial_state
+from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
 
@@ -30,23 +31,26 @@ _NEAR = 1e-3  # relative distance up to which a peak's frequency is found: its h
 
 @dataclass(frozen=True, eq=False)
 class Forced:
-    """R.m.s. of an output over that of a force A sin(omega t), once the motion repeats."""
+    """R.m.s. of an output over that of an input A sin(omega t), once the motion repeats."""
 
     system: PiecewiseSystem
-    force: str
+    arrival: Arrival  # a force, or a road's displacement or velocity
     output: str
-    amplitude: float  # [N]
+    amplitude: float  # [N], [m] or [m/s]
     filter: Filter | None = None  # that the output passes through
 
     def __call__(self, omega: float) -> tuple[float, Status]:
         """The ratio at `omega` [rad/s]."""
         period = 2.0 * pi / omega
         step = period / max(_POINTS, round(period / _LONGEST))
-        mechanism = self.system.mechanism
-        signal = sine(self.amplitude, 1.0 / period)
-        signals = [None] * len(mechanism.roads) + [signal if f.name == self.force else None for f in mechanism.forces]
+        mechanism, arrival = self.system.mechanism, self.arrival
+        roads = [road.name for road in mechanism.roads]
+        by_velocity = arrival.input in roads and not arrival.displacement
+        signal = sine(self.amplitude / omega if by_velocity else self.amplitude, 1.0 / period)
+        names = [*roads, *(force.name for force in mechanism.forces)]
+        signals = [signal if name == arrival.input else None for name in names]
         table = tabulate(signals, [0.0] * len(signals), period, step)
-        state = initial_state(self.system, np.zeros(len(signals)), "rest")
+        state = initial_state(self.system, table.value[0], "rest")
         found, status, _ = steady_squares(
             self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, repeats=_REPEATS
         )

@@ -185,7 +185,7 @@ class GaussianClosure:
     @cached_property
     def without(self) -> frozenset[str]:
         """Frictions whose dampers are zero, because white noise passes straight to them."""
-        return slipping_freely(self.mechanism)
+        return slipping_freely(self.mechanism, self.question)
 
     def pattern(self, locked: frozenset[str]) -> Pattern | None:
         """The linear model with these frictions stuck; None if that makes a mount rigid, which has no model."""

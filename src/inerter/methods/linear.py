@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError
-from inerter.indices.question import Combination, Question
+from inerter.indices.question import Question
 from inerter.methods.method import Estimate
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak, hinf_norm
+from inerter.systems.arrivals import Column, columns_of, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filtered import filtered
 from inerter.systems.filters import Filter, high_pass
@@ -71,7 +72,7 @@ class LinearProblem:
 
     question: Question
     unfiltered: Descriptor
-    delays: Array  # [s], one an input of the descriptor, in rising order
+    arrivals: tuple[Column, ...]  # the inputs of the descriptor, with their sources and delays in rising order
     pade_order: int | None
 
     @cached_property
@@ -82,9 +83,23 @@ class LinearProblem:
     @cached_property
     def weights(self) -> Array:
         """What each output's norm is multiplied by in the index."""
-        road = self.question.road
-        scale = 1.0 if road is None else road.velocity_intensity
-        return scale * np.array([abs(output.weight) for output in self.question.outputs])
+        return self.question.drive.size * np.array([abs(output.weight) for output in self.question.outputs])
+
+    @property
+    def delays(self) -> Array:
+        """Of each input of the descriptor [s]."""
+        return np.array([delay for *_, delay in self.arrivals])
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Of each input of the descriptor."""
+        return tuple(source for _, source, _ in self.arrivals)
+
+    @cached_property
+    def highest_filter(self) -> int:
+        """The order of the highest filter before an input or behind an output."""
+        before = [c.filter for c in self.question.arrivals(self.unfiltered.mechanism)]
+        return max((one.order for one in (*self.question.filters, *before) if one is not None), default=0)
 
     def part(self, which: NDArray[np.bool_] | slice) -> LinearProblem:
         """The problem with some of its outputs."""
@@ -97,17 +112,31 @@ class LinearProblem:
         question = replace(self.question, outputs=tuple(self.question.outputs[i] for i in chosen), filter=filters)
         return replace(self, question=question, unfiltered=descriptor)
 
+    def of_source(self, source: str) -> LinearProblem:
+        """The problem with one of its sources alone."""
+        d, chosen = self.unfiltered, [i for i, of in enumerate(self.sources) if of == source]
+        S, R, F, Y_eta, Y_x, Y_u = d.sizes
+        descriptor = replace(
+            d,
+            F=d.F[:, :, chosen],
+            X_u=d.X_u[:, chosen],
+            Y_u=d.Y_u[:, :, chosen],
+            inputs=tuple(d.inputs[i] for i in chosen),
+            sizes=(S, R, F[:, :, chosen], Y_eta, Y_x, Y_u[:, :, chosen]),
+        )
+        return replace(self, unfiltered=descriptor, arrivals=tuple(self.arrivals[i] for i in chosen))
+
     def system(self, closed: LinearSystem) -> LinearSystem:
-        """The closed descriptor with delays."""
-        return closed if self.question.road is None else closed.delayed("road", self.delays.tolist())
+        """The closed descriptor with sources and delays."""
+        return replace(closed, sources=self.sources, delays=self.delays)
 
     def estimate(self, closed: LinearSystem) -> Estimate:
         """The value of the index."""
         system = self.system(closed)
-        if self.question.combination is Combination.PEAK_GAIN:
+        if self.question.is_peak:
             return self._peak_gain(system)
         norms = h2(system, self.pade_order)
-        value = float(np.sum(self.weights * norms.outputs))
+        value = float(self.question.combined(norms.outputs, self.weights))
         return Estimate(value, self.question.unit, norms.status, notes=system.notes)
 
     def _peak_gain(self, system: LinearSystem) -> Estimate:
@@ -118,36 +147,29 @@ class LinearProblem:
 
 
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
-    """The descriptor for `question`, with delays from the road's speed and the filters that the conventions ask for.
+    """The descriptor for `question`, with its sources and the filters that the conventions ask for.
 
-    Raises `PerformanceIndexError` for a peak gain of anything but one output of one force.
+    Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
     check_peak_gain(question)
-    inputs, delays = arrivals(mechanism, question)
-    asked = under(conventions, mechanism, question)
-    descriptor = describe(mechanism, inputs, [output.output for output in question.outputs])
-    return LinearProblem(asked, descriptor, delays, conventions.pade_order)
+    asked, driven = under(conventions, mechanism, question), question.drive.driven(mechanism)
+    arrivals = question.arrivals(driven)
+    descriptor = describe(driven, inputs_of(arrivals), [output.output for output in question.outputs])
+    return LinearProblem(asked, fed(descriptor, arrivals), tuple(columns_of(arrivals)), conventions.pade_order)
 
 
 def check_peak_gain(question: Question) -> None:
-    """Raises `PerformanceIndexError` for a peak gain of anything but one output of one force."""
-    alone = len(question.outputs) == 1 and len(question.inputs) == 1 and not question.road
-    if question.combination is Combination.PEAK_GAIN and not alone:
-        raise PerformanceIndexError("A peak gain goes from one force to one output, without a road.")
-
-
-def arrivals(mechanism: Mechanism, question: Question) -> tuple[tuple[str, ...], Array]:
-    """The inputs of a question in the order in which its source reaches them, and when it does [s]."""
-    if question.road is None:
-        return question.inputs, np.zeros(len(question.inputs))
-    distance = {road.name: road.distance for road in mechanism.roads}
-    inputs = tuple(sorted(question.inputs, key=distance.__getitem__))
-    return inputs, np.array([distance[name] for name in inputs]) / question.road.speed
+    """Raises `PerformanceIndexError` for a peak gain of anything but one output of one input."""
+    if question.is_peak and (question.drive.is_random or len(question.outputs) != 1):
+        raise PerformanceIndexError("A peak gain goes from one force or motion to one output, without a random input.")
 
 
 def under(conventions: Conventions, mechanism: Mechanism, question: Question) -> Question:
     """The question with the filters that the conventions add to its own."""
-    if conventions.load_filter is None or np.ptp(arrivals(mechanism, question)[1]) == 0.0:
+    if conventions.load_filter is None:
+        return question
+    delays = [arrival.delay for arrival in question.arrivals(question.drive.driven(mechanism))]
+    if np.ptp(delays) == 0.0:
         return question
     loads = {weighted.output for weighted in mechanism.measures.tyre_load}
     filters = tuple(

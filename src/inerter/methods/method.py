@@ -15,9 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.kernels.prepare import prepare_on
+from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, without_tied_values
 from inerter.norms.hinf import Peak
+from inerter.systems.arrivals import inputs_of
 from inerter.systems.graph import full_graph
-from inerter.systems.outputs import check_inputs, find, main_outputs, outputs
+from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 from inerter.work.pool import Pool
@@ -153,7 +155,7 @@ class Method(Protocol):
         ...
 
 
-def evaluate(vehicle: Vehicle, index: Index, method: Method, *, executor: Executor | None = None) -> Estimate:
+def evaluate(vehicle: Vehicle, index: Asked, method: Method, *, executor: Executor | None = None) -> Estimate:
     """One index of one design by one method.
 
     An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) does what comes apart, such as random roads.
@@ -176,12 +178,12 @@ def evaluate(vehicle: Vehicle, index: Index, method: Method, *, executor: Execut
     with running_on(executor) as pool:
         if executor is not None:
             _prepare(pool, vehicle, [index], method)
-        return method.estimate(vehicle, index)
+        return estimate_of(vehicle, index, method)
 
 
 def evaluate_many(
     vehicle: Vehicle,
-    indices: Sequence[Index] | Index,
+    indices: Sequence[Asked] | Asked,
     values: Mapping[str, ArrayLike],
     method: Method,
     *,
@@ -201,7 +203,7 @@ def evaluate_many(
         check_request(vehicle, index, method)
     points = check_points(vehicle, values)
     if executor is None:
-        return method.estimate_many(vehicle, several, points)
+        return estimates_of(vehicle, several, method, points)
     with running_on(executor) as pool:
         _prepare(pool, vehicle, several, method)
         rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
@@ -209,37 +211,46 @@ def evaluate_many(
         return np.concatenate(mapped(partial(_estimated, vehicle, several, tuple(points), method), parts))
 
 
-def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[Index], method: Method) -> None:
+def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[Asked], method: Method) -> None:
     """Compile what an estimate calls where it will be called, before several processes would do so at once."""
     if isinstance(method, Compiled):
-        mechanism = vehicle.mechanism()
-        prepare_on(pool, [k for i in indices for k in method.kernels(i.question(mechanism), search=False)])
+        questions = [i.question(v.mechanism()) for index in indices for v, i in asked_of(vehicle, index)]
+        prepare_on(pool, [k for question in questions for k in method.kernels(question, search=False)])
 
 
-def _estimated(vehicle: Vehicle, indices: Sequence[Index], names: Sequence[str], method: Method, rows: Array) -> Array:
-    return method.estimate_many(vehicle, indices, dict(zip(names, rows.T, strict=True)))
+def _estimated(vehicle: Vehicle, indices: Sequence[Asked], names: Sequence[str], method: Method, rows: Array) -> Array:
+    return estimates_of(vehicle, indices, method, dict(zip(names, rows.T, strict=True)))
 
 
-def check_request(vehicle: Vehicle, index: Index, method: object) -> None:
+def asked_of(vehicle: Vehicle, index: Asked) -> Sequence[tuple[Vehicle, Index]]:
+    """The questions that an index comes to, each of its vehicle."""
+    return index.asks(vehicle) if is_composed(index) else [(vehicle, index)]
+
+
+def check_request(vehicle: Vehicle, index: Asked, method: object) -> None:
     """Raises `DesignError` or `PerformanceIndexError` where an argument is not what its place asks for.
 
     So it does for an index that names an input or output which the vehicle does not have.
     """
     check_vehicle(vehicle)
-    if isinstance(index, type) or not hasattr(index, "question"):
+    if isinstance(index, type) or not (hasattr(index, "question") or is_composed(index)):
         raise PerformanceIndexError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
     if isinstance(method, type) or not isinstance(method, Method):
         raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")
-    mechanism = vehicle.mechanism()
-    _check_names(mechanism, index.question(mechanism))
+    loose = without_tied_values(vehicle)
+    for asked, one in asked_of(vehicle if loose is None else loose.mechanism, index):
+        mechanism = asked.mechanism()
+        _check_names(mechanism, one.question(mechanism))
 
 
 def _check_names(mechanism: Mechanism, question: Question) -> None:
-    check_inputs(mechanism, question.inputs, PerformanceIndexError)
-    unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(mechanism)]
+    driven = question.drive.driven(mechanism)
+    check_inputs(driven, inputs_of(question.arrivals(driven)), PerformanceIndexError)
+    unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(driven)]
     if unusual:  # finding all names takes longer than most norms
-        known = outputs(mechanism, full_graph(mechanism))
+        known = outputs(driven, full_graph(driven))
         for name in unusual:
+            check_bounded(mechanism, driven, name)
             find(known, name, PerformanceIndexError)
 
 

@@ -16,10 +16,19 @@ from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
 from inerter.methods.linear import Conventions
 from inerter.methods.method import Estimate
-from inerter.methods.realisations import STEP, Ran, RoadDrive, check_drive, drive, realisation_seeds, run, worst
+from inerter.methods.realisations import (
+    STEP,
+    Drive,
+    Ran,
+    check_drive,
+    drive,
+    factor_of,
+    realisation_seeds,
+    run,
+    worst,
+)
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
-from inerter.systems.linear import LinearSystem
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.work.running import mapped
 
@@ -45,7 +54,7 @@ class OnRoads:
     system: PiecewiseSystem
     frictions: tuple[str, ...]
     question: Question
-    way: RoadDrive
+    way: Drive
     linear: Counterpart | None
     seed: int
     longest: int  # road that may be taken [s]
@@ -84,7 +93,7 @@ def on_roads(
     """A question put to a system on roads of this `period` [s]; without, of the usual length or of a longer one."""
     way = drive(system, question, conventions, period)
     check_drive(system, way)
-    if conventions.hold is not None:
+    if way.hold is not None:
         return OnRoads(system, (), question, way, None, seed, LONGEST)
     linear = counterpart(system.mechanism, question, conventions)
     longest = LONGEST if period is None else way.period
@@ -139,10 +148,10 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
         return Rest(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
     lines = way.signal(0)
     omega = 2.0 * np.pi * lines.frequencies
-    gains, sampled = _squared_gains(system, omega, pade_order)
+    gains, sampled = _squared_gains(design, speeds, omega)
     of_lines = 0.5 * (omega * lines.amplitudes) ** 2
     inside, seen = of_lines @ gains, of_lines @ sampled
-    added = (way.road.velocity_intensity * whole.outputs) ** 2 - seen
+    added = (design.question.drive.size * whole.outputs) ** 2 - seen
     (left, pole), (at_last, _) = (memory(system, whole.outputs, time) for time in (way.period, design.longest))
     unseen, within_reach = 2.0 * left, True
     if unseen > _UNSEEN:  # by as much as the counterpart may be another once the lines tell more
@@ -159,26 +168,35 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     return Rest(added, unseen, within_reach, OK if share <= _MOST_BEYOND else _mostly_beyond(share))
 
 
-def _squared_gains(system: LinearSystem, omega: Array, pade_order: int | None) -> tuple[Array, Array]:
-    """Squared gains (lines, outputs), and those of a simulation's samples, whose road is cubic between knots.
+def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array, Array]:
+    """Squared gains (lines, outputs) over all sources, and those of a simulation's samples, whose inputs are cubic
+    between knots.
 
     A line of angle a between knots becomes lines of angles a + 2 pi m, a series that falls with the fourth power: the
     transform of the cubics through values and slopes. Samples see all of them as one. Knots are at the same instants
-    for all axles, so that each of the lines arrives with the phase of the first.
+    for all inputs, so that each of the lines arrives with the phase of the first. What is cubic is the displacement of
+    a road, whose velocity is the input of the linear system, or a force itself.
     """
-    here = modal_response(system, omega, pade_order)[:, :, 0]
+    linear, way = design.linear, design.way
+    assert linear is not None
+    here = modal_response(linear.system(speeds), omega, linear.problem.pade_order)
     some = omega[np.linspace(0, omega.size - 1, min(omega.size, _SMOOTH)).astype(int)]
-    at_once = replace(system, sources=(), delays=np.zeros(0))
-    images = np.zeros((some.size, len(system.outputs), len(system.inputs)), dtype=complex)
+    at_once = linear.at_inputs(speeds)
+    reached = [(name, linear.is_road(name)) for name in at_once.inputs]
+    images = np.zeros((some.size, len(at_once.outputs), len(reached)), dtype=complex)
     for m in (*range(-_IMAGES, 0), *range(1, _IMAGES + 1)):
         there = some + 2.0 * np.pi * m / STEP
-        share = _cubic(some * STEP, there * STEP) * there / some**4  # with the cube of the angle they grow
-        images += modal_response(at_once, there) * share[:, None, None]
-    sampled = here * _cubic(omega * STEP, omega * STEP)[:, None]
-    for j, delay in enumerate(system.delays):
-        arrival = omega**3 * np.exp(-1j * delay * omega)
-        sampled += np.column_stack([arrival * np.interp(omega, some, column) for column in images[:, :, j].T])
-    return np.abs(here) ** 2, np.abs(sampled) ** 2
+        falls = _cubic(some * STEP, there * STEP) / some**4  # with the cube of the angle they grow, or the fourth power
+        share = np.column_stack([falls * there if road else falls for _, road in reached])
+        images += modal_response(at_once, there) * share[:, None, :]
+    sampled = here * _cubic(omega * STEP, omega * STEP)[:, None, None]
+    for j, (name, road) in enumerate(reached):
+        smooth = np.column_stack([np.interp(omega, some, column) for column in images[:, :, j].T])
+        for i, source in enumerate(dict.fromkeys(linear.problem.sources)):
+            there = [a for one in way.reached for a in one if (a.input, a.source) == (name, source)]
+            arriving = sum((factor_of(a, omega) for a in there), np.zeros(omega.size, dtype=complex))
+            sampled[:, :, i] += (arriving * omega ** (3 if road else 4))[:, None] * smooth
+    return np.sum(np.abs(here) ** 2, axis=2), np.sum(np.abs(sampled) ** 2, axis=2)
 
 
 def _cubic(angle: Array, there: Array) -> Array:
@@ -218,12 +236,13 @@ def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
     """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
     power = np.array([ran.power[: len(design.outputs)] for ran in found]) + lacking.power
     status, unit = worst([lacking.status, *(ran.status for ran in found)]), design.question.unit
-    samples = np.sqrt(np.maximum(power, 0.0)) @ design.weights
+    question, weights = design.question, design.weights
+    samples = question.combined(np.sqrt(np.maximum(power, 0.0)), weights)
     sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))
     if not np.all(np.isfinite(samples)):
-        return Estimate(float(sizes @ design.weights), unit, status, notes=lacking.notes)
+        return Estimate(float(question.combined(sizes, weights)), unit, status, notes=lacking.notes)
     mean, scatter, _ = mean_and_error(samples)
-    value = mean if design.way.hold is not None else float(sizes @ design.weights)
+    value = mean if design.way.hold is not None else float(question.combined(sizes, weights))
     error = float(np.hypot(scatter, 0.5 * lacking.unseen * value))
     return Estimate(
         value, unit, status, error, interval_of(value, error, samples.size), samples.size, notes=lacking.notes,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.indices.question import Question
 from inerter.kernels.arrays import FRICTION, KIND
-from inerter.methods.realisations import RoadDrive, table
+from inerter.methods.realisations import Drive, table
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
 from inerter.simulation import event_driven
@@ -34,7 +34,7 @@ _TOGETHER = 2**19  # times of several roads at once: 8 MB
 class FirstOrder:
     """The change of an index of r.m.s. values by friction, to first order, on one road."""
 
-    way: RoadDrive
+    way: Drive
     velocities: Complex  # (lines, frictions) across the frictions, for a line of the road of 1 m
     effects: Complex  # (lines, frictions) of a line of sgn(v) on the index, for a line of the road of 1 m
 
@@ -69,10 +69,13 @@ def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
     return multisine(road, seed, lowest=1.0 / period).coefficient[:count].copy()
 
 
-def first_order(system: PiecewiseSystem, question: Question, way: RoadDrive) -> FirstOrder | None:
-    """The first-order effect of every friction; None if a gap is there, or if a part is loose without friction."""
+def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> FirstOrder | None:
+    """The first-order effect of every friction.
+
+    None if a gap is there, if a part is loose without friction, or if what moves is not one road alone.
+    """
     limit, kinds = system.mechanics.limit, system.mechanics.elements[:, KIND]
-    if not np.any(limit > 0.0) or np.any(limit[kinds != FRICTION] > 0.0):
+    if way.delays is None or not np.any(limit > 0.0) or np.any(limit[kinds != FRICTION] > 0.0):
         return None
     count, n, nu = limit.size, system.order, system.inputs
     integration = event_driven.start(system, table(way, 0), np.zeros(n))
@@ -105,7 +108,8 @@ def first_order(system: PiecewiseSystem, question: Question, way: RoadDrive) -> 
     power = 0.5 * (np.abs(outputs) ** 2 * amplitudes[:, None] ** 2).sum(axis=0)
     if not np.all(np.isfinite(power)) or not np.all(power > 0.0) or count == 0:
         return None
-    weights = np.array([abs(output.weight) for output in question.outputs]) / (2.0 * np.sqrt(power))
+    sizes, given = np.sqrt(power), np.array([abs(output.weight) for output in question.outputs])
+    weights = question.slopes(sizes, given) / (2.0 * sizes)
     effects = np.einsum("o,ko,kof->kf", weights, np.conj(outputs), responses)
     return FirstOrder(way, velocities, effects)
 

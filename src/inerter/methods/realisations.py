@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -19,6 +20,7 @@ from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
 from inerter.simulation.start import initial_state
 from inerter.simulation.steady import FEW_PERIODS
+from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
 
@@ -30,18 +32,62 @@ _FEWEST_PERIODS = 4  # of the longest roads, until they must repeat
 
 
 @dataclass(frozen=True)
-class RoadDrive:
-    """How a mechanism is driven over a road: the speed, when the road reaches each wheel, and the conventions."""
+class Drive:
+    """How random sources drive a mechanism: how they arrive at each input, and for how long.
 
-    road: Road
-    delays: tuple[float, ...]  # of each road input [s]
-    forces: int  # external forces, which stay zero
-    hold: float | None  # [s]
+    Each is the velocity of a road: a white force or acceleration is as much, in its own unit.
+    """
+
+    road: Road  # of each source
+    reached: tuple[tuple[Arrival, ...], ...]  # of each input, roads before forces; none where it is at rest
+    roads: int  # inputs that are roads
+    hold: float | None  # [s] of roads, where they are held
     period: int = PERIOD  # of a realisation [s]
 
-    def signal(self, seed: int) -> Harmonics:
-        """The road of one realisation, before it is held."""
-        return multisine(self.road, seed, lowest=1.0 / self.period)
+    @property
+    def delays(self) -> tuple[float, ...] | None:
+        """When one road reaches each road input, where that is all that moves."""
+        if not _one_road(self.reached, self.roads):
+            return None
+        return tuple(one[0].delay for one in self.reached[: self.roads])
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(dict.fromkeys(arrival.source for one in self.reached for arrival in one))
+
+    def signal(self, seed: int, source: int = 0) -> Harmonics:
+        """A source as a road, in one realisation, before it is held."""
+        own = seed if source == 0 else int(np.random.SeedSequence([seed, source]).generate_state(1, np.uint64)[0])
+        return multisine(self.road, own, lowest=1.0 / self.period)
+
+    def moved(self, seed: int) -> list[Harmonics | None]:
+        """What the inputs do in one realisation: displacements of roads, and forces."""
+        signals = {name: self.signal(seed, i) for i, name in enumerate(self.sources)}
+        return [
+            self._sum(arrivals, signals, velocity=i >= self.roads) if arrivals else None
+            for i, arrivals in enumerate(self.reached)
+        ]
+
+    def _sum(self, arrivals: Sequence[Arrival], signals: Mapping[str, Harmonics], velocity: bool) -> Harmonics:
+        """The sum of what arrives; a force is what the velocity of a road is."""
+        first = next(iter(signals.values()))
+        omega = 2.0 * np.pi * first.frequencies
+        total = sum(factor_of(a, omega) * signals[a.source].coefficient for a in arrivals)
+        return replace(first, coefficient=np.asarray(total * (1j * omega if velocity else 1.0)), speed=None)
+
+
+def factor_of(arrival: Arrival, omega: Array) -> NDArray[np.complex128]:
+    """What an arrival makes of the lines of its source [rad/s]."""
+    passed = 1.0 if arrival.filter is None else arrival.filter.response(omega)
+    return np.asarray(arrival.lever * passed * np.exp(-1j * omega * arrival.delay))
+
+
+def _one_road(reached: Sequence[Sequence[Arrival]], roads: int) -> bool:
+    """Whether one source is the road of all road inputs, and no force acts."""
+    on_roads = [arrival for one in reached[:roads] for arrival in one]
+    alone = all(len(one) == 1 for one in reached[:roads]) and not any(reached[roads:])
+    return alone and all(a.plain for a in on_roads) and len({a.source for a in on_roads}) == 1
 
 
 @dataclass(frozen=True)
@@ -53,26 +99,33 @@ class Ran:
     periods: int  # until it repeated
 
 
-def drive(
-    system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None
-) -> RoadDrive:
-    """How `question` drives the mechanism of `system`, over roads of the usual length or of another `period` [s]."""
-    assert question.road is not None
-    mechanism, road = system.mechanism, question.road
-    delays = np.array([r.distance for r in mechanism.roads]) / road.speed
-    return RoadDrive(road, tuple(delays.tolist()), len(mechanism.forces), conventions.hold, period or PERIOD)
+def drive(system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None) -> Drive:
+    """How `question` drives the mechanism of `system`, in realisations of the usual length or of another `period` [s].
+
+    What is held under some conventions is a road that is the same for all wheels.
+    """
+    mechanism, size = system.mechanism, question.drive.size
+    arrivals = question.arrivals(mechanism)
+    names = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
+    reached = tuple(tuple(a for a in arrivals if a.input == name) for name in names)
+    road = getattr(question.drive, "road", None) or Road((size / (2.0 * math.pi)) ** 2, 1.0)
+    roads = len(mechanism.roads)
+    return Drive(road, reached, roads, conventions.hold if _one_road(reached, roads) else None, period or PERIOD)
 
 
-def table(way: RoadDrive, seed: int) -> InputTable:
+def table(way: Drive, seed: int) -> InputTable:
     """One period of a realisation along the knots of an integration."""
     return _kept_table(way, seed) if way.period <= PERIOD else _table(way, seed)
 
 
-def _table(way: RoadDrive, seed: int) -> InputTable:
-    signal = way.signal(seed)
-    moved = signal if way.hold is None else signal.held(way.hold)
-    signals = [*(moved for _ in way.delays), *(None for _ in range(way.forces))]
-    delays = [*way.delays, *(0.0 for _ in range(way.forces))]
+def _table(way: Drive, seed: int) -> InputTable:
+    if way.delays is None:
+        moved = way.moved(seed)
+        return tabulate(moved, [0.0] * len(moved), way.signal(seed).period, STEP)
+    signal, rest = way.signal(seed), len(way.reached) - way.roads
+    road = signal if way.hold is None else signal.held(way.hold)
+    signals = [*(road for _ in way.delays), *(None for _ in range(rest))]
+    delays = [*way.delays, *(0.0 for _ in range(rest))]
     parts = 1 if way.hold is None else parts_of(way.hold, way.delays)
     return tabulate(signals, delays, signal.period, (way.hold or STEP) / parts, every=parts)
 
@@ -80,15 +133,15 @@ def _table(way: RoadDrive, seed: int) -> InputTable:
 _kept_table = lru_cache(maxsize=_KEPT)(_table)
 
 
-def check_drive(system: PiecewiseSystem, way: RoadDrive) -> None:
+def check_drive(system: PiecewiseSystem, way: Drive) -> None:
     """Raises `SimulationError` if the mechanism cannot be driven over roads that are held."""
     if way.hold is not None:
         held = Signal(label=f"a road held for {way.hold:g} s", hold="zero")
-        check_holds(system, [held for _ in way.delays])
+        check_holds(system, [held for _ in range(way.roads)])
 
 
 def run(
-    system: PiecewiseSystem, way: RoadDrive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
+    system: PiecewiseSystem, way: Drive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
 ) -> Ran:
     """One period of the steady state on the road of a realisation's seed; the first outputs pass through filters."""
     inputs = table(way, seed)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from inerter.errors import DesignError
-from inerter.networks.elements import Element, Free, Network, Parallel, Series
+from inerter.networks.elements import Element, Free, Network, Parallel, Series, Tied
 from inerter.networks.elements.roles import Linear
 
 
@@ -60,10 +61,12 @@ def _renamed(part: Element, name: str) -> Element:
 
 
 def with_values(network: Network, values: Mapping[str, float]) -> Network:
-    """`network` with the free values named in `values` fixed; other names are passed over."""
+    """`network` with the free values named in `values` fixed, and what is tied to them; other names are passed over."""
 
     def fix(element: Element) -> Network:
         value = element.value
+        if isinstance(value, Tied):
+            return element.with_value(value.fixed({name: values[name] for name in value.names if name in values}))
         if isinstance(value, Free) and value.name is not None and value.name in values:
             return element.with_value(values[value.name])
         return element
@@ -77,7 +80,7 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
     `networks` goes from the name of the mount to its network. Two free values of the same name are one variable and
     must have the same bounds and unit; unnamed ones are all different.
 
-    Raises `DesignError` where one name stands for two different ranges.
+    Raises `DesignError` where one name stands for two different ranges, or a value is tied to none.
     """
     found = [element for network in networks.values() for element in network.elements()]
     taken = {e.value.name or e.name for e in found if isinstance(e.value, Free)} - {None}
@@ -104,7 +107,39 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
             )
         return element.with_value(Free(value.lower, value.upper, label))
 
-    return {mount: map_elements(network, name) for mount, network in networks.items()}
+    named = {mount: map_elements(network, name) for mount, network in networks.items()}
+    if any(isinstance(element.value, Tied) for element in found):
+        _check_ties(found, known)
+    return named
+
+
+def _check_ties(elements: Sequence[Element], free: Mapping[str, object]) -> None:
+    for element in elements:
+        for name in element.value.names if isinstance(element.value, Tied) else ():
+            if name not in free:
+                raise DesignError(
+                    f"{element.label!r} is tied to {name!r}, which is no free value here (free: "
+                    f"{', '.join(free) or 'none'}). Where that is a number, give this one as a number too."
+                )
+
+
+def without_ties(network: Network, names: Iterator[str], found: dict[str, Tied], bounds: Mapping[str, Free]) -> Network:
+    """The network with each tied value as a free one with the next of `names`, under which `found` gets what it was.
+
+    What that is between is the like of what it follows from: half to twice its value in the middle of theirs.
+    """
+    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in bounds.items()}
+
+    def loose(element: Element) -> Network:
+        if not isinstance(element.value, Tied):
+            return element
+        value = float(element.value.slopes(middle)[0])
+        size = value if 0.0 < value < math.inf else 1.0
+        name = next(names)
+        found[name] = element.value
+        return element.with_value(Free(0.5 * size, 2.0 * size, name))
+
+    return map_elements(network, loose)
 
 
 _LEFT_OUT = (Linear.OPEN, Linear.CLOSED)

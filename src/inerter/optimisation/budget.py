@@ -13,7 +13,7 @@ import scipy
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
-from inerter.indices.question import Index
+from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element
@@ -62,7 +62,7 @@ class Budget:
 def budget(
     design: Vehicle,
     baseline: Vehicle,
-    index: Index,
+    index: Asked,
     *,
     parameter: str,
     method: Method,
@@ -104,7 +104,7 @@ def budget(
 def _budget(
     design: Vehicle,
     baseline: Vehicle,
-    index: Index,
+    index: Asked,
     parameter: str,
     method: Method,
     chosen: list[Element],
@@ -208,7 +208,7 @@ def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[f
     return present / _REACH, present * _REACH
 
 
-def _as_many_roads(design: Vehicle, index: Index, method: Method) -> Method:
+def _as_many_roads(design: Vehicle, index: Asked, method: Method) -> Method:
     """The method with a fixed number of roads, so that differences are continuous in the parameter."""
     if not isinstance(method, Averaging):
         return method

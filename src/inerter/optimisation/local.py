@@ -8,18 +8,16 @@ the peaks that stand out, until none does.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
 from inerter.methods.method import Differentiable, Objective
+from inerter.optimisation.levels import Rows, below, lowest_level
 
 Array = NDArray[np.float64]
-Components = Callable[[Array], tuple[Array, Array]]
 _LEVEL_TOLERANCE = 1e-9  # relative height of a peak above the level that ends the minimax search
 _MOST_PEAKS = 8  # slots for peaks during the approach
 _HIDDEN = -700.0  # logarithm of a component that is not there
@@ -32,6 +30,7 @@ class LocalOptimum:
     point: Array
     value: float
     evaluations: int
+    excess: float = 0.0  # by how much the logarithm of a limited quantity is beyond its limit
 
 
 def descend(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:
@@ -80,14 +79,14 @@ def trust_region(objective: Objective, start: Array, lower: Array, upper: Array)
 def approach(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     """Close to a minimax optimum: the level above the peaks, each followed as it moves."""
 
-    def peaks(point: Array) -> tuple[Array, Array]:
+    def peaks(point: Array) -> Rows:
         which = _active(objective, point)[:_MOST_PEAKS]
         values, gradients = objective.components(point, which)
         logs, slopes = np.full(_MOST_PEAKS, _HIDDEN), np.zeros((_MOST_PEAKS, point.size))
         logs[: which.size], slopes[: which.size] = np.log(values), gradients * point / values[:, None]
-        return logs, slopes
+        return below(logs, slopes)
 
-    point, count = _lowest_level(peaks, start, lower, upper, tolerance=1e-7, most_steps=60)
+    point, count = lowest_level(peaks, start, lower, upper, tolerance=1e-7, most_steps=60)
     ends = np.vstack([start, point])
     values = objective.values(ends)
     best = int(np.argmin(values))
@@ -100,12 +99,12 @@ def polish(objective: Differentiable, start: LocalOptimum, lower: Array, upper: 
     point = start.point
     for _ in range(20):
 
-        def fixed(point: Array, which: Array = known) -> tuple[Array, Array]:
+        def fixed(point: Array, which: Array = known) -> Rows:
             values, gradients = objective.components(point, which)
-            return np.log(values), gradients * point / values[:, None]
+            return below(np.log(values), gradients * point / values[:, None])
 
-        point, count = _lowest_level(fixed, point, lower, upper, tolerance=1e-13, most_steps=100)
-        value, level = float(objective.values(point[None])[0]), float(np.exp(fixed(point)[0].max()))
+        point, count = lowest_level(fixed, point, lower, upper, tolerance=1e-13, most_steps=100)
+        value, level = float(objective.values(point[None])[0]), float(np.exp(fixed(point).logs.max()))
         evaluations += count + 2
         if value < best.value:
             best = LocalOptimum(point, value, evaluations)
@@ -119,36 +118,3 @@ def _active(objective: Differentiable, point: Array) -> Array:
     components = objective.active(point)
     assert components is not None
     return components
-
-
-def _lowest_level(
-    components: Components, start: Array, lower: Array, upper: Array, tolerance: float, most_steps: int
-) -> tuple[Array, int]:
-    """Minimise t over (log point, t) subject to log component_i(point) <= t; returns the point and evaluations."""
-    memory: dict[bytes, tuple[Array, Array]] = {}
-
-    def at(z: Array) -> tuple[Array, Array]:
-        key = z[:-1].tobytes()
-        if key not in memory:
-            memory[key] = components(np.clip(np.exp(z[:-1]), lower, upper))
-        return memory[key]
-
-    first = np.append(np.log(start), 0.0)
-    first[-1] = float(at(first)[0].max())
-    upwards = np.zeros(first.size)
-    upwards[-1] = 1.0
-    minimize: Any = scipy.optimize.minimize  # the stubs do not know this form of constraints
-    result = minimize(
-        lambda z: z[-1],
-        first,
-        jac=lambda z: upwards,
-        method="SLSQP",
-        bounds=scipy.optimize.Bounds(np.append(np.log(lower), -np.inf), np.append(np.log(upper), np.inf)),
-        constraints={
-            "type": "ineq",
-            "fun": lambda z: z[-1] - at(z)[0],
-            "jac": lambda z: np.hstack([-at(z)[1], np.ones((at(z)[1].shape[0], 1))]),
-        },
-        options={"maxiter": most_steps, "ftol": tolerance},
-    )
-    return np.clip(np.exp(result.x[:-1]), lower, upper), len(memory)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from numbers import Integral
@@ -11,12 +12,15 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, Status, StatusKind
-from inerter.indices.question import Index
+from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Differentiable, Estimate, Method, Objective, Sees, check_request
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
+from inerter.optimisation.constrained import KEPT, KEPT_COSTLY, Limited, searches, trust_region_within
+from inerter.optimisation.held import Held, held_at, infeasible
+from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.threads import one_blas_thread
 from inerter.vehicle.vehicle import Vehicle
@@ -41,6 +45,10 @@ class Optimum:
     value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to "lower" or "upper"
     where its bound holds it back.
 
+    `limits` has each limited quantity with its value, whether it holds the optimum back, and what that costs;
+    `active_limits` and `sensitivities` are those of them in short. Where nothing keeps the limits, the status is
+    "infeasible" and the design the one that misses them least.
+
     `over_linear`, for methods other than `Norm`: the optimum beside the best linear design, by the same method on the
     same roads (a negative difference: so much lower); None where linear analysis cannot decide all values.
     """
@@ -55,6 +63,20 @@ class Optimum:
     evaluations: int
     seed: int
     over_linear: Comparison | None = None
+    limits: tuple[Held, ...] = ()
+
+    @property
+    def active_limits(self) -> tuple[str, ...]:
+        """The limits that hold the optimum back, in words."""
+        return tuple(held.label for held in self.limits if held.active)
+
+    @property
+    def sensitivities(self) -> dict[str, float]:
+        """Per cent by which the optimum changes for one per cent of each limit, by the limit's words.
+
+        0 for a limit that does not hold it back, nan where that is not known.
+        """
+        return {held.label: held.sensitivity for held in self.limits}
 
     @property
     def value(self) -> float:
@@ -74,9 +96,10 @@ class Optimum:
 
 def optimise(
     vehicle: Vehicle,
-    index: Index,
+    index: Asked,
     method: Method,
     *,
+    subject_to: Sequence[Limit] = (),
     seed: int = 0,
     starts: int | None = None,
     executor: Executor | None = None,
@@ -89,38 +112,62 @@ def optimise(
 
     A method that simulates is searched without derivatives (COBYQA), from the best two among the best linear design and
     the local optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the
-    best. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) shares the random roads of such a method.
+    best.
 
-    Raises `DesignError` if nothing is free, if a free value has no effect in the method, or if `starts` is not a
-    positive whole number; and what `evaluate` raises.
+    `subject_to` has limits: `at_most`, `at_least` or `equal` of other indices by the same method, or of
+    `static_stiffness`. Then all searches are SLSQP, or COBYQA with the limits as constraints, in logarithms. An
+    optimum keeps them to 1e-7, where quantities are simulated to 1e-4.
+
+    An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) shares the random roads of such a method.
+
+    Raises `PerformanceIndexError` for what is no limit, `DesignError` if nothing is free, if a free value has no effect
+    in the method, or if `starts` is not a positive whole number; and what `evaluate` raises.
     """
     check_request(vehicle, index, method)
     free = check_free(vehicle)
     starts = 8 * len(free) if starts is None else starts
     if not isinstance(starts, Integral) or starts < 1 or not isinstance(seed, Integral) or seed < 0:
         raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
+    limits = check_limits(subject_to)
     with one_blas_thread(), running_on(executor):
-        return _best(vehicle, index, method, free, int(seed), starts)
+        return _best(vehicle, index, method, free, limits, int(seed), starts)
 
 
-def _best(vehicle: Vehicle, index: Index, method: Method, free: dict[str, Free], seed: int, starts: int) -> Optimum:
+def _best(
+    vehicle: Vehicle,
+    index: Asked,
+    method: Method,
+    free: dict[str, Free],
+    limits: tuple[Limit, ...],
+    seed: int,
+    starts: int,
+) -> Optimum:
     lower = np.array([value.lower for value in free.values()])
     upper = np.array([value.upper for value in free.values()])
-    objective = method.objective(vehicle, index)
-    agreement = AGREEMENT if isinstance(objective, Differentiable) else COSTLY_AGREEMENT
-    linear = None if method.sees is Sees.NEITHER else _linear_optimum(vehicle, index, method, seed, starts)
-    if isinstance(objective, Differentiable):
-        first, evaluations = _starting_points(objective, lower, upper, starts, seed)
-        found = _searches(objective, first, lower, upper)
+    objective = objective_of(vehicle, index, method)
+    problem = Limited(objective, bounds_of(vehicle, limits, method), lower, upper)
+    quick = isinstance(objective, Differentiable) and is_smooth(problem.bounds)
+    agreement = AGREEMENT if quick else COSTLY_AGREEMENT
+    linear = None if method.sees is Sees.NEITHER else _linear_optimum(vehicle, index, method, limits, seed, starts)
+    if quick:
+        first, evaluations = _starting_points(problem if limits else objective, lower, upper, starts, seed)
+        found = _searches(problem, first)
     else:
         first = [] if linear is None else [linear]
-        first += _quick_optima(vehicle, index, method, (lower, upper), starts, seed)
-        found, evaluations = _costly_searches(objective, _apart(first), lower, upper)
+        first += _quick_optima(vehicle, index, method, limits, (lower, upper), starts, seed)
+        found, evaluations = _costly_searches(problem, _apart(first))
     evaluations += sum(local.evaluations for local in found)
-    best = min(found, key=lambda local: local.value, default=None)
+    kept = KEPT if quick else KEPT_COSTLY
+    best = min(found, key=lambda local: (max(local.excess, kept), local.value), default=None)
     if best is None or not np.isfinite(best.value):
         best = LocalOptimum(np.sqrt(lower * upper), np.inf, 0)
-    same = [local.point for local in found if local.value <= best.value * (1.0 + agreement)] or [best.point]
+    if best.excess > kept and quick:
+        nearest = _nearest(problem, first)
+        again = _searches(problem, [nearest.point]) if nearest.excess <= kept else [nearest]
+        found, best = again, again[0]
+    same = [
+        local.point for local in found if local.value <= best.value * (1.0 + agreement) and local.excess <= kept
+    ] or [best.point]
     point = np.where(np.isclose(best.point, upper, rtol=1e-12, atol=0.0), upper, best.point)
     point = np.where(np.isclose(point, lower, rtol=1e-12, atol=0.0), lower, point)
     parameters = dict(zip(free, point.tolist(), strict=True))
@@ -129,8 +176,12 @@ def _best(vehicle: Vehicle, index: Index, method: Method, free: dict[str, Free],
     if linear is not None:
         best_linear = vehicle.with_values(dict(zip(free, linear.tolist(), strict=True)))
         over_linear = compare(design, best_linear, index, method)
+    held = held_at(problem, design, method, point, known=quick and best.excess <= kept)
+    estimate = over_linear.first if over_linear else _confirmed(estimate_of(design, index, method), best.value)
+    if not best.excess <= kept:
+        estimate = replace(estimate, status=infeasible(held, parameters))
     return Optimum(
-        estimate=over_linear.first if over_linear else _confirmed(method.estimate(design, index), best.value),
+        estimate=estimate,
         parameters=parameters,
         design=design,
         active_bounds=_active_bounds(free, parameters),
@@ -140,32 +191,51 @@ def _best(vehicle: Vehicle, index: Index, method: Method, free: dict[str, Free],
         evaluations=evaluations,
         seed=seed,
         over_linear=over_linear,
+        limits=held,
     )
 
 
-def _linear_optimum(vehicle: Vehicle, index: Index, method: Method, seed: int, starts: int) -> Array | None:
+def _nearest(problem: Limited, first: list[Array]) -> LocalOptimum:
+    """The design that misses the limits least."""
+    missed = replace(problem, objective=None)
+    found = searches(missed, first)
+    return min(found, key=lambda local: local.excess)
+
+
+def _linear_optimum(
+    vehicle: Vehicle, index: Asked, method: Method, limits: tuple[Limit, ...], seed: int, starts: int
+) -> Array | None:
     """The best linear design under the conventions of `method`; None if linear analysis cannot decide all values."""
+    norm = Norm(getattr(method, "conventions", "exact"))
     try:
-        found = optimise(vehicle, index, Norm(getattr(method, "conventions", "exact")), seed=seed, starts=starts)
+        found = optimise(vehicle, index, norm, subject_to=limits, seed=seed, starts=starts)
     except InerterError:
         return None
     return np.array(list(found.parameters.values())) if np.isfinite(found.value) else None
 
 
 def _quick_optima(
-    vehicle: Vehicle, index: Index, method: Method, bounds: tuple[Array, Array], starts: int, seed: int
+    vehicle: Vehicle,
+    index: Asked,
+    method: Method,
+    limits: tuple[Limit, ...],
+    bounds: tuple[Array, Array],
+    starts: int,
+    seed: int,
 ) -> list[Array]:
     """Local optima, the best first, of the first quick method that takes the design; else points of a sample."""
     conventions = getattr(method, "conventions", "exact")
     for quick in (StatisticalLinearisation(conventions), Norm(conventions)):
         try:
-            objective = quick.objective(vehicle, index)
-            first, _ = _starting_points(objective, *bounds, starts, seed)
+            problem = Limited(objective_of(vehicle, index, quick), bounds_of(vehicle, limits, quick), *bounds)
+            if not (isinstance(problem.objective, Differentiable) and is_smooth(problem.bounds)):
+                continue
+            first, _ = _starting_points(problem if limits else problem.objective, *bounds, starts, seed)
         except InerterError:
             continue
-        found = sorted(_searches(objective, first, *bounds), key=lambda local: local.value)
+        found = sorted(_searches(problem, first), key=lambda local: (max(local.excess, KEPT), local.value))
         return [local.point for local in found if np.isfinite(local.value)]
-    return _starting_points(method.objective(vehicle, index), *bounds, _MOST_TRIED, seed)[0]
+    return _starting_points(objective_of(vehicle, index, method), *bounds, _MOST_TRIED, seed)[0]
 
 
 def _apart(points: list[Array]) -> list[Array]:
@@ -177,17 +247,24 @@ def _apart(points: list[Array]) -> list[Array]:
     return chosen[:_MOST_TRIED]
 
 
-def _costly_searches(
-    objective: Objective, tried: list[Array], lower: Array, upper: Array
-) -> tuple[list[LocalOptimum], int]:
+def _costly_searches(problem: Limited, tried: list[Array]) -> tuple[list[LocalOptimum], int]:
     """A search from each of the best two starts, and how many starts were valued to tell which they are."""
-    values = objective.values(np.array(tried)) if tried else np.zeros(0)
+    objective, lower, upper = problem.objective, problem.lower, problem.upper
+    assert objective is not None
+    limited = problem if problem.bounds else objective
+    values = limited.values(np.array(tried)) if tried else np.zeros(0)
     best_first = np.argsort(values, kind="stable")[:_MOST_SEARCHES]
+    if problem.bounds:
+        return [trust_region_within(problem, tried[i]) for i in best_first], len(tried)
     return [trust_region(objective, tried[i], lower, upper) for i in best_first], len(tried)
 
 
-def _searches(objective: Differentiable, first: list[Array], lower: Array, upper: Array) -> list[LocalOptimum]:
+def _searches(problem: Limited, first: list[Array]) -> list[LocalOptimum]:
     """A local search from each start; for a peak gain only those that come close to the best are carried to the end."""
+    if problem.bounds:
+        return searches(problem, first)
+    objective, lower, upper = problem.objective, problem.lower, problem.upper
+    assert isinstance(objective, Differentiable)
     if not first or objective.active(first[0]) is None:
         return [descend(objective, start, lower, upper) for start in first]
     near = [approach(objective, start, lower, upper) for start in first]
@@ -221,7 +298,7 @@ def check_free(vehicle: Vehicle) -> dict[str, Free]:
 
 
 def _starting_points(
-    objective: Objective, lower: Array, upper: Array, starts: int, seed: int
+    objective: Objective | Limited, lower: Array, upper: Array, starts: int, seed: int
 ) -> tuple[list[Array], int]:
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
     sampler = scipy.stats.qmc.Sobol(lower.size, rng=np.random.default_rng(seed))

@@ -8,9 +8,8 @@ from inerter.errors import RecordError, UnitError
 from inerter.records.channels import Channel
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
-from inerter.units import parse_quantity
+from inerter.units import STANDARD_GRAVITY, parse_quantity
 
-STANDARD_GRAVITY = 9.80665  # [m/s^2]
 _EXAMPLES = {
     "time": "s or ms",
     "displacement": "mm or um",

@@ -7,7 +7,7 @@ from enum import Enum, auto
 from math import isnan
 
 from inerter.files.identification.running import Identified
-from inerter.networks.elements import Element, Free
+from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import written
 from inerter.units import format_handy, format_quantity, format_with_interval
 
@@ -95,7 +95,7 @@ def _possible(element: Element) -> Iterator[str]:
 
 def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
     number = best.value
-    assert not isinstance(number, Free)
+    assert not isinstance(number, Free | Tied)
     value = f'"{format_quantity(number, best.unit, _MOST_DIGITS)}"'
     if not isinstance(free.value, Free):
         return value, "as given"

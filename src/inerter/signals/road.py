@@ -4,9 +4,61 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Self
 
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
+
+_PER_N0_SQUARED = 100.0  # [m^2], where ISO 8608 states roughness at n0 = 0.1 cycle/m
+
+
+@dataclass(frozen=True)
+class RoadClass:
+    """A class of ISO 8608: the geometric mean of its Gd(n0) and the limits of the class, a factor of two to each side.
+
+    The first class has no lower limit, and the last none above. Source: ISO 8608:2016, Table C.1.
+    """
+
+    letter: str
+    mean: float  # Gd(n0) [m^3]
+
+    @property
+    def lowest(self) -> float:
+        """Limit towards smoother roads [m^3]."""
+        return 0.0 if self.letter == _CLASSES[0] else 0.5 * self.mean
+
+    @property
+    def highest(self) -> float:
+        """Limit towards rougher roads [m^3]."""
+        return math.inf if self.letter == _CLASSES[-1] else 2.0 * self.mean
+
+    @property
+    def roughness(self) -> float:
+        """Of the geometric mean, kappa = Gd(n0) n0^2 / 2 [m^3/cycle]."""
+        return 0.5 * self.mean / _PER_N0_SQUARED
+
+    def __str__(self) -> str:
+        low, mean, high = (f"{1e6 * value:.0f}e-6" for value in (self.lowest, self.mean, self.highest))
+        span = f"from {low} to {high} m^3"
+        if self.lowest == 0.0:
+            span = f"up to {high} m^3"
+        if math.isinf(self.highest):
+            span = f"from {low} m^3 on"
+        return f"class {self.letter} of ISO 8608, Gd(n0) = {mean} m^3 ({span})"
+
+
+_CLASSES = "ABCDEFGH"
+ROAD_CLASSES = {letter: RoadClass(letter, 16e-6 * 4.0**i) for i, letter in enumerate(_CLASSES)}
+
+
+def road_class(letter: object) -> RoadClass:
+    """The class of that letter; raises `PerformanceIndexError` if there is none."""
+    if not isinstance(letter, str) or letter not in ROAD_CLASSES:
+        raise PerformanceIndexError(
+            f'A class of ISO 8608 is a letter from A (smooth) to H (rough), such as Road.iso8608("C", speed=25), '
+            f"got {letter!r}."
+        )
+    return ROAD_CLASSES[letter]
 
 
 @dataclass(frozen=True)
@@ -25,6 +77,26 @@ class Road:
     def __post_init__(self) -> None:
         for name, unit in (("roughness", "m^3/cycle"), ("speed", "m/s")):
             check_positive(PerformanceIndexError, f"The {name} of a road", getattr(self, name), unit)
+
+    @classmethod
+    def iso8608(cls, letter: str, speed: float) -> Self:
+        """A road of a class of ISO 8608, "A" to "H", with the geometric mean of its roughness.
+
+        `ROAD_CLASSES` tells the limits of each class.
+
+        Raises `PerformanceIndexError` if there is no such class, or the speed is not positive.
+
+        >>> road = Road.iso8608("C", speed=25.0)
+        >>> road.roughness, str(road.iso8608_class)
+        (1.28e-06, 'class C of ISO 8608, Gd(n0) = 256e-6 m^3 (from 128e-6 to 512e-6 m^3)')
+        """
+        return cls(roughness=road_class(letter).roughness, speed=speed)
+
+    @property
+    def iso8608_class(self) -> RoadClass:
+        """The class in which its roughness lies, the rougher one at a limit."""
+        density = 2.0 * self.roughness * _PER_N0_SQUARED
+        return next(c for c in ROAD_CLASSES.values() if density < c.highest)
 
     @property
     def velocity_intensity(self) -> float:

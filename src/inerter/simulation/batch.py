@@ -84,16 +84,15 @@ def simulate_many(
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
     """
-    cars = _listed("vehicles", vehicles)
-    names = [outputs] if isinstance(outputs, str) else _listed("outputs", outputs)
+    cars = listed("vehicles", vehicles)
+    names = [outputs] if isinstance(outputs, str) else listed("outputs", outputs)
     if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
         raise SimulationError(f"The number of threads is a whole number from 1 on, got jobs = {jobs!r}.")
     if not is_number(settled):
         raise SimulationError(f"The time from which on values count is a number of seconds, got {settled!r}.")
     check_driven("simulate_many", driven)
     speed = driven.get("speed")
-    groups: dict[str, Any] = {name: group for name, group in driven.items() if name != "speed" and group is not None}
-    count = _count(groups.values())
+    groups, count = groups_of(driven)
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
     knots, skipped = whole_steps(duration, step), round(settled / step)
@@ -206,17 +205,20 @@ def _system(car: Vehicle, outputs: Sequence[str]) -> PiecewiseSystem:
     return system
 
 
-def _listed(what: str, given: object) -> list[Any]:
+def listed(what: str, given: object) -> list[Any]:
+    """A list of one or more; raises `SimulationError` for anything else."""
     if not isinstance(given, Sequence) or isinstance(given, str) or not given:
-        raise SimulationError(f"simulate_many takes one or more {what} in a list, got {given!r}.")
+        raise SimulationError(f"There must be one or more {what} in a list, got {given!r}.")
     return list(given)
 
 
-def _count(given: Collection[Any]) -> int:
-    """The number of runs of each vehicle."""
+def groups_of(driven: DrivenMany) -> tuple[dict[str, Any], int]:
+    """The sequences that drive the runs of each vehicle, by keyword, and how many runs that are."""
+    groups: dict[str, Any] = {name: group for name, group in driven.items() if name != "speed" and group is not None}
+    given: Collection[Any] = groups.values()
     lengths = {len(g) for g in given}
     if any(isinstance(g, Signal | Mapping) for g in given) or len(lengths) != 1:
         raise SimulationError(
-            "simulate_many takes sequences of signals, all of one length: road=[multisine(...), ...] or forces=[{...}]."
+            "Runs are driven by sequences of signals, all of one length: road=[multisine(...), ...] or forces=[{...}]."
         )
-    return lengths.pop()
+    return groups, lengths.pop()

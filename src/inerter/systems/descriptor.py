@@ -16,7 +16,7 @@ tyre's elongation is a state and the road's velocity the input, which makes J1 a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -35,11 +35,12 @@ from inerter.systems.incidence import of_law, stacked
 from inerter.systems.linear import Fine, LinearSystem, Origin
 from inerter.systems.observe import Observed, observe, observed_by_default
 from inerter.systems.outputs import check_inputs, force_of, input_names
-from inerter.systems.polynomials import TransferFunctions
+from inerter.systems.polynomials import Polynomial, TransferFunctions
 from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
+Sum = Sequence[tuple[str, tuple[Polynomial, Polynomial] | None]]  # inputs of the mechanism, with factors
 _ROUNDING = float(np.finfo(np.longdouble).eps)
 _TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
 
@@ -66,6 +67,7 @@ class Descriptor:
     mechanism: Mechanism
     graph: Graph
     filters: tuple[Filter | None, ...] = ()  # that the outputs pass through, if any do (see `filtered`)
+    sums: Mapping[str, Sum] = field(default_factory=dict)  # of what each input is made, if not itself (see `arrivals`)
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
@@ -132,7 +134,11 @@ def _solved(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tup
 def _functions(
     descriptor: Descriptor, values: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
 ) -> TransferFunctions:
-    functions = transfer_functions(descriptor.mechanism, descriptor.graph, values, inputs, outputs)
+    sums = [descriptor.sums.get(name, [(name, None)]) for name in inputs]
+    moved = list(dict.fromkeys(name for terms in sums for name, _ in terms))
+    functions = transfer_functions(descriptor.mechanism, descriptor.graph, values, moved, outputs)
+    if descriptor.sums:
+        functions = functions.fed([[(moved.index(name), factor) for name, factor in terms] for terms in sums])
     filters = dict(zip(descriptor.outputs, descriptor.filters, strict=False))
     chosen = [filters.get(name) for name in outputs]
     return functions.filtered([None if one is None else one.whole for one in chosen]) if any(chosen) else functions

@@ -103,6 +103,11 @@ class Filter:
         numbers = [[_long(c * rate**i / size) for i, c in enumerate(p)] for p in (padded, bottom)]
         return float(rate), np.array(numbers[0]), np.array(numbers[1])
 
+    def then(self, other: Filter) -> Filter:
+        """The filter that it is with another one behind it, without rounding."""
+        pairs = ((self.numerator, other.numerator), (self.denominator, other.denominator))
+        return Filter(*(_convolved(*pair) for pair in pairs))
+
     def response(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """F(j omega) at angular frequencies [rad/s]."""
         rate, top, bottom = self.scaled
@@ -135,6 +140,14 @@ def as_filter(given: object) -> Filter | None:
     if isinstance(given, LinearSystem):
         return Filter.of(given)
     raise LinearSystemError(f"A filter is Filter(numerator, denominator) or a LinearSystem, got {given!r}.")
+
+
+def _convolved(left: Sequence[Coefficient], right: Sequence[Coefficient]) -> list[Fraction]:
+    result = [Fraction(0)] * (len(left) + len(right) - 1)
+    for i, x in enumerate(left):
+        for j, y in enumerate(right):
+            result[i + j] += Fraction(x) * Fraction(y)
+    return result
 
 
 def _coefficients(name: str, given: object) -> tuple[Coefficient, ...]:

@@ -91,6 +91,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
         tuple(mounts),
         tuple(road.name for road in mechanism.roads),
         tuple((force.name, tuple(force.port.items())) for force in mechanism.forces),
+        mechanism.ground_moves,
     )
 
 

@@ -6,7 +6,7 @@ ask for, and how what they may ask for is called.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from typing import Any
@@ -14,13 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import InerterError
-from inerter.systems.graph import Branch, Graph, Mount
-from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
+from inerter.errors import InerterError, PerformanceIndexError
+from inerter.networks.elements.roles import Guard, Linear
+from inerter.systems.graph import Branch, Graph, Mount, full_graph
+from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
 _LISTED = 24  # names in a message
 _MOTIONS = {"displacement": "", "velocity": "/s", "acceleration": "/s^2"}  # of a coordinate, and behind its unit
+_OVER_GROUND = ("displacement", "velocity")  # that are known of a mass though nothing is known of where the ground is
 _MOUNTED = {Strut: ("force", "travel"), Tyre: ("load", "deflection")}  # what a mount carries, and how far it moves
 
 
@@ -50,22 +52,23 @@ class Output:
 def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
     """Every output of `mechanism` by name.
 
-    Inputs; motions of coordinates; force, travel or load and deflection of mounts; velocity and force of elements. If
-    only one strut is there, `force` and `travel` are its own.
+    Inputs; motions of coordinates; force, travel or load and deflection of mounts; velocity, force and, where
+    springs tell it, stroke of elements; motions over the ground. If only one strut is there, `force` and `travel` are
+    its own.
     """
     mounts = _of_mounts(mechanism, graph)
     found = [*_of_inputs(mechanism), *_of_coordinates(mechanism, graph), *mounts]
     if len(mechanism.struts) == 1:
         own = f"{mechanism.struts[0].name}_"
         found += [replace(o, name=o.name.removeprefix(own)) for o in found if o.name.startswith(own)]
-    found += _of_elements(graph)
+    found += [*_of_elements(mechanism, graph), *_over_ground(mechanism, graph)]
     known = {output.name: output for output in reversed(found)}  # a mount's own name goes before an element's
     return {output.name: known[output.name] for output in found}
 
 
 def main_outputs(mechanism: Mechanism) -> list[str]:
     """Names of the outputs that every analysis has: motions of coordinates, what mounts carry and how far they move."""
-    coordinates = [f"{c.name}_{what}" for c in mechanism.coordinates for what in _MOTIONS]
+    coordinates = [f"{c.name}_{what}" for c in mechanism.coordinates for what in _motions(mechanism, c)]
     return coordinates + [name for mount in mechanism.mounts() for name in of_mount(mount)]
 
 
@@ -90,23 +93,51 @@ def velocity_of(label: str) -> str:
     return f"{label}_velocity"
 
 
+def stroke_of(label: str) -> str:
+    """The name of an element's elongation."""
+    return f"{label}_stroke"
+
+
 def _of_inputs(mechanism: Mechanism) -> list[Output]:
     roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
     found = [Output(r.name, "m", _said(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)]
     angles = {c.name for c in mechanism.coordinates if c.angle}
     for given, row in zip(mechanism.forces, forces, strict=True):
         unit = "N m" if set(given.port) <= angles else "N"
+        if mechanism.ground_moves and given.name == GROUND_ACCELERATION:
+            unit = "m/s^2"
         found.append(Output(given.name, unit, _said(given.name), external=row))
     return found
 
 
+def _motions(mechanism: Mechanism, coordinate: Coordinate) -> tuple[str, ...]:
+    """What is known of a coordinate's own motion: on moving ground no more than the acceleration of a mass."""
+    if mechanism.ground_moves and not coordinate.angle:
+        return tuple(what for what in _MOTIONS if what not in _OVER_GROUND)
+    return tuple(_MOTIONS)
+
+
 def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
     found = []
+    ground = np.array([float(force.name == GROUND_ACCELERATION) for force in mechanism.forces])
     for coordinate, row in zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False):
         unit, said = "rad" if coordinate.angle else "m", _said(coordinate.name)
-        for what, per in _MOTIONS.items():
+        carried = {"external": ground} if mechanism.ground_moves and not coordinate.angle else {}
+        for what in _motions(mechanism, coordinate):
+            moved: dict[str, Any] = {what: row, **carried}
+            found.append(Output(f"{coordinate.name}_{what}", f"{unit}{_MOTIONS[what]}", f"{said} {what}", **moved))
+    return found
+
+
+def _over_ground(mechanism: Mechanism, graph: Graph) -> list[Output]:
+    """Motions of masses relative to the ground, whether that moves or not."""
+    rows = zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False)
+    found = []
+    for coordinate, row in (one for one in rows if not one[0].angle):
+        for what in _OVER_GROUND:
             moved: dict[str, Any] = {what: row}
-            found.append(Output(f"{coordinate.name}_{what}", f"{unit}{per}", f"{said} {what}", **moved))
+            title = f"{_said(coordinate.name)} {what} over the ground"
+            found.append(Output(f"{coordinate.name}_relative_{what}", f"m{_MOTIONS[what]}", title, **moved))
     return found
 
 
@@ -123,14 +154,14 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
     return found
 
 
-def _of_elements(graph: Graph) -> list[Output]:
+def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
     places: dict[str, tuple[Branch | Mount, tuple[int, ...]]] = {
         label: (group, group.carriers) for label, group in graph.groups.items()
     }
     for i, branch in enumerate(graph.branches):
         if branch.label not in graph.silent:
             places.setdefault(branch.label, (branch, (i,)))
-    found = []
+    found, lost = [], ~_placed(mechanism, graph)
     for label, (place, carriers) in places.items():
         total = np.zeros(len(graph.branches))
         total[list(carriers)] = 1.0
@@ -139,7 +170,28 @@ def _of_elements(graph: Graph) -> list[Output]:
             Output(velocity_of(label), "m/s", f"velocity across {label}", **moved),
             Output(force_of(label), "N", f"force of {label}", forces=total),
         ]
+        if not np.any(place.nodes[lost]):
+            moved = {"displacement": place.nodes, "road": place.roads}
+            found.append(Output(stroke_of(label), "m", f"stroke of {label}", **moved))
     return found
+
+
+def _placed(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
+    """Nodes whose place is known: coordinates, and what springs and gaps join to them. Others, such as that between a
+    damper and an inerter, have velocities only.
+    """
+    known = np.arange(len(graph.nodes)) < len(mechanism.coordinates)
+    joining = [
+        b.nodes != 0.0
+        for b in graph.branches
+        if b.element.linear is Linear.STIFFNESS or b.element.switches_by(Guard.ELONGATION)
+    ]
+    while not known.all():
+        alone = [row & ~known for row in joining if np.count_nonzero(row & ~known) == 1]
+        if not alone:
+            break
+        known = known | np.any(alone, axis=0)
+    return known
 
 
 def check_inputs(
@@ -150,6 +202,36 @@ def check_inputs(
     for name in names:
         if name not in known and name not in also:
             raise error(f"There is no input named {name!r} (there are: {', '.join(known) or 'none'}).")
+
+
+def unit_of(mechanism: Mechanism, names: Sequence[str]) -> str:
+    """The unit that these outputs have; empty for unlike ones, which weights make alike, and for unknown ones."""
+    known = outputs(mechanism, full_graph(mechanism))
+    units = {known[name].unit if name in known else "" for name in names}
+    return units.pop() if len(units) == 1 else ""
+
+
+def check_bounded(mechanism: Mechanism, driven: Mechanism, name: str) -> None:
+    """Raises `PerformanceIndexError` for a motion of the mechanism that has no bounds once the ground moves."""
+    if driven.ground_moves and name in main_outputs(mechanism) and name not in main_outputs(driven):
+        coordinate, _, what = name.rpartition("_")
+        raise PerformanceIndexError(
+            f"Under ground acceleration {name!r} has no bounds, because the ground itself drifts. "
+            f"Ask for {coordinate}_relative_{what}, the motion over the ground."
+        )
+
+
+def check_element(mechanism: Mechanism, label: object, called: Callable[[str], str]) -> None:
+    """Raises `PerformanceIndexError` unless there is an element of this label, and what it is `called` is known."""
+    known = outputs(mechanism, full_graph(mechanism))
+    labels = [name.removesuffix(velocity_of("")) for name in known if name.endswith(velocity_of(""))]
+    labels = [name for name in labels if force_of(name) in known]
+    if not isinstance(label, str) or label not in labels:
+        raise PerformanceIndexError(f"There is no element named {label!r} (there are: {', '.join(labels) or 'none'}).")
+    if called(label) not in known:
+        raise PerformanceIndexError(
+            f"The stroke of {label!r} is not known, only its velocity: no spring tells where one of its ends is."
+        )
 
 
 def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -> Output:

@@ -228,6 +228,9 @@ def _changes(p: Polynomial) -> int:
     return sum(a != b for a, b in pairwise(signs))
 
 
+Fractions = tuple[Polynomial, Polynomial] | None  # numerator and denominator; None is one
+
+
 @dataclass(frozen=True)
 class TransferFunctions:
     """G(s) = numerators[output][input] / denominator, with whole coefficients."""
@@ -235,7 +238,7 @@ class TransferFunctions:
     denominator: Polynomial
     numerators: tuple[tuple[Polynomial, ...], ...]
 
-    def filtered(self, filters: Sequence[tuple[Polynomial, Polynomial] | None]) -> TransferFunctions:
+    def filtered(self, filters: Sequence[Fractions]) -> TransferFunctions:
         """Each output times a fraction, or none: all over the product of the fractions' denominators."""
         bottoms = list(dict.fromkeys(tuple(one[1]) for one in filters if one is not None))
         rows = []
@@ -249,3 +252,22 @@ class TransferFunctions:
         for bottom in bottoms:
             denominator = multiply(denominator, list(bottom))
         return TransferFunctions(denominator, tuple(rows))
+
+    def fed(self, sums: Sequence[Sequence[tuple[int, Fractions]]]) -> TransferFunctions:
+        """With sums of its inputs, numbered, each times a fraction or none, in the place of the inputs."""
+        terms = [term for one in sums for term in one]
+        by_input = TransferFunctions(
+            self.denominator, tuple(tuple(row[i] for row in self.numerators) for i, _ in terms)
+        ).filtered([factor for _, factor in terms])
+        columns = iter(by_input.numerators)
+        added = [[next(columns) for _ in one] for one in sums]
+        rows = []
+        for k in range(len(self.numerators)):
+            totals: list[Polynomial] = []
+            for several in added:
+                total: Polynomial = []
+                for column in several:
+                    total = add(total, column[k])
+                totals.append(total)
+            rows.append(tuple(totals))
+        return TransferFunctions(by_input.denominator, tuple(rows))

@@ -14,7 +14,7 @@ from fractions import Fraction
 from math import gcd as common
 from typing import Any
 
-from inerter.networks.elements import Element, Free
+from inerter.networks.elements import Element, Free, Tied
 from inerter.systems.graph import Graph
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
@@ -52,7 +52,11 @@ class _Row:
 
     @staticmethod
     def of(output: Output, nodal: _Nodal) -> _Row:
-        whole = nodal.whole
+        carried = any(output.external)  # in the units of forces, and then all else too
+
+        def whole(row: Any) -> Row:
+            return {i: c << (nodal.value_bits if carried else 0) for i, c in nodal.whole(row).items()}
+
         return _Row(
             (whole(output.displacement), whole(output.velocity), whole(output.acceleration)),
             (whole(output.road), whole(output.road_velocity)),
@@ -189,6 +193,7 @@ def solved(P: list[list[int]], F: list[list[int]]) -> tuple[int, list[list[int]]
 
 def _coefficient(element: Element, values: Mapping[str, float]) -> Fraction:
     value = element.value
+    assert not isinstance(value, Tied)
     return Fraction(values[str(value.name)] if isinstance(value, Free) else value) * Fraction(element.gain)
 
 

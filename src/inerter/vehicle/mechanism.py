@@ -12,12 +12,14 @@ from dataclasses import dataclass, field, replace
 
 from inerter.checks import check_positive, is_number
 from inerter.errors import DesignError, MechanismError
-from inerter.networks.elements import NAME, Free, Network, check_network
+from inerter.networks.elements import NAME, Free, Network, Tied, check_network
 from inerter.networks.transform import name_free_values, with_values
 
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]
 GROUND: Port = {}
+GROUND_ACCELERATION = "ground_acceleration"  # the input of a mechanism on moving ground [m/s^2]
+TRACKS = ("", "left", "right")
 
 
 @dataclass(frozen=True)
@@ -53,11 +55,13 @@ class Tyre:
 class RoadInput:
     """Where the mechanism meets the road.
 
-    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later.
+    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later, and on the
+    `track` "left" or "right", where there are two; on "" there is one.
     """
 
     name: str
     distance: float = 0.0
+    track: str = ""
 
 
 @dataclass(frozen=True)
@@ -91,7 +95,8 @@ class Mechanism:
     """Any number of coordinates, struts, tyres, roads and forces.
 
     Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`;
-    `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`.
+    `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and
+    `_relative_velocity` are those over the ground, which are the same unless the ground moves.
 
     Raises `MechanismError` where a part names a coordinate or a road that is not there, where a mass is not positive,
     where names clash, and where a coordinate is attached to nothing; `DesignError` where one free name has two ranges.
@@ -103,6 +108,7 @@ class Mechanism:
     roads: tuple[RoadInput, ...] = ()
     forces: tuple[Force, ...] = ()
     measures: Measures = field(default_factory=Measures)
+    ground_moves: bool = False  # coordinates are then relative to it: see `on_moving_ground`
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
@@ -119,6 +125,16 @@ class Mechanism:
     def mechanism(self) -> Mechanism:
         """Itself: a mechanism is a vehicle."""
         return self
+
+    def on_moving_ground(self) -> Mechanism:
+        """The same mechanism seen from ground that moves up with an acceleration, the input `GROUND_ACCELERATION`.
+
+        Every mass feels it, m times as a force; roads lie still on the ground, and coordinates are relative to it.
+        """
+        if self.ground_moves:
+            return self
+        masses = {c.name: -c.inertia for c in self.coordinates if not c.angle}
+        return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, masses)), ground_moves=True)
 
     def mounts(self) -> Iterator[Strut | Tyre]:
         """Struts, then tyres."""
@@ -216,6 +232,11 @@ def _check_numbers(mechanism: Mechanism) -> None:
                 f"The distance of road {road.name!r} behind the first one must be zero or more metres, "
                 f"got {road.distance!r}. Measure from the foremost axle."
             )
+        if road.track not in TRACKS:
+            raise MechanismError(
+                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one, '
+                f"got {road.track!r}."
+            )
 
 
 def _check_ports(mechanism: Mechanism) -> None:
@@ -246,7 +267,7 @@ def check_values(mechanism: Mechanism) -> None:
     """Raises `MechanismError` for an element or inertia that is so small or large that others are lost beside it."""
     for mount in mechanism.mounts():
         for element in mount.network.elements():
-            if not isinstance(element.value, Free):
+            if not isinstance(element.value, Free | Tied):
                 _check_size("value", element.label, element.value, element.unit)
     for coordinate in mechanism.coordinates:
         _check_size("inertia", coordinate.name, coordinate.inertia, "kg m^2" if coordinate.angle else "kg")

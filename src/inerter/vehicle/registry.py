@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from inerter.rows import Rows
+from inerter.vehicle.absorber import Absorber
+from inerter.vehicle.full_car import FullCar
 from inerter.vehicle.half_car import HalfCar
 from inerter.vehicle.quarter_car import QuarterCar
 from inerter.vehicle.rig import Rig
 from inerter.vehicle.vehicle import VehicleModel
 
 VEHICLES: Rows[type[VehicleModel]] = Rows(
-    "vehicle", "key", ("mechanism", "moved", "forces"), (QuarterCar, HalfCar, Rig)
+    "vehicle", "key", ("mechanism", "moved", "forces"), (QuarterCar, HalfCar, FullCar, Absorber, Rig)
 )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self
 
-from inerter.checks import check_positive
+from inerter.checks import check_positive, is_number
 from inerter.errors import DesignError, MechanismError
-from inerter.fields import fields_of, mounts_of
-from inerter.networks.elements import Free, check_network
+from inerter.fields import fields_of, mounts_of, needed_mounts_of
+from inerter.networks.elements import Free, Network, check_network
 from inerter.networks.transform import name_free_values, with_values
 from inerter.vehicle.mechanism import Mechanism, check_known
 
@@ -43,20 +43,28 @@ class VehicleModel:
     A kind is a frozen dataclass whose fields say what they are, by `quantity` and `mount`, and which makes a
     `mechanism` of them.
 
-    Raises `MechanismError` unless all quantities are positive, `NetworkError` if what is mounted is no network.
+    Raises `MechanismError` unless all quantities are positive (or zero, if that is their default), `NetworkError` if
+    what is mounted is no network.
     """
 
     key: ClassVar[str]
-    moved: ClassVar[str] = "road"  # what a signal moves if nothing else is said: this, or a "displacement" of a rig
+    moved: ClassVar[str] = "road"  # what a signal moves if nothing else is said: this, a force, a rig's "displacement"
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
 
     def __post_init__(self) -> None:
         for field in fields_of(type(self)):
-            what = f"The {field.in_words} of the {self.key.replace('-', ' ')}"
-            check_positive(MechanismError, what, getattr(self, field.name), field.unit)
-        mounted = {name: check_network(getattr(self, name)) for name in mounts_of(type(self))}
-        for name, network in name_free_values(mounted).items():
+            value = getattr(self, field.name)
+            if field.default != 0.0 or not is_number(value) or value != 0.0:
+                what = f"The {field.in_words} of the {self.key.replace('-', ' ')}"
+                check_positive(MechanismError, what, value, field.unit)
+        for name, network in name_free_values(self.networks()).items():
             object.__setattr__(self, name, network)
+
+    def networks(self) -> dict[str, Network]:
+        """What is mounted, by the names of the mounts; a mount that may be left out is there if it is not None."""
+        given = {name: getattr(self, name) for name in mounts_of(type(self))}
+        left_out = {name for name in given.keys() - {*needed_mounts_of(type(self))} if given[name] is None}
+        return {name: check_network(network) for name, network in given.items() if name not in left_out}
 
     def mechanism(self) -> Mechanism:
         """The same vehicle as a `Mechanism`."""
@@ -69,4 +77,5 @@ class VehicleModel:
     def with_values(self, values: Mapping[str, float]) -> Self:
         """The same vehicle with the named free values fixed; raises `DesignError` for a name that is not free here."""
         check_known(values, self.free_values())
-        return replace(self, **{name: with_values(getattr(self, name), values) for name in mounts_of(type(self))})
+        fixed: dict[str, Any] = {name: with_values(network, values) for name, network in self.networks().items()}
+        return replace(self, **fixed)

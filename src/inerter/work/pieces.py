@@ -57,6 +57,10 @@ def worked(work: Callable[[Item], Result], piece: Piece[Item]) -> Worked[Result]
     return Worked(results, time.perf_counter() - begin, origin())
 
 
+def loaded(work: Callable[..., object]) -> None:
+    """What a process is called with before it has a piece: to take `work` it loads all that it needs."""
+
+
 class Cutter(Generic[Item]):
     """Cuts items into pieces that are worth handing out, taking as many items as the last ones let expect.
 

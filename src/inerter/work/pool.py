@@ -12,17 +12,20 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sized
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain
 from typing import Any
 
 from inerter.errors import WorkError
 from inerter.work import cluster
 from inerter.work.origin import origin
-from inerter.work.pieces import Cutter, Item, Piece, Result, Worked, worked
+from inerter.work.pieces import Cutter, Item, Piece, Result, Worked, loaded, worked
 from inerter.work.processes import Processes
 
 KILLS = 3  # processes that an item may end
 _SHORT = 3.0  # seconds: to start processes takes about as long
+_TOLD = 0.5  # seconds after which the pace of the first items tells how long all will take
 _AT_ONCE = 0.1  # seconds for which results of this process are kept back, to come together
 _GONE = "the executor that the work was handed to has ended, or lost its connection."
 _AHEAD = 2  # pieces for each process of ours: the one that it works on, and the next
@@ -95,8 +98,8 @@ class Pool:
     ) -> Iterator[list[Result]]:
         """Results of `work` on each of `items` as they are ready, those that come together in one list.
 
-        Items are taken as they are needed. As long as it would take to start processes, they are worked on in this one,
-        by `here` if that is another way to the same.
+        Items are taken as they are needed. Until processes are worth their start and ready, they are worked on in this
+        one, by `here` if that is another way to the same.
 
         A piece of work whose process ends is handed out again. If `KILLS` processes have ended on an item, its result
         is what `lost` says. Where calls of this are abandoned, what is not begun is not begun any more.
@@ -107,25 +110,16 @@ class Pool:
         left = len(items) if isinstance(items, Sized) else None
         waiting = iter(items)
         if self._given is None and (self.jobs == 1 or self._own is None):
-            for found in self._at_home(here or work, waiting):
+            start = _Start(partial(self._begun, work) if self.jobs > 1 else None, left)
+            for found in _at_home(here or work, waiting, start):
                 left = None if left is None else left - len(found)
                 yield found
         for first in waiting:  # there is more
             yield from self._handed_out(work, Cutter(chain([first], waiting), left), lost)
 
-    def _at_home(self, work: Callable[[Item], Result], items: Iterator[Item]) -> Iterator[list[Result]]:
-        start = begun = time.monotonic()
-        found: list[Result] = []
-        for item in items:
-            found.append(work(item))
-            now = time.monotonic()
-            if now - begun > _AT_ONCE:
-                yield found
-                found, begun = [], now
-            if self.jobs > 1 and now - start > _SHORT:
-                break
-        if found:
-            yield found
+    def _begun(self, work: Callable[[Any], object]) -> list[Future[Any]]:
+        """Processes that start and load what `work` needs."""
+        return [self._processes().submit(loaded, work) for _ in range(self.jobs)]
 
     def _handed_out(
         self, work: Callable[[Item], Result], cutter: Cutter[Item], lost: Callable[[Item], Result] | None
@@ -168,6 +162,44 @@ class Pool:
         if self._own is None:
             self._own = Processes(self.jobs)
         return self._own
+
+
+@dataclass(eq=False)
+class _Start:
+    """When processes are started, while work goes on here until the first of them is ready."""
+
+    begin: Callable[[], list[Future[Any]]] | None  # None: there are to be none
+    left: int | None  # items, if it is known
+    loading: float = 0.0  # seconds that the first item took, with all that it loads
+    starting: list[Future[Any]] = field(default_factory=list)
+
+    def is_over(self, done: int, seconds: float) -> bool:
+        """Whether processes are ready, which are started if work takes as long."""
+        if self.starting or self.begin is None:
+            return any(future.done() for future in self.starting)
+        if done == 1:
+            self.loading = seconds
+        worked = seconds - self.loading
+        rest = worked / (done - 1) * (self.left - done) if self.left is not None and worked > _TOLD else 0.0
+        if seconds > _SHORT or rest > 2.0 * _SHORT:
+            self.starting = self.begin()
+        return False
+
+
+def _at_home(work: Callable[[Item], Result], items: Iterator[Item], start: _Start) -> Iterator[list[Result]]:
+    """Results in this process, those that come within a moment together, until others are ready."""
+    first = begun = time.monotonic()
+    found: list[Result] = []
+    for done, item in enumerate(items, start=1):
+        found.append(work(item))
+        now = time.monotonic()
+        if now - begun > _AT_ONCE:
+            yield found
+            found, begun = [], now
+        if start.is_over(done, now - first):
+            break
+    if found:
+        yield found
 
 
 def _result(future: Future[Worked[Result]], call: object) -> tuple[int, list[Result], float]:

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from inerter.errors import StudyError
 from inerter.files.common.problem import Problem
 from inerter.files.common.problems import explain, refusal
-from inerter.files.common.shape import Shape, Shapes
+from inerter.files.common.tables import Shape, Shapes
 
 _LARGEST = 1_000_000  # bytes
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")

@@ -14,7 +14,7 @@ from inerter.errors import StatusKind
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.study import Study, elements_used
-from inerter.networks.elements import Free
+from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import Budget, budget
 from inerter.optimisation.threads import one_blas_thread
 
@@ -109,6 +109,7 @@ def _outcome(study: Study, case: BudgetCase, found: Budget | None, status: str, 
 def design_value(study: Study, outcome: Outcome, element: str) -> float:
     """The value of an element in the design that was found."""
     value = study.elements[element].value
+    assert not isinstance(value, Tied)
     return outcome.parameters[element] if isinstance(value, Free) else value
 
 

@@ -49,7 +49,8 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
                 response = frequency_response(system, omega, problem.pade_order)[:, :, 0]
             gains[list(study.layouts).index(layout)] = weights[:, None] * np.abs(response).T
         own = f"({question.unit})" if "/" in question.unit else question.unit
-        unit = question.unit if question.road is None else f"{own}/(m/s)"
+        per = question.drive.unit
+        unit = question.unit if not per else f"{own}/({per})" if "/" in per else f"{own}/{per}"
         attributes = {"units": unit, "long_name": study.index(index).response}
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
         names = [o.output if o.weight == 1.0 else f"{o.output} x {o.weight:g} m" for o in question.outputs]

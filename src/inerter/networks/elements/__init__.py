@@ -12,7 +12,7 @@ from inerter.networks.elements.gap import Gap
 from inerter.networks.elements.inerter import Inerter
 from inerter.networks.elements.registry import ELEMENT_TYPES
 from inerter.networks.elements.spring import Spring
-from inerter.networks.elements.values import NAME, Free, Value, free
+from inerter.networks.elements.values import NAME, Free, Tied, Value, free, tied
 
 __all__ = [
     "ELEMENT_TYPES",
@@ -27,7 +27,9 @@ __all__ = [
     "Parallel",
     "Series",
     "Spring",
+    "Tied",
     "Value",
     "check_network",
     "free",
+    "tied",
 ]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import DesignError, NetworkError
-from inerter.networks.elements.values import Free
+from inerter.networks.elements.values import Free, Tied
 
 if TYPE_CHECKING:
     from inerter.networks.elements.element import Element
@@ -55,7 +55,7 @@ class Network:
         np.complex128(5-50j)
         """
         for element in self.elements():
-            if isinstance(element.value, Free):
+            if isinstance(element.value, Free | Tied):
                 raise DesignError(f"The admittance needs numbers, but {element.label!r} is still free. Fix it first.")
         try:
             points = np.asarray(s, dtype=complex)

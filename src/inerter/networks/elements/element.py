@@ -13,7 +13,7 @@ from inerter.fields import Field
 from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, Line
 from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
-from inerter.networks.elements.values import Free, Value, check_name
+from inerter.networks.elements.values import Free, Tied, Value, check_name
 
 
 class Element(Network):
@@ -46,6 +46,9 @@ class Element(Network):
     def __post_init__(self) -> None:
         check_name(self.name)
         value = self.value
+        if isinstance(value, Tied):
+            self._check_more()
+            return
         number = value.lower if isinstance(value, Free) else value
         what = f"{self.quantity.replace('_', ' ').capitalize()}" + (f" of {self.name!r}" if self.name else "")
         if not is_number(number):
@@ -86,7 +89,7 @@ class Element(Network):
 
     @property
     def value(self) -> Value:
-        """The element's one number, in SI units, or the `Free` that stands for it."""
+        """The element's one number, in SI units, or the `Free` or `Tied` that stands for it."""
         return getattr(self, self.quantity)  # type: ignore[no-any-return]
 
     @property
@@ -101,7 +104,7 @@ class Element(Network):
         Raises `DesignError` if its value is free.
         """
         value = self.value
-        if isinstance(value, Free):
+        if isinstance(value, Free | Tied):
             raise DesignError(f"The value of {self.label!r} is still free. Fix it with with_values(...).")
         return value * self.gain
 

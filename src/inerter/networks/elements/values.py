@@ -1,9 +1,14 @@
-"""Values of elements: a number, or one that an optimiser may choose; and names."""
+"""Values of elements: a number, one that an optimiser may choose, or one that follows from such; and names."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from inerter.checks import is_number
 from inerter.errors import NetworkError
@@ -39,7 +44,121 @@ def free(lower: float, upper: float, name: str | None = None) -> Free:
     return Free(lower, upper, name)
 
 
-Value = float | Free
+@dataclass(frozen=True)
+class Tied:
+    """A value that follows from others by their names: sums, differences, products and quotients of them and numbers.
+
+    `program` has names and numbers, each operation after the two that it takes.
+    """
+
+    program: tuple[str | float, ...]
+
+    def __add__(self, other: Tied | float) -> Tied:
+        return _joined(self, other, "+")
+
+    def __radd__(self, other: float) -> Tied:
+        return _joined(other, self, "+")
+
+    def __sub__(self, other: Tied | float) -> Tied:
+        return _joined(self, other, "-")
+
+    def __rsub__(self, other: float) -> Tied:
+        return _joined(other, self, "-")
+
+    def __mul__(self, other: Tied | float) -> Tied:
+        return _joined(self, other, "*")
+
+    def __rmul__(self, other: float) -> Tied:
+        return _joined(other, self, "*")
+
+    def __truediv__(self, other: Tied | float) -> Tied:
+        return _joined(self, other, "/")
+
+    def __rtruediv__(self, other: float) -> Tied:
+        return _joined(other, self, "/")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What it follows from."""
+        return tuple(dict.fromkeys(x for x in self.program if isinstance(x, str) and x not in _ARITHMETIC))
+
+    def fixed(self, values: Mapping[str, float]) -> Tied | float:
+        """The same with some values known; a number once all are."""
+        known = tuple(float(values[x]) if isinstance(x, str) and x in values else x for x in self.program)
+        found = Tied(known)
+        return found if found.names else float(found.slopes({})[0])
+
+    def slopes(self, values: Mapping[str, ArrayLike]) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
+        """The value, and its derivatives over what it follows from; infinite or nan where it divides by zero."""
+        stack: list[tuple[Any, dict[str, Any]]] = []
+        with np.errstate(all="ignore"):
+            for x in self.program:
+                if isinstance(x, float):
+                    stack.append((np.float64(x), {}))
+                elif x in _ARITHMETIC:
+                    (b, db), (a, da) = stack.pop(), stack.pop()
+                    value, by_a, by_b = _ARITHMETIC[x](a, b)
+                    both = {**da, **db}
+                    stack.append((value, {n: by_a * da.get(n, 0.0) + by_b * db.get(n, 0.0) for n in both}))
+                else:
+                    number = np.asarray(values[x], dtype=float)
+                    stack.append((number, {x: np.ones_like(number)}))
+        ((value, slopes),) = stack
+        return np.asarray(value), slopes
+
+    def __str__(self) -> str:
+        stack: list[str] = []
+        for x in self.program:
+            if isinstance(x, str) and x in _ARITHMETIC:
+                b, a = stack.pop(), stack.pop()
+                stack.append(f"({a} {x} {b})")
+            else:
+                stack.append(x if isinstance(x, str) else f"{x:g}")
+        return stack[0]
+
+
+_ARITHMETIC: dict[str, Callable[[Any, Any], tuple[Any, Any, Any]]] = {  # the result and its two derivatives
+    "+": lambda a, b: (a + b, 1.0, 1.0),
+    "-": lambda a, b: (a - b, 1.0, -1.0),
+    "*": lambda a, b: (a * b, b, a),
+    "/": lambda a, b: (a / b, 1.0 / b, -a / (b * b)),
+}
+
+
+def tied(name: str, factor: float = 1.0, plus: float = 0.0) -> Tied:
+    """A value that is `factor` times the free value of that name, `plus` a number in its unit.
+
+    Ties can be added, subtracted, multiplied and divided, by one another and by numbers.
+
+    Raises `NetworkError` for what is no name, or no number.
+
+    >>> import inerter as it
+    >>> rear = it.Spring(it.tied("k_front", factor=0.8))
+    >>> made_up = it.Spring(1.0 / (1.0 / 120e3 - 1.0 / it.tied("k1")))  # 120 kN/m in series with k1
+    >>> made_up.with_value(made_up.value.fixed({"k1": 360e3})).value
+    180000.0
+    """
+    if name is None:
+        raise NetworkError("A tied value follows from a free one: give its name.")
+    check_name(name)
+    found = Tied((name,))
+    if factor != 1.0:
+        found = factor * found
+    return found + plus if plus != 0.0 else found
+
+
+def _joined(one: Tied | float, other: Tied | float, operation: str) -> Tied:
+    parts = [x.program if isinstance(x, Tied) else (_number(x),) for x in (one, other)]
+    return Tied((*parts[0], *parts[1], operation))
+
+
+def _number(value: object) -> float:
+    if not is_number(value):
+        raise NetworkError(f"A tied value is made of other values and of finite numbers, got {value!r}.")
+    return float(value)
+
+
+Value = float | Free | Tied
 
 
 def check_name(name: object) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.indices.excitation import RoadVelocity
 from inerter.norms.response import frequency_response
 from inerter.papers.wang_su_2008.linear import LinearTables
 from inerter.papers.wang_su_2008.reproduce import Reproduction
@@ -179,11 +180,12 @@ def _root_of_the_road() -> Reason:
     """Eq. (17) as it is printed, put to S1 of Table 1 by its linear response."""
     row = next(r for r in linear_rows() if (r.table, r.index, r.layout) == (1, "J1", "S1"))
     question = row.asks().question(row.design().mechanism())
-    assert question.road is not None
+    assert isinstance(question.drive, RoadVelocity)
+    road = question.drive.road
     omega = 2.0 * np.pi * np.arange(1.0, 10_001.0) / 10.0
     system = assemble(row.design(), "road", question.outputs[0].output)
     gain = np.abs(frequency_response(system, omega)[:, 0, 0])
-    height = np.sqrt(8.0 * np.pi * question.road.roughness * question.road.speed * omega[0])
+    height = np.sqrt(8.0 * np.pi * road.roughness * road.speed * omega[0])
     as_printed, as_meant = (
         np.sqrt(0.5 * np.sum((gain * omega * height * weight) ** 2)) for weight in (omega**-0.5, 1.0 / omega)
     )

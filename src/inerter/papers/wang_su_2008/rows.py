@@ -134,8 +134,9 @@ def _begun(row: PrintedRow, peak: Peak) -> float:
     """R.m.s. displacement over r.m.s. force in a short run from rest, at the frequency of a peak."""
     if not 0.0 < peak.omega < inf:
         return peak.gain
-    question = row.asks().question(row.design().mechanism())
-    (force,), (output,) = question.inputs, question.outputs
+    mechanism = row.design().mechanism()
+    question = row.asks().question(mechanism)
+    (arrival,), (output,) = question.arrivals(mechanism), question.outputs
     pushed = sine(question.amplitude or 1.0, peak.omega / (2.0 * pi))
-    run = simulate(row.design(), forces={force: pushed}, duration=_RUN, step=1e-3)
-    return abs(output.weight) * run.rms(output.output) / run.rms(force)
+    run = simulate(row.design(), forces={arrival.input: pushed}, duration=_RUN, step=1e-3)
+    return abs(output.weight) * run.rms(output.output) / run.rms(arrival.input)

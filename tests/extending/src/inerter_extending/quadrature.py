@@ -18,7 +18,7 @@ import inerter as it
 class Quadrature:
     """The linear model, frequency by frequency: friction is left out, gaps are closed.
 
-    Raises `InerterError` for an index that is not a sum of r.m.s. values on a road.
+    Raises `InerterError` for an index that is not a sum of r.m.s. values.
     """
 
     points: int = 600
@@ -32,21 +32,29 @@ class Quadrature:
     def estimate(self, vehicle: Any, index: Any) -> it.Estimate:
         mechanism = vehicle.mechanism()
         question = index.question(mechanism)
-        if question.combination is not it.Combination.SUM_OF_RMS or question.road is None:
-            raise it.InerterError(f"Quadrature is for r.m.s. values on a road, and {index.symbol} is none.")
+        if question.combination is not it.Combination.SUM_OF_RMS:
+            raise it.InerterError(f"Quadrature is for r.m.s. values, and {index.symbol} is none.")
         names = [weighted.output for weighted in question.outputs]
-        system = it.assemble(vehicle, question.inputs, names)
+        mechanism = question.drive.driven(mechanism)
+        arrivals = question.arrivals(mechanism)
+        system = it.assemble(mechanism, list(dict.fromkeys(arrival.input for arrival in arrivals)), names)
         omega, weights = _nodes(self.points, self.middle)
-        delays = {road.name: road.distance / question.road.speed for road in mechanism.roads}
         s = 1j * omega
         resolvent = np.linalg.solve(s[:, None, None] * np.eye(system.order) - system.A, system.B + 0j)
         gains = system.C @ resolvent + system.D
-        arrival = np.exp(-s[:, None] * np.array([delays[name] for name in question.inputs]))
-        response = np.einsum("foi,fi->fo", gains, arrival)
+        squares = np.zeros((omega.size, len(names)))
+        for source in {arrival.source for arrival in arrivals}:
+            response = np.zeros((omega.size, len(names)), dtype=complex)
+            for arrival in arrivals:
+                if arrival.source == source:
+                    passed = 1.0 if arrival.filter is None else arrival.filter.response(omega)
+                    factor = arrival.lever * passed * np.exp(-s * arrival.delay)
+                    response += gains[:, :, system.inputs.index(arrival.input)] * factor[:, None]
+            squares += np.abs(response) ** 2
         for column, filter in enumerate(question.filters):
             if filter is not None:
-                response[:, column] *= filter.response(omega)
-        rms = question.road.velocity_intensity * np.sqrt(weights @ np.abs(response) ** 2 / pi)
+                squares[:, column] *= np.abs(filter.response(omega)) ** 2
+        rms = question.drive.size * np.sqrt(weights @ squares / pi)
         value = sum(abs(w.weight) * r for w, r in zip(question.outputs, rms.tolist(), strict=True))
         return it.Estimate(value, question.unit, notes=system.notes)
 

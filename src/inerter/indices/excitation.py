@@ -1,0 +1,241 @@
+"""What drives a mechanism in an index: a road, a force, the ground, one of these through a filter, or one input alone.
+
+An excitation says which mechanism it drives, and how its sources, independent white noises of one intensity, arrive at
+the inputs of that mechanism. Methods know no more of it than that, so that a new one is a class with a few lines.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from inerter.checks import check_positive
+from inerter.errors import PerformanceIndexError
+from inerter.signals.road import Road
+from inerter.systems.arrivals import Arrival
+from inerter.systems.filters import Filter, as_filter
+from inerter.systems.linear import LinearSystem
+from inerter.systems.outputs import check_inputs
+from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
+
+_VELOCITY, _ACCELERATION = "m/s", "m/s^2"
+
+
+class Excitation(Protocol):
+    """What drives a mechanism."""
+
+    @property
+    def size(self) -> float:
+        """Root of the two-sided spectral density of each source, in its unit per root of Hz."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Unit of a source; empty if that depends on the mechanism."""
+        ...
+
+    @property
+    def is_random(self) -> bool:
+        """Whether its sources are white noises; else it is one input, of which gains are asked."""
+        ...
+
+    def driven(self, mechanism: Mechanism) -> Mechanism:
+        """The mechanism that it drives: the same, or the same seen from ground that moves."""
+        ...
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """How its sources reach the inputs; raises `PerformanceIndexError` if the mechanism has none for it."""
+        ...
+
+
+@dataclass(frozen=True)
+class RoadVelocity:
+    """The white velocity of a road, at each wheel when the wheel gets there."""
+
+    road: Road
+    unit = _VELOCITY
+    is_random = True
+
+    @property
+    def size(self) -> float:
+        """2 pi sqrt(V kappa) [m/s per root of Hz]."""
+        return self.road.velocity_intensity
+
+    def driven(self, mechanism: Mechanism) -> Mechanism:
+        """The same."""
+        return mechanism
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """One at each road input."""
+        if not mechanism.roads:
+            raise PerformanceIndexError("A road drives a mechanism at its tyres, and this one stands on none.")
+        return tuple(Arrival(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
+
+
+@dataclass(frozen=True)
+class WhiteForce:
+    """A white force on a port: an external force of the mechanism by name, of two-sided `intensity` [N^2/Hz].
+
+    For a moment it is in (N m)^2/Hz.
+
+    Raises `PerformanceIndexError` unless the intensity is positive and finite.
+    """
+
+    name: str
+    intensity: float
+    unit = "N"
+    is_random = True
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str):
+            raise PerformanceIndexError(f"A white force has the name of a force of the mechanism, got {self.name!r}.")
+        check_positive(PerformanceIndexError, "The intensity of a white force", self.intensity, "N^2/Hz")
+
+    @property
+    def size(self) -> float:
+        """Root of the intensity."""
+        return math.sqrt(self.intensity)
+
+    def driven(self, mechanism: Mechanism) -> Mechanism:
+        """The same."""
+        return mechanism
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """One at the force."""
+        return (Arrival(_force(mechanism, self.name), self.name),)
+
+
+@dataclass(frozen=True)
+class GroundAcceleration:
+    """White acceleration of the ground, vertically, of two-sided `intensity` [(m/s^2)^2/Hz]; every mass feels it.
+
+    Roads lie still on the ground. Motions that stay bounded are those over the ground, `<coordinate>_relative_...`,
+    and what follows from them; a `<coordinate>_acceleration` is the absolute one.
+
+    Raises `PerformanceIndexError` unless the intensity is positive and finite.
+    """
+
+    intensity: float
+    unit = _ACCELERATION
+    is_random = True
+
+    def __post_init__(self) -> None:
+        check_positive(PerformanceIndexError, "The intensity of a ground acceleration", self.intensity, "(m/s^2)^2/Hz")
+
+    @property
+    def size(self) -> float:
+        """Root of the intensity."""
+        return math.sqrt(self.intensity)
+
+    def driven(self, mechanism: Mechanism) -> Mechanism:
+        """The same seen from the ground."""
+        return mechanism.on_moving_ground()
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """One at all masses together."""
+        if all(coordinate.angle for coordinate in mechanism.coordinates):
+            raise PerformanceIndexError("Ground acceleration acts on masses, and this mechanism has none.")
+        return (Arrival(GROUND_ACCELERATION, "ground"),)
+
+
+@dataclass(frozen=True)
+class Shaped:
+    """An excitation whose sources pass through a filter before they arrive; its intensity is that before the filter.
+
+    `filter` is a `Filter`, or a `LinearSystem` with one input and one output.
+
+    Raises `PerformanceIndexError` for what is no random excitation, `LinearSystemError` for what is no filter.
+    """
+
+    excitation: Road | Excitation
+    filter: Filter | LinearSystem
+
+    def __post_init__(self) -> None:
+        of = as_excitation(self.excitation, "A shaping filter")
+        if not of.is_random:
+            raise PerformanceIndexError(f"A shaping filter is for what is random, got {of!r}.")
+        shape = as_filter(self.filter)
+        if shape is None:
+            raise PerformanceIndexError("A shaped excitation needs a filter, such as Filter([1.0], [1.0, 2.0]).")
+        object.__setattr__(self, "excitation", of)
+        object.__setattr__(self, "filter", shape)
+
+    @property
+    def size(self) -> float:
+        """That of the sources."""
+        return self._of.size
+
+    @property
+    def unit(self) -> str:
+        """That of the sources."""
+        return self._of.unit
+
+    @property
+    def is_random(self) -> bool:
+        """It is."""
+        return True
+
+    @property
+    def _of(self) -> Excitation:
+        return as_excitation(self.excitation, "A shaping filter")
+
+    def driven(self, mechanism: Mechanism) -> Mechanism:
+        """As what is shaped."""
+        return self._of.driven(mechanism)
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """As what is shaped, each through the filter behind its own."""
+        shape = as_filter(self.filter)
+        assert shape is not None
+        return tuple(
+            replace(a, filter=shape if a.filter is None else a.filter.then(shape)) for a in self._of.arrivals(mechanism)
+        )
+
+
+@dataclass(frozen=True)
+class OneInput:
+    """One input alone, of which gains are asked: a force, a road's displacement, or `<road>_velocity`."""
+
+    name: str
+    size = 1.0
+    unit = ""
+    is_random = False
+
+    def driven(self, mechanism: Mechanism) -> Mechanism:
+        """The same."""
+        return mechanism
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """One at the input."""
+        for road in mechanism.roads:
+            if self.name == f"{road.name}_velocity":
+                return (Arrival(road.name, self.name),)
+            if self.name == road.name:
+                return (Arrival(road.name, self.name, displacement=True),)
+        check_inputs(mechanism, [self.name], PerformanceIndexError)
+        return (Arrival(self.name, self.name),)
+
+
+def as_excitation(given: object, what: str) -> Excitation:
+    """`given`, a road or an excitation, as an excitation; raises `PerformanceIndexError` for anything else.
+
+    `what` asks for it, at the beginning of the sentence.
+    """
+    if isinstance(given, Road):
+        return RoadVelocity(given)
+    if isinstance(given, type) or not hasattr(given, "arrivals"):
+        raise PerformanceIndexError(
+            f"{what} needs an excitation, such as Road(roughness=..., speed=...) or WhiteForce(name, intensity=...), "
+            f"got {given!r}."
+        )
+    found: Excitation = given  # type: ignore[assignment]
+    return found
+
+
+def _force(mechanism: Mechanism, name: str) -> str:
+    forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
+    if name not in forces:
+        known = ", ".join(forces) or "none"
+        raise PerformanceIndexError(f"There is no force named {name!r} in this mechanism (there are: {known}).")
+    return name

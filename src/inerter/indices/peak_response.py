@@ -1,0 +1,65 @@
+"""The index of any peak gain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from inerter.checks import check_positive
+from inerter.errors import PerformanceIndexError
+from inerter.indices.excitation import OneInput
+from inerter.indices.question import Combination, Given, Question
+from inerter.systems.filters import as_filter
+from inerter.systems.outputs import unit_of
+from inerter.vehicle.mechanism import Mechanism, Weighted
+
+
+@dataclass(frozen=True)
+class PeakResponse:
+    """The largest gain from an input to an output over all frequencies; the estimate's `peaks` are all local maxima.
+
+    `input` is an external force, a road (its displacement) or `<road>_velocity`; `filter` (a `Filter` or a
+    `LinearSystem`) is on the output. `amplitude` is that of a sinusoidal input, which methods need that see friction
+    or gaps.
+
+    Raises `PerformanceIndexError` for names that are no text and for an amplitude that is not positive,
+    `LinearSystemError` for what is no filter.
+
+    >>> import inerter as it
+    >>> swing = it.Strut("support", it.Spring(1.0) | it.Damper(0.1), upper={"mass": 1.0}, lower=it.GROUND)
+    >>> push = it.Force("push", {"mass": 1.0})
+    >>> mass = it.Mechanism(coordinates=(it.Coordinate("mass", 1.0),), struts=(swing,), forces=(push,))
+    >>> found = it.evaluate(mass, it.PeakResponse("push", "mass_displacement"), it.Norm())
+    >>> round(found.value, 6), round(found.peaks[0].omega, 6)  # 1 / (2 D sqrt(1 - D^2)) at sqrt(1 - 2 D^2), D = 0.05
+    (10.012523, 0.997497)
+    """
+
+    input: str
+    output: str
+    filter: Given = None
+    amplitude: float | None = None
+    symbol = "peak-response"
+    title = "peak response"
+    unit = ""  # that of its output over that of its input
+    response = "output per input"
+
+    def __post_init__(self) -> None:
+        for what, name in (("input", self.input), ("output", self.output)):
+            if not isinstance(name, str):
+                raise PerformanceIndexError(f"The {what} of a peak response is given by its name, got {name!r}.")
+        if self.amplitude is not None:
+            check_positive(PerformanceIndexError, f"The amplitude of {self.input!r}", self.amplitude, "its unit")
+        object.__setattr__(self, "filter", as_filter(self.filter))
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `PerformanceIndexError` if the mechanism has no such input."""
+        moved = any(self.input == f"{road.name}_velocity" for road in mechanism.roads)
+        unit = _over(unit_of(mechanism, [self.output]), "m/s" if moved else unit_of(mechanism, [self.input]))
+        outputs = (Weighted(self.output),)
+        return Question(outputs, Combination.PEAK_GAIN, OneInput(self.input), unit, self.filter, self.amplitude)
+
+
+def _over(top: str, bottom: str) -> str:
+    """A unit over another one."""
+    if top == bottom:
+        return "1"
+    return f"{f'({top})' if '/' in top else top}/{f'({bottom})' if '/' in bottom or ' ' in bottom else bottom}"

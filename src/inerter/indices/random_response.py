@@ -1,0 +1,72 @@
+"""The index of any random response."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from inerter.checks import is_number
+from inerter.errors import PerformanceIndexError
+from inerter.indices.excitation import Excitation, as_excitation
+from inerter.indices.question import Combination, Given, Question
+from inerter.signals.road import Road
+from inerter.systems.filters import as_filter
+from inerter.systems.outputs import unit_of
+from inerter.vehicle.mechanism import Mechanism, Weighted
+
+Weights = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class RandomResponse:
+    """R.m.s. values of any outputs under any random excitation, each times its weight, added up.
+
+    `outputs` maps names of outputs to weights, `excitation` is a `Road`, a `WhiteForce`, a `GroundAcceleration`, or one
+    of these `Shaped` by a filter. `filter` (a `Filter` or a `LinearSystem`) is on every output.
+
+    Raises `PerformanceIndexError` for what is none of these, `LinearSystemError` for what is no filter.
+
+    >>> import inerter as it
+    >>> swing = it.Strut("support", it.Spring(1.0) | it.Damper(0.1), upper={"mass": 1.0}, lower=it.GROUND)
+    >>> push = it.Force("push", {"mass": 1.0})
+    >>> mass = it.Mechanism(coordinates=(it.Coordinate("mass", 1.0),), struts=(swing,), forces=(push,))
+    >>> moved = it.RandomResponse({"mass_displacement": 1.0}, it.WhiteForce("push", intensity=1.0))
+    >>> round(it.evaluate(mass, moved, it.Norm()).value ** 2, 9)  # S / (2 c k)
+    5.0
+    """
+
+    outputs: Weights
+    excitation: Road | Excitation
+    filter: Given = None
+    symbol = "random-response"
+    title = "random response"
+    unit = ""  # that of its outputs
+    response = "outputs per root of the intensity"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.outputs, Mapping) or not self.outputs:
+            raise PerformanceIndexError(
+                f"The outputs of a random response map names to weights, as {{'tyre_load': 1.0}}; got {self.outputs!r}."
+            )
+        for name, weight in self.outputs.items():
+            if not isinstance(name, str) or not is_number(weight) or weight == 0.0:
+                raise PerformanceIndexError(f"The weight of output {name!r} is a number other than 0, got {weight!r}.")
+        object.__setattr__(self, "outputs", _Fixed(self.outputs))
+        object.__setattr__(self, "excitation", as_excitation(self.excitation, "A random response"))
+        object.__setattr__(self, "filter", as_filter(self.filter))
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `PerformanceIndexError` if the excitation does not fit the mechanism."""
+        drive = as_excitation(self.excitation, "A random response")
+        if not drive.is_random:
+            raise PerformanceIndexError(f"A random response needs a random excitation, got {drive!r}.")
+        outputs = tuple(Weighted(name, weight) for name, weight in self.outputs.items())
+        unit = unit_of(drive.driven(mechanism), list(self.outputs))
+        return Question(outputs, Combination.SUM_OF_RMS, drive, unit, self.filter)
+
+
+class _Fixed(dict[str, float]):
+    """A mapping that is the same for good, so that an index can be a key."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(tuple(self.items()))

@@ -1,0 +1,165 @@
+"""An index of a design by a method, whatever the index is made of and whatever the design's values follow from.
+
+A method answers one question about a mechanism of numbers and free values. An index that is made of several answers, or
+of none, is `Composed`: it asks by itself. Values that are tied to others are free ones to a method, and what it says of
+them is put together here. So no method knows of either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import count
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.indices.question import Index
+from inerter.methods.combined import Part, combined
+from inerter.networks.elements import Tied
+from inerter.networks.transform import without_ties
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
+
+    from inerter.methods.method import Estimate, Method, Objective
+
+Array = NDArray[np.float64]
+
+
+@runtime_checkable
+class Composed(Protocol):
+    """An index that is not one question: it puts together what it asks, or tells its value by itself."""
+
+    @property
+    def symbol(self) -> str:
+        """Short name."""
+        ...
+
+    @property
+    def title(self) -> str:
+        """Name in words."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Unit of its value."""
+        ...
+
+    @property
+    def response(self) -> str:
+        """What its frequency response is, in words."""
+        ...
+
+    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+        """The indices that are asked, each of its vehicle; raises `InerterError` if the vehicle has no answer."""
+        ...
+
+    def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> Sequence[Composed]:
+        """What a limit is put on: the index of each output that `split` tells apart, taken in the same way."""
+        ...
+
+    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+        """The value for a vehicle without free values."""
+        ...
+
+    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+        """The values (designs,) at many values of the free values, nan where one is not ok."""
+        ...
+
+    def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:
+        """The index as a function of the free values."""
+        ...
+
+
+Asked = Index | Composed
+
+
+def is_composed(index: object) -> TypeIs[Composed]:
+    """Whether the index asks by itself."""
+    return not isinstance(index, type) and isinstance(index, Composed)
+
+
+def estimate_of(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+    """The index of a vehicle without free values."""
+    return index.estimated(vehicle, method) if is_composed(index) else method.estimate(vehicle, index)
+
+
+def estimates_of(vehicle: Vehicle, indices: Sequence[Asked], method: Method, points: Mapping[str, Array]) -> Array:
+    """The indices (designs, indices) of a vehicle at many values of its free values."""
+    loose = without_tied_values(vehicle)
+    if loose is not None:
+        return _many_followed(loose, indices, method, points)
+    plain = [index for index in indices if not is_composed(index)]
+    together = method.estimate_many(vehicle, plain, points) if plain else np.empty((0, 0))
+    columns = iter(together.T)
+    return np.column_stack(
+        [index.estimated_many(vehicle, method, points) if is_composed(index) else next(columns) for index in indices]
+    )
+
+
+def objective_of(vehicle: Vehicle, index: Asked, method: Method) -> Objective:
+    """The index as a function of the free values."""
+    loose = without_tied_values(vehicle)
+    if loose is not None:
+        return combined([Part(objective_of(loose.mechanism, index, method), loose.follow)], worst=False)
+    return index.as_objective(vehicle, method) if is_composed(index) else method.objective(vehicle, index)
+
+
+@dataclass(frozen=True)
+class Ties:
+    """How the free values of another design follow from some: as they are, by ties, or as numbers; times a factor."""
+
+    names: tuple[str, ...]
+    inner: tuple[Tied, ...]  # of each value of the other design
+
+    def values(self, points: Array) -> Array:
+        """Values of the other design (n, inner), one row for each of `points`."""
+        columns = dict(zip(self.names, points.T, strict=True))
+        found = [np.broadcast_to(tie.slopes(columns)[0], (points.shape[0],)) for tie in self.inner]
+        return np.ascontiguousarray(np.column_stack(found)) if found else np.zeros((points.shape[0], 0))
+
+    def slopes(self, point: Array) -> Array:
+        """Derivatives (inner, outer) of those values at one point."""
+        known = dict(zip(self.names, point.tolist(), strict=True))
+        rows = [tie.slopes(known)[1] for tie in self.inner]
+        return np.array([[float(row.get(name, 0.0)) for name in self.names] for row in rows])
+
+
+@dataclass(frozen=True)
+class Loose:
+    """A design whose tied values are free ones, and how those follow from its free values."""
+
+    mechanism: Mechanism
+    follow: Ties
+
+
+def without_tied_values(vehicle: Vehicle) -> Loose | None:
+    """The design with free values in the place of tied ones; None if it has none of these."""
+    mechanism = vehicle.mechanism()
+    if not any(isinstance(e.value, Tied) for mount in mechanism.mounts() for e in mount.network.elements()):
+        return None
+    free = mechanism.free_values()
+    found: dict[str, Tied] = {}
+    names = (name for i in count(1) if (name := f"tied{i}") not in free)
+    loose = replace(
+        mechanism,
+        struts=tuple(replace(s, network=without_ties(s.network, names, found, free)) for s in mechanism.struts),
+        tyres=tuple(replace(t, network=without_ties(t.network, names, found, free)) for t in mechanism.tyres),
+    )
+    inner = tuple(found.get(name, Tied((name,))) for name in loose.free_values())
+    return Loose(loose, Ties(tuple(free), inner))
+
+
+def _many_followed(loose: Loose, indices: Sequence[Asked], method: Method, points: Mapping[str, Array]) -> Array:
+    rows = np.column_stack([points[name] for name in loose.follow.names])
+    inner = loose.follow.values(rows)
+    good = np.all((inner > 0.0) & np.isfinite(inner), axis=1)
+    result = np.full((rows.shape[0], len(indices)), np.nan)
+    if good.any():
+        values = dict(zip(loose.mechanism.free_values(), inner[good].T, strict=True))
+        result[good] = estimates_of(loose.mechanism, indices, method, values)
+    return result

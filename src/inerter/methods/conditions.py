@@ -1,0 +1,235 @@
+"""Operating conditions: speeds, roads, loads and tyres with their shares, and indices that are taken over them."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import OK, PerformanceIndexError, Status
+from inerter.indices.question import Index
+from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_composed, objective_of
+from inerter.methods.combined import Part, combined
+from inerter.methods.method import Estimate, Method, Objective, asked_of
+from inerter.networks.elements import Tied
+from inerter.signals.road import Road
+from inerter.vehicle.changed import changed
+from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import mapped
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Condition:
+    """How the vehicle goes for a part of the time.
+
+    `vehicle` has other numbers of it by their names, such as `sprung_mass`, `tyre_stiffness` or the label of an
+    element; `road` is another road, or other numbers of the one of the index, such as `speed`. What is not named stays
+    as it is. `share` is how much of the time, or distance, that is; shares need not add up to 1.
+
+    Raises `PerformanceIndexError` for a share that is not positive, or what is neither a road nor numbers of one.
+    """
+
+    share: float = 1.0
+    vehicle: Mapping[str, float] = field(default_factory=dict)
+    road: Road | Mapping[str, float] = field(default_factory=dict)
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        if not is_number(self.share) or self.share <= 0.0:
+            raise PerformanceIndexError(f"The share of a condition is a positive number, got {self.share!r}.")
+        if not isinstance(self.vehicle, Mapping):
+            raise PerformanceIndexError(
+                f"A condition gives numbers of the vehicle by name, such as {{'sprung_mass': 240.0}}, "
+                f"got {self.vehicle!r}."
+            )
+        known = {f.name for f in dataclasses.fields(Road)}
+        if not isinstance(self.road, Road) and not (isinstance(self.road, Mapping) and set(self.road) <= known):
+            raise PerformanceIndexError(
+                f"The road of a condition is a Road, or numbers of one by name ({', '.join(sorted(known))}), "
+                f"got {self.road!r}."
+            )
+
+    def of(self, index: Asked) -> Asked:
+        """The index on the road of this condition; as it is where no road is asked for."""
+        return _on_other_road(index, self.road) if isinstance(self.road, Road) or self.road else index
+
+    def __str__(self) -> str:
+        road = {"road": self.road} if isinstance(self.road, Road) else dict(self.road)
+        return (
+            self.name
+            or ", ".join(
+                f"{name} = {value:g}" if is_number(value) else f"{name} = {value}"
+                for name, value in {**road, **self.vehicle}.items()
+            )
+            or "as it is"
+        )
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Several conditions, over which an index has a mean and a worst.
+
+    Raises `PerformanceIndexError` if there are none.
+
+    >>> import inerter as it
+    >>> use = it.Conditions([
+    ...     it.Condition(0.3, road={"speed": 15.0}),
+    ...     it.Condition(0.7, road={"speed": 30.0}, vehicle={"sprung_mass": 240.0}),
+    ... ])
+    >>> strut = it.Spring(120e3) | it.Damper(4981)
+    >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
+    >>> mean, worst = (it.evaluate(car, over, it.Norm()).value for over in (use.mean(comfort), use.worst(comfort)))
+    >>> round(mean, 3), round(worst, 3)
+    (2.627, 2.804)
+    """
+
+    conditions: tuple[Condition, ...]
+
+    def __init__(self, conditions: Iterable[Condition]) -> None:
+        several = tuple(conditions) if isinstance(conditions, Iterable) else (conditions,)
+        if not several or not all(isinstance(one, Condition) for one in several):
+            raise PerformanceIndexError(f"Conditions are a list of Condition(...), at least one, got {conditions!r}.")
+        object.__setattr__(self, "conditions", several)
+
+    def mean(self, index: Asked) -> OverConditions:
+        """The mean of the index over the conditions, by their shares."""
+        return OverConditions(index, self, worst=False)
+
+    def worst(self, index: Asked) -> OverConditions:
+        """The largest value of the index in any of the conditions, whatever its share."""
+        return OverConditions(index, self, worst=True)
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """The shares, which add up to 1."""
+        total = sum(one.share for one in self.conditions)
+        return tuple(one.share / total for one in self.conditions)
+
+
+@dataclass(frozen=True)
+class OverConditions:
+    """An index taken over conditions: its mean by their shares, or the worst of them."""
+
+    index: Asked
+    conditions: Conditions
+    worst: bool
+
+    def __post_init__(self) -> None:
+        if isinstance(self.index, type) or not (hasattr(self.index, "question") or is_composed(self.index)):
+            raise PerformanceIndexError(
+                f"Expected an index such as RideComfort(road) to take over conditions, got {self.index!r}."
+            )
+
+    @property
+    def symbol(self) -> str:
+        """That of the index."""
+        return self.index.symbol
+
+    @property
+    def title(self) -> str:
+        """That of the index, with how it is taken."""
+        return f"{self.index.title}, {'worst' if self.worst else 'mean'} over conditions"
+
+    @property
+    def unit(self) -> str:
+        """That of the index."""
+        return self.index.unit
+
+    @property
+    def response(self) -> str:
+        """That of the index."""
+        return self.index.response
+
+    def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, Asked]]:
+        """The vehicle and the index in each condition; raises `DesignError` for a name that stands for nothing."""
+        return [(changed(vehicle, one.vehicle), one.of(self.index)) for one in self.conditions.conditions]
+
+    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+        """What is asked in all conditions."""
+        return [asked for case, index in self.cases(vehicle) for asked in asked_of(case, index)]
+
+    def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> list[OverConditions]:
+        """The index of each single output, taken in the same way; `split` takes an index apart."""
+        return [dataclasses.replace(self, index=one) for one in split(self.index, vehicle)]
+
+    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+        """The value for a vehicle without free values; what was left out anywhere is among the notes."""
+        found = mapped(partial(_estimated, method), self.cases(vehicle))
+        status = next((one.status for one in found if not one.status.ok), OK)
+        notes = tuple(dict.fromkeys(note for one in found for note in one.notes))
+        if self.worst:
+            values = [one.value for one in found]
+            worst = found[int(np.argmax(values))] if np.all(np.isfinite(values)) else found[_least_known(values)]
+            return dataclasses.replace(worst, status=status, notes=notes)
+        return _mean(found, self.conditions.shares, status, notes)
+
+    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+        """The values (designs,) at many values of the free values, nan where one is not ok."""
+        columns = []
+        for case, index in self.cases(vehicle):
+            own = {name: points[name] for name in case.free_values()}
+            found = estimates_of(case, [index], method, own)[:, 0]
+            columns.append(np.broadcast_to(found, (next(iter(points.values())).size if points else 1,)))
+        table = np.array(columns)
+        return np.asarray(table.max(axis=0) if self.worst else np.array(self.conditions.shares) @ table)
+
+    def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:
+        """The index as a function of the free values of the vehicle, which a condition may fix."""
+        names = tuple(vehicle.free_values())
+        parts = []
+        for (case, index), share in zip(self.cases(vehicle), self.conditions.shares, strict=True):
+            own = tuple(case.free_values())
+            follow = None if own == names else Ties(names, tuple(Tied((name,)) for name in own))
+            parts.append(Part(objective_of(case, index, method), follow, 1.0 if self.worst else share))
+        return combined(parts, worst=self.worst)
+
+
+def _estimated(method: Method, case: tuple[Vehicle, Asked]) -> Estimate:
+    return estimate_of(*case, method)
+
+
+def _least_known(values: Sequence[float]) -> int:
+    """The first value that is not finite."""
+    return next(i for i, value in enumerate(values) if not np.isfinite(value))
+
+
+def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, notes: tuple[str, ...]) -> Estimate:
+    """The mean by shares; its error is the sum of all, which is the most: the conditions may share their roads."""
+    value = sum(share * one.value for share, one in zip(shares, found, strict=True))
+    unit = found[0].unit
+    if all(one.standard_error is None for one in found):
+        return Estimate(value, unit, status, notes=notes)
+    error = sum(share * (one.standard_error or 0.0) for share, one in zip(shares, found, strict=True))
+    reach = sum(
+        share * 0.5 * (one.interval[1] - one.interval[0])
+        for share, one in zip(shares, found, strict=True)
+        if one.interval is not None
+    )
+    counts = {len(one.samples) for one in found}
+    samples: tuple[float, ...] = ()
+    if len(counts) == 1:
+        samples = tuple((np.array(shares) @ np.array([one.samples for one in found])).tolist())
+    realisations = max(one.realisations for one in found)
+    return Estimate(value, unit, status, error, (value - reach, value + reach), realisations, notes=notes,
+                    samples=samples)  # fmt: skip
+
+
+def _on_other_road(value: Any, road: Road | Mapping[str, float]) -> Any:
+    """The same with another road wherever it holds one."""
+    if isinstance(value, Road):
+        return road if isinstance(road, Road) else dataclasses.replace(value, **road)
+    if not dataclasses.is_dataclass(value) or isinstance(value, type):
+        return value
+    held = {f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.init}
+    other = {name: _on_other_road(one, road) for name, one in held.items()}
+    new = {name: one for name, one in other.items() if one is not held[name]}
+    return dataclasses.replace(value, **new) if new else value

@@ -1,0 +1,128 @@
+"""The static stiffness of a strut or tyre: what force holds it at a displacement, when everything has come to rest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import PerformanceIndexError
+from inerter.indices.question import Index
+from inerter.methods.method import Estimate, Method
+from inerter.networks.elements import Element, Free, Network, Parallel
+from inerter.networks.elements.roles import Linear
+from inerter.networks.transform import linearise
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class StaticStiffness:
+    """Static stiffness of what is mounted under the name `mount` [N/m], the same for every method.
+
+    Springs in parallel add up, springs in series add up their compliances; what hangs on a damper, an inerter or a
+    friction lets go, and gaps are closed. 0 where nothing is left. Infinite where a gap alone joins the ends.
+    """
+
+    mount: str
+    symbol = "static-stiffness"
+    title = "static stiffness"
+    unit = "N/m"
+    response = "force per displacement at rest"
+
+    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+        """No question; raises `PerformanceIndexError` if nothing is mounted under the name."""
+        self._network(vehicle.mechanism())
+        return []
+
+    def per_output(self, split: object, vehicle: Vehicle) -> list[StaticStiffness]:
+        """Itself."""
+        return [self]
+
+    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+        """The value for a vehicle without free values."""
+        value = float(_Stiffness(self._network(vehicle.mechanism()), ()).values(np.zeros((1, 0)))[0])
+        return Estimate(value, self.unit)
+
+    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+        """The values (designs,) at many values of the free values."""
+        network = self._network(vehicle.mechanism())
+        rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
+        return _Stiffness(network, tuple(points)).values(rows)
+
+    def as_objective(self, vehicle: Vehicle, method: Method) -> _Stiffness:
+        """The stiffness as a function of the free values, with its gradient."""
+        return _Stiffness(self._network(vehicle.mechanism()), tuple(vehicle.free_values()))
+
+    def _network(self, mechanism: Mechanism) -> Network:
+        mounts = {mount.name: mount.network for mount in mechanism.mounts()}
+        if self.mount not in mounts:
+            raise PerformanceIndexError(f"Nothing is mounted as {self.mount!r} (there are: {', '.join(mounts)}).")
+        return mounts[self.mount]
+
+
+def static_stiffness(mount: str) -> StaticStiffness:
+    """The static stiffness of the strut or tyre of this name [N/m], as an index or in a limit.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(80e3) | it.Spring(60e3, "ks") - (it.Spring(30e3, "kp") | it.Damper(2000.0))
+    >>> car = it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=strut)
+    >>> it.evaluate(car, it.static_stiffness("strut"), it.Norm()).value
+    100000.0
+    """
+    return StaticStiffness(mount)
+
+
+@dataclass(frozen=True, eq=False)
+class _Stiffness:
+    """A `Differentiable` that needs no method."""
+
+    network: Network
+    names: tuple[str, ...]
+
+    def values(self, points: Array) -> Array:
+        """The stiffness at each row of `points`."""
+        return np.broadcast_to(self._told(points)[0], (points.shape[0],)).copy()
+
+    def value_and_gradient(self, point: Array) -> tuple[float, Array]:
+        """The stiffness and its gradient at one point."""
+        value, gradient = self._told(point[None])
+        return float(np.broadcast_to(value, (1,))[0]), np.broadcast_to(gradient, (point.size, 1))[:, 0].copy()
+
+    def active(self, point: Array) -> None:
+        """None: it is smooth."""
+
+    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
+        """It has none."""
+        raise AssertionError("a static stiffness is one smooth function")
+
+    def _told(self, points: Array) -> tuple[Array, Array]:
+        left = linearise(self.network)
+        if left.network is None:
+            return np.array([np.inf if left.rigid else 0.0]), np.zeros((len(self.names), 1))
+        columns = dict(zip(self.names, points.T, strict=True))
+        return _stiffness(left.network, columns, np.eye(len(self.names))[:, :, None], self.names)
+
+
+def _stiffness(network: Network, columns: Mapping[str, Array], eye: Array, names: Sequence[str]) -> tuple[Array, Array]:
+    """Stiffness (n,) and gradient (names, n)."""
+    if isinstance(network, Element):
+        if network.linear is not Linear.STIFFNESS:
+            return np.zeros(1), np.zeros((len(names), 1))
+        if isinstance(network.value, Free):
+            place = names.index(str(network.value.name))
+            return network.gain * columns[names[place]], network.gain * eye[place]
+        return np.array([network.coefficient]), np.zeros((len(names), 1))
+    assert hasattr(network, "parts")
+    found = [_stiffness(part, columns, eye, names) for part in network.parts]
+    if isinstance(network, Parallel):
+        return sum((k for k, _ in found), np.zeros(1)), sum((g for _, g in found), np.zeros((len(names), 1)))
+    if any(not np.any(k) for k, _ in found):  # one of them lets go at every point
+        return np.zeros(1), np.zeros((len(names), 1))
+    compliance = sum((1.0 / k for k, _ in found), np.zeros(1))
+    total = 1.0 / compliance
+    return total, sum((g * (total / k) ** 2 for k, g in found), np.zeros((len(names), 1)))

@@ -1,0 +1,249 @@
+"""Local optima within limits: of an index, or, where nothing keeps the limits, of how far they are missed.
+
+All functions are taken in logarithms. What is smooth is one row, what is the largest of smooth functions has a row for
+each of its peaks: during the approach those of the current point, which gets close in a few steps; to the end those
+that are known, to which the ones that stand out are added until none does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.methods.method import Differentiable, Objective
+from inerter.optimisation.levels import Rows, lowest_level
+from inerter.optimisation.limits import Bound, Sense
+from inerter.optimisation.local import LocalOptimum
+
+Array = NDArray[np.float64]
+KEPT = 1e-7  # of a logarithm beyond its limit that counts as kept; the exact optimum lies on it
+KEPT_COSTLY = 1e-4  # the same for values that are simulated
+_STEEP = 10.0  # how much a logarithm beyond its limit weighs where starts are chosen
+_PEAKS = 8  # slots for peaks during the approach
+_HIDDEN = -700.0  # logarithm of a peak that is not there
+_PROMISING, _SAME_PLACE = 0.02, 0.01  # as in searches without limits
+_STANDS_OUT = 1e-9
+_TIGHT = 1e-5  # distance of a logarithm from its limit up to which it may hold the optimum back
+_TRUSTED = 1e-3  # what multipliers may leave of the gradient
+Known = tuple[Any, ...]  # of each function the peaks that are followed; None for those of the current point
+
+
+@dataclass(frozen=True, eq=False)
+class Limited:
+    """An index within limits, as a function of the free values; without an index, how far limits are missed."""
+
+    objective: Objective | None
+    bounds: tuple[Bound, ...]
+    lower: Array
+    upper: Array
+
+    def values(self, points: Array) -> Array:
+        """What starts are chosen by, at each row of `points`: the index, made larger where a limit is missed."""
+        over = np.exp(np.minimum(_STEEP * np.maximum(self.excess(points), 0.0), 600.0))
+        return np.asarray(over if self.objective is None else over * self.objective.values(points), dtype=float)
+
+    def excess(self, points: Array) -> Array:
+        """By how much the logarithm of the worst limited quantity is beyond its limit; negative if it is not."""
+        found = [np.full(points.shape[0], -np.inf), *(bound.excess(points) for bound in self.bounds)]
+        return np.asarray(np.max(found, axis=0))
+
+    @property
+    def functions(self) -> tuple[Any, ...]:
+        """The index, if there is one, and what is limited."""
+        own = () if self.objective is None else (self.objective,)
+        return (*own, *(bound.function for bound in self.bounds))
+
+    def known(self, point: Array) -> Known:
+        """The peaks of each function at a point; None of smooth ones."""
+        return tuple(function.active(point) for function in self.functions)
+
+    def rows(self, point: Array, known: Known | None = None) -> Rows:
+        """The logarithms at a point with their slopes; limits are relative to their values, and below zero if kept."""
+        which = (None,) * len(self.functions) if known is None else known
+        found = [_logs(f, point, peaks, known is None) for f, peaks in zip(self.functions, which, strict=True)]
+        own = [] if self.objective is None else [found.pop(0)]
+        logs, slopes, under = [a for a, _ in own], [b for _, b in own], [np.ones(a.size) for a, _ in own]
+        equal, equal_slopes = [np.zeros(0)], [np.zeros((0, point.size))]
+        for bound, (values, gradients) in zip(self.bounds, found, strict=True):
+            off = values - np.log(bound.limit.value)
+            if bound.limit.sense is not Sense.AT_MOST:  # that of a peak gain is one of its highest peak
+                top = [int(np.argmax(off))]
+                off, gradients = off[top], gradients[top]
+            level = np.full(off.size, 1.0 if self.objective is None else 0.0)
+            if bound.limit.sense is Sense.EQUAL and self.objective is not None:
+                equal.append(off)
+                equal_slopes.append(gradients)
+                continue
+            signs = {Sense.AT_MOST: (1.0,), Sense.AT_LEAST: (-1.0,), Sense.EQUAL: (1.0, -1.0)}[bound.limit.sense]
+            for sign in signs:
+                logs.append(sign * off)
+                slopes.append(sign * gradients)
+                under.append(level)
+        return Rows(*map(np.concatenate, (logs, slopes, under, equal, equal_slopes)))
+
+    def at(self, point: Array, evaluations: int) -> LocalOptimum:
+        """The point with what it comes to."""
+        excess = float(self.excess(point[None])[0])
+        value = np.exp(excess) if self.objective is None else float(self.objective.values(point[None])[0])
+        return LocalOptimum(point, value, evaluations, excess)
+
+
+def _logs(function: Differentiable, point: Array, which: Any, following: bool) -> tuple[Array, Array]:
+    peaks = function.active(point) if following else which
+    if peaks is None:
+        value, gradient = function.value_and_gradient(point)
+        values, gradients = np.array([value]), gradient[None]
+    else:
+        values, gradients = function.components(point, peaks[:_PEAKS] if following else peaks)
+    good = np.isfinite(values) & (values > 0.0) & np.all(np.isfinite(gradients), axis=1)
+    logs, slopes = np.full(values.size, -_HIDDEN), np.zeros((values.size, point.size))
+    logs[good], slopes[good] = np.log(values[good]), gradients[good] * point / values[good, None]
+    if peaks is None or not following:
+        return logs, slopes
+    spare = _PEAKS - values.size
+    return np.append(logs, np.full(spare, _HIDDEN)), np.vstack([slopes, np.zeros((spare, point.size))])
+
+
+def searches(problem: Limited, first: Sequence[Array]) -> list[LocalOptimum]:
+    """A local search from each start; those that come close to the best within the limits are carried to the end."""
+    near = [_approached(problem, start) for start in first]
+    near.sort(key=lambda local: (max(local.excess, _TIGHT), local.value))
+    ended: list[LocalOptimum] = []
+    for local in near:
+        if local.excess > near[0].excess + _TIGHT or local.value > near[0].value * (1.0 + _PROMISING):
+            ended.append(local)
+            continue
+        here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < _SAME_PLACE)
+        same = next(here, None)
+        ended.append(polished(problem, local) if same is None else replace(same, evaluations=local.evaluations))
+    return ended
+
+
+def _approached(problem: Limited, start: Array) -> LocalOptimum:
+    point, count = lowest_level(problem.rows, start, problem.lower, problem.upper, tolerance=1e-7, most_steps=60)
+    return problem.at(point, count + 1)
+
+
+def polished(problem: Limited, start: LocalOptimum) -> LocalOptimum:
+    """The optimum near `start`: peaks that are known, and those that stand out added."""
+    best, point, evaluations = start, start.point, start.evaluations
+    known = problem.known(point)
+    for _ in range(20):
+        fixed = partial(problem.rows, known=known)
+        point, count = lowest_level(fixed, point, problem.lower, problem.upper, tolerance=1e-13, most_steps=100)
+        found = problem.at(point, 0)
+        evaluations += count + 2
+        if _better(found, best):
+            best = found
+        seen = problem.known(point)
+        if all(peaks is None for peaks in seen) or _steady(problem, point, known, found):
+            break
+        known = tuple(None if old is None else np.concatenate([old, new]) for old, new in zip(known, seen, strict=True))
+    return replace(best, evaluations=evaluations)
+
+
+def _better(one: LocalOptimum, other: LocalOptimum) -> bool:
+    """Whether one keeps the limits where the other does not, or is lower."""
+    if max(one.excess, other.excess) <= KEPT:
+        return one.value < other.value
+    return one.excess < other.excess
+
+
+def _steady(problem: Limited, point: Array, known: Known, found: LocalOptimum) -> bool:
+    """Whether the peaks that are known are the highest, of the index and of what is limited."""
+    if not np.isfinite(found.value):
+        return True
+    rows = problem.rows(point, known)
+    level = rows.logs[rows.under > 0.0].max()
+    limits = np.append(rows.logs[rows.under == 0.0], np.abs(rows.equal))
+    missed = 0.0 if problem.objective is None else max(found.excess, 0.0) - max(limits.max(initial=0.0), 0.0)
+    return bool(np.log(found.value) <= level + _STANDS_OUT and missed <= _STANDS_OUT)
+
+
+def trust_region_within(problem: Limited, start: Array) -> LocalOptimum:
+    """The local optimum of a costly index near `start`, by a trust-region search without derivatives."""
+    assert problem.objective is not None
+    objective, best = problem.objective, [LocalOptimum(start, np.inf, 0, np.inf)]
+    memory: dict[bytes, tuple[float, Array]] = {}
+
+    def at(x: Array) -> tuple[float, Array]:
+        if x.tobytes() not in memory:
+            point = np.clip(np.exp(x), problem.lower, problem.upper)[None]
+            value = float(objective.values(point)[0])
+            over = np.array([float(bound.excess(point)[0]) for bound in problem.bounds])
+            here = LocalOptimum(point[0], value, 0, float(over.max()))
+            if np.isfinite(value) and _no_worse(here, best[0]):
+                best[0] = here
+            log = float(np.log(value)) if 0.0 < value < np.inf else -_HIDDEN
+            memory[x.tobytes()] = log, np.clip(over, _HIDDEN, -_HIDDEN)
+        return memory[x.tobytes()]
+
+    minimize: Any = scipy.optimize.minimize
+    minimize(
+        lambda x: at(x)[0],
+        np.log(start),
+        method="COBYQA",
+        bounds=scipy.optimize.Bounds(np.log(problem.lower), np.log(problem.upper)),
+        constraints=scipy.optimize.NonlinearConstraint(lambda x: at(x)[1], -np.inf, 0.0),
+        options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-4, "maxfev": 80 * start.size},
+    )
+    return replace(best[0], evaluations=len(memory))
+
+
+def _no_worse(one: LocalOptimum, other: LocalOptimum) -> bool:
+    if max(one.excess, other.excess) <= KEPT_COSTLY:
+        return one.value < other.value
+    return one.excess < other.excess
+
+
+def sensitivities(problem: Limited, point: Array) -> list[float]:
+    """Per cent by which the index changes for one per cent of each limit: its multiplier; nan where it is not told."""
+    known = problem.known(point)
+    slopes, own, limit_of, signs = [], [], [], []
+    for number, (peaks, function) in enumerate(zip(known, problem.functions, strict=True)):
+        logs, gradients = _logs(function, point, peaks, False)
+        if number == 0:
+            near = logs >= logs.max() - _TIGHT
+            slopes += list(gradients[near])
+            own += [1.0] * int(near.sum())
+            continue
+        bound = problem.bounds[number - 1]
+        off = logs - np.log(bound.limit.value)
+        top = off.max()
+        if bound.limit.sense is Sense.AT_MOST:
+            rows = np.flatnonzero(np.abs(off) <= _TIGHT)
+        else:
+            rows = np.array([int(np.argmax(off))]) if abs(top) <= _TIGHT else np.zeros(0, dtype=int)
+        for row in rows:
+            slopes.append(gradients[row])
+            own.append(0.0)
+            limit_of.append(number - 1)
+            signs.append(bound.limit.sense)
+    multipliers = _multipliers(np.array(slopes), np.array(own), signs, point, problem)
+    found = [0.0] * len(problem.bounds)
+    for number, multiplier in zip(limit_of, multipliers, strict=True):
+        found[number] -= float(multiplier)
+    return found
+
+
+def _multipliers(slopes: Array, own: Array, senses: list[Sense], point: Array, problem: Limited) -> Array:
+    """Of each limit's row: those with which the slopes of index, limits and bounds balance; nan if none do."""
+    least = [0.0] * int(own.sum()) + [-np.inf if sense is not Sense.AT_MOST else 0.0 for sense in senses]
+    most = [np.inf] * int(own.sum()) + [0.0 if sense is Sense.AT_LEAST else np.inf for sense in senses]
+    at_lower = np.isclose(point, problem.lower, rtol=1e-9, atol=0.0)
+    at_upper = np.isclose(point, problem.upper, rtol=1e-9, atol=0.0)
+    sides = np.eye(point.size)[:, at_lower | at_upper] * np.where(at_lower, -1.0, 1.0)[:, None]
+    A = np.vstack([np.hstack([slopes.T, sides]), np.append(own, np.zeros(sides.shape[1]))])
+    b = np.append(np.zeros(point.size), 1.0)
+    found: Any = scipy.optimize.lsq_linear(
+        A, b, bounds=([*least, *[0.0] * sides.shape[1]], [*most, *[np.inf] * sides.shape[1]]), tol=1e-14
+    )
+    if np.linalg.norm(A @ found.x - b) > _TRUSTED * max(np.abs(slopes[own > 0.0]).max(), 1.0):
+        return np.full(len(senses), np.nan)
+    return np.asarray(found.x[int(own.sum()) : int(own.sum()) + len(senses)])

@@ -1,0 +1,97 @@
+"""Many histories: each run's outputs over time, in a file of its own that the process which made it writes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from functools import partial
+from pathlib import Path
+from typing import Any, Unpack
+
+from inerter.errors import SimulationError, WorkError
+from inerter.kernels.prepare import prepare_on
+from inerter.simulation import event_driven
+from inerter.simulation.batch import groups_of, listed
+from inerter.simulation.inputs import DrivenMany, check_driven
+from inerter.simulation.simulate import simulate
+from inerter.simulation.start import Initial
+from inerter.systems.outputs import find
+from inerter.systems.piecewise import piecewise
+from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import mapped, running_on
+from inerter.writing import is_unforeseen, write_netcdf
+
+
+def simulate_to_files(
+    vehicles: Sequence[Vehicle],
+    folder: str | Path,
+    *,
+    outputs: Sequence[str],
+    duration: float,
+    step: float = 2e-4,
+    every: int = 1,
+    initial: Initial = "rest",
+    executor: Executor | None = None,
+    progress: Callable[[float], None] | None = None,
+    **driven: Unpack[DrivenMany],
+) -> list[list[Path]]:
+    """Simulate every vehicle on every signal, and write the history of `outputs` of each run to a file in `folder`.
+
+    Returns the files, `design-<i>-signal-<j>.nc`, as designs x signals: netCDF over `time` with units, and the run's
+    `status` as an attribute. `folder` is new, or empty. With an `executor` (of `concurrent.futures`, of a dask client,
+    of mpi4py) processes write what they have simulated, so that no history passes through a scheduler; on several
+    machines the folder must be on a disk that all of them see. See `simulate` and `simulate_many` for the rest.
+
+    Raises `SimulationError` as `simulate_many` does, and if the folder holds something or cannot be written;
+    `WorkError` if what was written elsewhere is not seen here, or the disk is full.
+    """
+    cars = listed("vehicles", vehicles)
+    names = [outputs] if isinstance(outputs, str) else listed("outputs", outputs)
+    check_driven("simulate_to_files", driven)
+    groups, count = groups_of(driven)
+    for car in cars:
+        known = piecewise(car).outputs
+        for name in names:
+            find(known, name, SimulationError)
+    place = _empty(folder)
+    files = [[place / f"design-{i:05d}-signal-{j:03d}.nc" for j in range(count)] for i in range(len(cars))]
+    same = {"duration": duration, "step": step, "every": every, "initial": initial, "speed": driven.get("speed")}
+    items = [
+        (car, {name: group[j] for name, group in groups.items()}, str(files[i][j]))
+        for i, car in enumerate(cars)
+        for j in range(count)
+    ]
+    with running_on(executor) as pool:
+        prepare_on(pool, event_driven.KERNELS)
+        mapped(partial(_write, names, same), items, progress=progress)
+    missing = next((file for row in files for file in row if not file.is_file()), None)
+    if missing is not None:
+        raise WorkError(f"{str(missing)!r} was written where this process cannot see it: name a folder that all share.")
+    return files
+
+
+def _write(names: Sequence[str], same: dict[str, Any], item: tuple[Vehicle, dict[str, Any], str]) -> None:
+    car, driven, file = item
+    run = simulate(car, **same, **driven)
+    try:
+        write_netcdf(Path(file), run.to_xarray(names))
+    except OSError as error:
+        raise _unwritten(file, error) from error
+
+
+def _empty(folder: str | Path) -> Path:
+    """The folder by its whole path, made if it is not there."""
+    place = Path(folder).resolve()
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        holds = next(place.iterdir(), None)
+    except OSError as error:
+        raise _unwritten(folder, error) from error
+    if holds is not None:
+        raise SimulationError(f"The folder {str(folder)!r} holds {holds.name!r} already: name a new or an empty one.")
+    return place
+
+
+def _unwritten(place: str | Path, error: OSError) -> SimulationError | WorkError:
+    kind = WorkError if is_unforeseen(error) else SimulationError
+    return kind(f"Cannot write {str(place)!r}: {error.strerror or error}.")

@@ -1,0 +1,178 @@
+"""How sources reach the inputs of a mechanism: with a lever, late, through a filter; several may reach one input.
+
+A filter b(s)/a(s) before an input is an equation more: with the solution z of a(d/dt) z = w for the source w, the input
+gets b(d/dt) z. The states are z and its derivatives but the highest, which is an unknown. What reaches an input is an
+unknown too, so that levers and coefficients enter as they were given, and what is owed to the free values stays affine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from inerter.errors import LinearSystemError
+from inerter.systems.descriptor import Descriptor
+from inerter.systems.filters import Filter
+from inerter.systems.polynomials import Polynomial
+
+Column = tuple[str, str, float]  # its name, the source, and the delay
+Chain = tuple[int, Filter]  # the number of a column, and a filter behind it
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """A source at an input: `lever` times the source, `delay` seconds late, through `filter`.
+
+    An input that is a road gets its velocity, or with `displacement` its displacement.
+    """
+
+    input: str
+    source: str = ""
+    delay: float = 0.0
+    lever: float = 1.0
+    filter: Filter | None = None
+    displacement: bool = False
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is the source itself, perhaps late."""
+        return self.lever == 1.0 and self.filter is None and not self.displacement
+
+    @property
+    def whole(self) -> tuple[Polynomial, Polynomial] | None:
+        """What it makes of the source, as a fraction of whole polynomials, the lowest power first; None: nothing."""
+        if self.plain:
+            return None
+        lever = Fraction(self.lever)
+        top, bottom = ([1], [1]) if self.filter is None else self.filter.whole
+        top, bottom = [c * lever.numerator for c in top], [c * lever.denominator for c in bottom]
+        return ([0, *top] if self.displacement else top), bottom
+
+
+def inputs_of(arrivals: Sequence[Arrival]) -> tuple[str, ...]:
+    """The inputs that are reached, each once."""
+    return tuple(dict.fromkeys(arrival.input for arrival in arrivals))
+
+
+def columns_of(arrivals: Sequence[Arrival]) -> list[Column]:
+    """Sources at times of arrival, those of one source in the order of time; one for each input if all are plain."""
+    if _plain(arrivals):
+        return [(arrival.input, arrival.source, arrival.delay) for arrival in arrivals]
+    pairs = dict.fromkeys((arrival.source, arrival.delay) for arrival in arrivals)
+    return [(f"{source or 'source'} {i}", source, delay) for i, (source, delay) in enumerate(pairs, start=1)]
+
+
+def fed(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
+    """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
+
+    Raises `LinearSystemError` for the displacement of a road whose velocity is felt at once.
+    """
+    if _plain(arrivals):
+        return descriptor
+    columns = columns_of(arrivals)
+    at = [next(i for i, c in enumerate(columns) if c[1:] == (a.source, a.delay)) for a in arrivals]
+    d = _by_displacement(descriptor, {a.input for a in arrivals if a.displacement})
+    chains = list(dict.fromkeys((i, a.filter) for i, a in zip(at, arrivals, strict=True) if a.filter is not None))
+    old, e, inputs = d.X_x.shape[0], d.S.shape[1], len(d.inputs)
+    edges = np.cumsum([old, *(one.order for _, one in chains)])
+    places = [slice(int(i), int(j)) for i, j in pairwise(edges)]
+    n = int(edges[-1])
+    X_eta, X_x = np.zeros((n, e + inputs + len(chains))), np.zeros((n, n))
+    X_eta[:old, :e], X_eta[:old, e : e + inputs], X_x[:old, :old] = d.X_eta, d.X_u, d.X_x
+    for unknown, ((_, one), place) in enumerate(zip(chains, places, strict=True), start=e + inputs):
+        rows = np.arange(place.start, place.stop)
+        X_x[rows[:-1], rows[1:]] = one.scaled[0]
+        X_eta[rows[-1:], unknown] = one.scaled[0]
+    reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, arrivals, strict=True)]
+    wired = _Wired(reached, chains, places, len(columns), n)
+    S, R, F, Y_eta, Y_x, Y_u = wired.stacks((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    return replace(
+        d,
+        S=S,
+        R=R,
+        F=F,
+        X_eta=X_eta,
+        X_x=X_x,
+        X_u=np.zeros((n, len(columns))),
+        Y_eta=Y_eta,
+        Y_x=Y_x,
+        Y_u=Y_u,
+        states=(*d.states, *(f"filter_{i}_{k}" for i, (_, f) in enumerate(chains, 1) for k in range(1, f.order + 1))),
+        inputs=tuple(name for name, *_ in columns),
+        sizes=wired.stacks(d.sizes, sizes=True),
+        sums={
+            name: tuple((a.input, a.whole) for i, a in zip(at, arrivals, strict=True) if i == number)
+            for number, (name, *_) in enumerate(columns)
+        },
+    )
+
+
+def _plain(arrivals: Sequence[Arrival]) -> bool:
+    return all(arrival.plain for arrival in arrivals) and len(inputs_of(arrivals)) == len(arrivals)
+
+
+@dataclass(frozen=True)
+class _Wired:
+    """Arrivals with the numbers of their columns and inputs, the chains of filters, and where their states are."""
+
+    reached: list[tuple[int, int, Arrival]]
+    chains: list[Chain]
+    places: list[slice]
+    columns: int
+    states: int
+
+    def stacks(self, stacks: Any, sizes: bool = False) -> Any:
+        """The stacks with an unknown for each input and each chain, and the equations that say what these are."""
+        S, R, F, Y_eta, Y_x, Y_u = stacks
+        _, e, n = R.shape
+        q, both = e + F.shape[2], 1.0 if sizes else -1.0
+        total, outputs = q + len(self.chains), Y_u.shape[1]
+        S2, R2, F2 = (_blank(S, total, width) for width in (total, self.states, self.columns))
+        Y_eta2, Y_x2, Y_u2 = (_blank(Y_eta, outputs, width) for width in (total, self.states, self.columns))
+        S2[:, :e, :e], S2[:, :e, e:q], R2[:, :e, :n] = S, both * F, R
+        Y_eta2[:, :, :e], Y_eta2[:, :, e:q], Y_x2[:, :, :n] = Y_eta, Y_u, Y_x
+        S2[0, range(e, q), range(e, q)] = 1.0
+        for unknown, ((column, one), place) in enumerate(zip(self.chains, self.places, strict=True), start=q):
+            bottom = np.abs(one.scaled[2]) if sizes else one.scaled[2]
+            S2[0, unknown, unknown], R2[0, unknown, place] = bottom[-1], both * bottom[:-1]
+            F2[0, unknown, column] = 1.0
+        for column, number, arrival in self.reached:
+            lever = np.longdouble(abs(arrival.lever) if sizes else arrival.lever)
+            if arrival.filter is None:
+                F2[0, e + number, column] += lever
+                continue
+            chain = self.chains.index((column, arrival.filter))
+            top = lever * (np.abs(arrival.filter.scaled[1]) if sizes else arrival.filter.scaled[1])
+            S2[0, e + number, q + chain] += both * top[-1]
+            R2[0, e + number, self.places[chain]] += top[:-1]
+        return S2, R2, F2, Y_eta2, Y_x2, Y_u2
+
+
+def _by_displacement(d: Descriptor, names: set[str]) -> Descriptor:
+    """The descriptor with the displacements of some roads in the place of their velocities: what follows the road's
+    velocity with a weight of its own becomes the rest of itself.
+    """
+    columns = [i for i, name in enumerate(d.inputs) if name in names]
+    if not columns:
+        return d
+    if np.any(d.F[:, :, columns]) or np.any(d.Y_u[:, :, columns]):
+        words = " and ".join(d.inputs[i] for i in columns)
+        raise LinearSystemError(
+            f"A damper feels the velocity of {words} at once, so that its displacement is no input of a linear system. "
+            f"Ask for the response to the velocity, {d.inputs[columns[0]]}_velocity."
+        )
+    F, Y_u, X_u = d.F.copy(), d.Y_u.copy(), d.X_u.copy()
+    F_size, Y_u_size = d.sizes[2].copy(), d.sizes[5].copy()
+    followed = d.X_u[:, columns]
+    F[:, :, columns], Y_u[:, :, columns], X_u[:, columns] = d.R @ followed, d.Y_x @ followed, d.X_x @ followed
+    F_size[:, :, columns], Y_u_size[:, :, columns] = d.sizes[1] @ np.abs(followed), d.sizes[4] @ np.abs(followed)
+    return replace(d, F=F, Y_u=Y_u, X_u=X_u, sizes=(*d.sizes[:2], F_size, *d.sizes[3:5], Y_u_size))
+
+
+def _blank(stack: Any, rows: int, columns: int) -> Any:
+    return np.zeros((stack.shape[0], rows, columns), stack.dtype)

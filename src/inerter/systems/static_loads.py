@@ -1,0 +1,72 @@
+"""The weight that every tyre carries at rest, from masses, levers and gravity alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.errors import MechanismError
+from inerter.networks.elements.roles import Guard, Linear
+from inerter.systems.graph import full_graph
+from inerter.units import STANDARD_GRAVITY
+from inerter.vehicle.mechanism import Mechanism, RoadInput
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
+
+Matrix = NDArray[np.float64]
+_BALANCED = 1e-9  # of the sizes that are added up
+
+
+def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
+    """The static load of each tyre [N], pressing on the road, by the tyre's name; values may be free.
+
+    Virtual work over the motions that strain no spring: no stiffness enters. Where more tyres carry the vehicle than
+    balance decides, as four wheels do, its springs are taken to be trimmed so that the loads are as even as balance
+    allows. Every coordinate that is no angle is taken as vertical.
+
+    Raises `MechanismError` if a weight rests on nothing or on the ground beside the tyres, or a tyre would hang.
+
+    >>> from inerter import Damper, QuarterCar, Spring
+    >>> static_tyre_loads(QuarterCar(300.0, 40.0, 2e5, Spring(2e4) | Damper(1.5e3)))
+    {'tyre': 3334.261}
+    """
+    check_vehicle(vehicle)
+    mechanism = vehicle.mechanism()
+    if not mechanism.tyres:
+        return {}
+    moved, touched, weight = _free_ways(mechanism)
+    upright = np.concatenate([weight > 0.0, np.ones(touched.shape[0])])
+    if not _reached(np.concatenate([moved[: weight.size], touched]), upright):
+        raise MechanismError(
+            "The static tyre loads are not known: a spring to the ground, or to a road that is none of a tyre's, "
+            "carries a part of the weight."
+        )
+    work = moved[: weight.size].T @ weight
+    load, *_ = np.linalg.lstsq(touched.T, work, rcond=_BALANCED)
+    if np.abs(touched.T @ load - work).max(initial=0.0) > _BALANCED * weight.sum():
+        raise MechanismError("The static tyre loads are not known: a part of the weight rests on no spring.")
+    if load.min() <= 0.0:
+        name = mechanism.tyres[int(np.argmin(load))].name
+        raise MechanismError(f"The static tyre loads are not known: {name!r} would hang, not stand.")
+    return {tyre.name: float(f"{value:.15g}") for tyre, value in zip(mechanism.tyres, load, strict=True)}
+
+
+def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
+    """Motions that strain no spring and no closed gap, as displacements of nodes and of contacts, and the weights."""
+    contacts = tuple(RoadInput(f"{tyre.name}_contact") for tyre in mechanism.tyres)
+    tyres = tuple(replace(t, road=c.name) for t, c in zip(mechanism.tyres, contacts, strict=True))
+    graph = full_graph(replace(mechanism, tyres=tyres, roads=(*mechanism.roads, *contacts)))
+    carrying = [
+        b for b in graph.branches if b.element.linear is Linear.STIFFNESS or b.element.switches_by(Guard.ELONGATION)
+    ]
+    rows = np.array([[*b.nodes, *b.roads[len(mechanism.roads) :]] for b in carrying])
+    ways = scipy.linalg.null_space(rows.reshape(len(carrying), -1), rcond=_BALANCED)
+    weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * c.inertia for c in mechanism.coordinates])
+    return ways[: len(graph.nodes)], ways[len(graph.nodes) :], weight
+
+
+def _reached(ways: Matrix, wanted: Matrix) -> bool:
+    found, *_ = np.linalg.lstsq(ways, wanted, rcond=_BALANCED)
+    return bool(np.abs(ways @ found - wanted).max() <= 1e-6)

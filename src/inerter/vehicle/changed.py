@@ -1,0 +1,90 @@
+"""A vehicle with other numbers by their names: quantities of the vehicle, values of elements, masses of coordinates."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from inerter.checks import is_number
+from inerter.errors import DesignError
+from inerter.fields import fields_of, mounts_of
+from inerter.networks.elements import Element, Free, Network
+from inerter.networks.transform import map_elements
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle, VehicleModel
+
+
+def changed(vehicle: Vehicle, values: Mapping[str, float]) -> Vehicle:
+    """The same vehicle with other numbers (SI), each by its name.
+
+    That is a quantity of the vehicle such as `sprung_mass`, else the label of elements, else a coordinate of a
+    `Mechanism`, whose mass it is.
+
+    Raises `DesignError` for a name that stands for nothing here, or for elements of several kinds.
+    """
+    for name, value in values.items():
+        if not is_number(value):
+            raise DesignError(f"The value of {name!r} must be a finite number in SI units, got {value!r}.")
+        vehicle = _one_changed(vehicle, name, float(value))
+    return vehicle
+
+
+def _one_changed(vehicle: Vehicle, name: str, value: float) -> Vehicle:
+    if isinstance(vehicle, VehicleModel) and name in {field.name for field in fields_of(type(vehicle))}:
+        return dataclasses.replace(vehicle, **{name: value})
+    chosen = labelled(vehicle, name)
+    if chosen:
+        return with_elements(vehicle, lambda e: e.with_value(value) if e.label == name else e)
+    mechanism = vehicle.mechanism()
+    if isinstance(vehicle, Mechanism) and name in {c.name for c in mechanism.coordinates}:
+        return dataclasses.replace(
+            mechanism,
+            coordinates=tuple(
+                dataclasses.replace(c, inertia=value) if c.name == name else c for c in mechanism.coordinates
+            ),
+        )
+    raise DesignError(f"There is nothing named {name!r} to change (there are: {', '.join(_known(vehicle))}).")
+
+
+def _known(vehicle: Vehicle) -> list[str]:
+    quantities = [field.name for field in fields_of(type(vehicle))] if isinstance(vehicle, VehicleModel) else []
+    masses = [c.name for c in vehicle.coordinates] if isinstance(vehicle, Mechanism) else []
+    return list(dict.fromkeys([*quantities, *(e.label for e in _elements(vehicle)), *masses]))
+
+
+def _networks(vehicle: Vehicle) -> list[Network]:
+    """What is mounted: of a kind of vehicle what is given as a network, of a mechanism all, tyres last."""
+    if isinstance(vehicle, VehicleModel):
+        return [getattr(vehicle, name) for name in mounts_of(type(vehicle))]
+    return [mount.network for mount in vehicle.mechanism().mounts()]
+
+
+def _elements(vehicle: Vehicle) -> list[Element]:
+    return [element for network in _networks(vehicle) for element in network.elements()]
+
+
+def labelled(vehicle: Vehicle, label: str) -> list[Element]:
+    """The elements of that label; raises `DesignError` if they are of several kinds, or unnamed with several values."""
+    chosen = [element for element in _elements(vehicle) if element.label == label]
+    if len({(e.unit, e.value) for e in chosen if e.name is None and not isinstance(e.value, Free)}) > 1:
+        values = " and ".join(dict.fromkeys(str(e) for e in chosen))
+        raise DesignError(f"{label!r} stands for {values}. Name the one that is meant, as in Spring(..., name=...).")
+    if len({e.unit for e in chosen}) > 1:
+        raise DesignError(f"{label!r} names elements of different kinds. Give them different names.")
+    return chosen
+
+
+def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Vehicle:
+    """The same vehicle with other elements in what is mounted."""
+    if isinstance(vehicle, VehicleModel):
+        mounted: dict[str, Any] = {
+            name: map_elements(getattr(vehicle, name), change) for name in mounts_of(type(vehicle))
+        }
+        return dataclasses.replace(vehicle, **mounted)
+    mechanism = vehicle.mechanism()
+    return dataclasses.replace(
+        mechanism,
+        struts=tuple(dataclasses.replace(s, network=map_elements(s.network, change)) for s in mechanism.struts),
+        tyres=tuple(dataclasses.replace(t, network=map_elements(t.network, change)) for t in mechanism.tyres),
+    )

@@ -1,0 +1,136 @@
+"""A car on four wheels: heave, pitch and roll of its body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from inerter.fields import mount, quantity
+from inerter.networks.elements import Network, Spring
+from inerter.vehicle.mechanism import Coordinate, Force, Measures, Mechanism, Port, RoadInput, Strut, Tyre, Weighted
+from inerter.vehicle.vehicle import VehicleModel
+
+_SIDES = {"left": 0.5, "right": -0.5}  # how far aside, in tracks
+
+
+@dataclass(frozen=True)
+class FullCar(VehicleModel):
+    """A rigid body in heave, pitch and roll on four struts and wheels, whose tracks may be joined across the car.
+
+    Pitch is positive nose up, roll positive left side up, so that the left front port is sprung + distance_front x
+    pitch + track_front / 2 x roll. `front` and `rear` are mounted left and right alike: a value in them is one value.
+    `anti_roll_front` and `anti_roll_rear` act over the travel of the left strut less that of the right one, and
+    `anti_pitch` on each side over the travel of the front strut less that of the rear one. Coordinates `sprung`,
+    `pitch`, `roll`, `unsprung_front_left`, `unsprung_front_right`, `unsprung_rear_left`, `unsprung_rear_right`.
+
+    Raises `MechanismError` unless masses, stiffnesses and lengths are positive.
+    """
+
+    sprung_mass: float = field(metadata=quantity("kg", "The body.", "1400 kg"))
+    pitch_inertia: float = field(metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "2400 kg m^2"))
+    roll_inertia: float = field(metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "520 kg m^2"))
+    unsprung_mass_front: float = field(metadata=quantity("kg", "One front wheel and hub.", "45 kg"))
+    unsprung_mass_rear: float = field(metadata=quantity("kg", "One rear wheel and hub.", "40 kg"))
+    tyre_stiffness_front: float = field(metadata=quantity("N/m", "Of one front tyre.", "220 kN/m"))
+    tyre_stiffness_rear: float = field(metadata=quantity("N/m", "Of one rear tyre.", "220 kN/m"))
+    distance_front: float = field(metadata=quantity("m", "From the centre of mass to the front axle.", "1.2 m"))
+    distance_rear: float = field(metadata=quantity("m", "From the centre of mass to the rear axle.", "1.5 m"))
+    track_front: float = field(metadata=quantity("m", "From the left front wheel and strut to the right.", "1.52 m"))
+    track_rear: float = field(metadata=quantity("m", "From the left rear wheel and strut to the right.", "1.5 m"))
+    front: Network = field(metadata=mount("Between body and each front wheel."))
+    rear: Network = field(metadata=mount("Between body and each rear wheel."))
+    anti_roll_front: Network | None = field(default=None, metadata=mount("Between left and right travel, in front."))
+    anti_roll_rear: Network | None = field(default=None, metadata=mount("Between left and right travel, behind."))
+    anti_pitch: Network | None = field(default=None, metadata=mount("Between front and rear travel, on each side."))
+    key: ClassVar[str] = "full-car"
+    forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N", "pitch_moment": "N m", "roll_moment": "N m"}
+
+    def mechanism(self) -> Mechanism:
+        """The same car as a `Mechanism`.
+
+        In ride comfort pitch has the mean distance of the axles as its weight, as in a half car, and roll half the
+        mean track.
+        """
+        half_track = 0.25 * (self.track_front + self.track_rear)
+        return Mechanism(
+            coordinates=self._coordinates(),
+            struts=(*self._struts(), *self._across()),
+            tyres=tuple(
+                Tyre(f"tyre_{w}", Spring(self._of_axle("tyre_stiffness", w)), {f"unsprung_{w}": 1.0}, f"road_{w}")
+                for w in _WHEELS
+            ),
+            roads=tuple(RoadInput(f"road_{w}", self._behind(w), track=w.partition("_")[2]) for w in _WHEELS),
+            forces=(
+                Force("sprung_force", {"sprung": 1.0}),
+                Force("pitch_moment", {"pitch": 1.0}),
+                Force("roll_moment", {"roll": 1.0}),
+            ),
+            measures=Measures(
+                comfort=(
+                    Weighted("sprung_acceleration"),
+                    Weighted("pitch_acceleration", 0.5 * (self.distance_front + self.distance_rear)),
+                    Weighted("roll_acceleration", half_track),
+                ),
+                tyre_load=tuple(Weighted(f"tyre_{w}_load") for w in _WHEELS),
+                load_input="sprung_force",
+                load_output="sprung_displacement",
+            ),
+        )
+
+    def _coordinates(self) -> tuple[Coordinate, ...]:
+        wheels = (Coordinate(f"unsprung_{w}", self._of_axle("unsprung_mass", w)) for w in _WHEELS)
+        body = Coordinate("sprung", self.sprung_mass)
+        pitch = Coordinate("pitch", self.pitch_inertia, angle=True)
+        return (body, pitch, Coordinate("roll", self.roll_inertia, angle=True), *wheels)
+
+    def _struts(self) -> tuple[Strut, ...]:
+        mounted = {"front": self.front, "rear": self.rear}
+        return tuple(
+            Strut(w, mounted[w.partition("_")[0]], upper=self._body_at(w), lower={f"unsprung_{w}": 1.0})
+            for w in _WHEELS
+        )
+
+    def _across(self) -> Iterator[Strut]:
+        """Networks over the difference of two travels."""
+        joined = (
+            ("anti_roll_front", self.anti_roll_front, "front_left", "front_right"),
+            ("anti_roll_rear", self.anti_roll_rear, "rear_left", "rear_right"),
+            ("anti_pitch_left", self.anti_pitch, "front_left", "rear_left"),
+            ("anti_pitch_right", self.anti_pitch, "front_right", "rear_right"),
+        )
+        for name, network, first, second in joined:
+            if network is not None:
+                yield Strut(name, network, upper=self._travel(first), lower=self._travel(second))
+
+    def _travel(self, wheel: str) -> Port:
+        return {**self._body_at(wheel), f"unsprung_{wheel}": -1.0}
+
+    def _body_at(self, wheel: str) -> Port:
+        axle, _, side = wheel.partition("_")
+        ahead = dict(zip(_AXLES, _apart(self.distance_front, -self.distance_rear), strict=True))
+        track = dict(zip(_AXLES, _apart(self.track_front, self.track_rear), strict=True))
+        return {"sprung": 1.0, "pitch": ahead[axle], "roll": _SIDES[side] * track[axle]}
+
+    def _behind(self, wheel: str) -> float:
+        return 0.0 if wheel.startswith("front") else self.distance_front + self.distance_rear
+
+    def _of_axle(self, quantity: str, wheel: str) -> float:
+        value: float = getattr(self, f"{quantity}_{wheel.partition('_')[0]}")
+        return value
+
+
+_AXLES = ("front", "rear")
+_WHEELS = tuple(f"{axle}_{side}" for axle in _AXLES for side in _SIDES)
+
+
+def _apart(first: float, second: float) -> tuple[float, float]:
+    """Both, the smaller one changed in its last digit if need be, so that their difference is a floating-point number.
+
+    Networks over the difference of two travels then add no motion of the size of a rounding error to those of the
+    struts, which analysis would take for one of its own.
+    """
+    difference = first - second
+    if abs(first) >= abs(second):
+        return first, first - difference
+    return difference + second, second

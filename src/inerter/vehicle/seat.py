@@ -1,0 +1,66 @@
+"""A seat and its occupant, as a stage on any vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Self
+
+from inerter.checks import check_positive
+from inerter.errors import MechanismError
+from inerter.fields import mount, quantity
+from inerter.networks.elements import Free, Network, check_network
+from inerter.networks.transform import name_free_values, with_values
+from inerter.vehicle.mechanism import Coordinate, Mechanism, Port, Strut, Weighted, check_known
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A vehicle with an occupant on a seat, where comfort is that of the occupant.
+
+    The seat is mounted at `place`, a port of the vehicle: {"sprung": 1.0, "pitch": 0.2, "roll": 0.4} is the body of a
+    full car 0.2 m ahead of its centre of mass and 0.4 m left of it. Adds the coordinate `occupant` and the strut
+    `seat` to the mechanism. Whatever else is asked of the vehicle, such as tyre load, is asked of it with the occupant
+    on it.
+
+    Raises `DesignError` if `vehicle` is none, `MechanismError` unless the mass is positive and the place is one of the
+    vehicle's, `NetworkError` if `network` is none.
+    """
+
+    vehicle: Vehicle
+    mass: float = field(metadata=quantity("kg", "The occupant, with what moves along of the seat.", "60 kg"))
+    network: Network = field(metadata=mount("Between floor and occupant."))
+    place: Port = field(default_factory=lambda: {"sprung": 1.0})
+    coordinate: ClassVar[str] = "occupant"
+    strut: ClassVar[str] = "seat"
+
+    def __post_init__(self) -> None:
+        check_vehicle(self.vehicle)
+        check_positive(MechanismError, "The mass on a seat", self.mass, "kg")
+        below = {part.name: part.network for part in self.vehicle.mechanism().mounts()}
+        named = name_free_values({**below, self.strut: check_network(self.network)})
+        object.__setattr__(self, "network", named[self.strut])
+        self.mechanism()
+
+    def mechanism(self) -> Mechanism:
+        """The same vehicle as a `Mechanism`."""
+        below = self.vehicle.mechanism()
+        upper = {self.coordinate: 1.0}
+        return replace(
+            below,
+            coordinates=(*below.coordinates, Coordinate(self.coordinate, self.mass)),
+            struts=(*below.struts, Strut(self.strut, self.network, upper=upper, lower=self.place)),
+            measures=replace(below.measures, comfort=(Weighted(f"{self.coordinate}_acceleration"),)),
+        )
+
+    def free_values(self) -> dict[str, Free]:
+        """The design variables by name: those of the vehicle, then those of the seat."""
+        return self.mechanism().free_values()
+
+    def with_values(self, values: Mapping[str, float]) -> Self:
+        """The same with the named free values fixed; raises `DesignError` for a name that is not free here."""
+        check_known(values, self.free_values())
+        below = {name: value for name, value in values.items() if name in self.vehicle.free_values()}
+        vehicle: Any = self.vehicle.with_values(below)
+        return replace(self, vehicle=vehicle, network=with_values(self.network, values))

@@ -1,0 +1,182 @@
+"""Optima within limits: against a second solver of another kind, against themselves with limits moved, and in words."""
+
+import numpy as np
+import pytest
+import scipy.optimize
+from campaigns import sampled
+from strategies import paper_quarter_car, random_half_car, random_quarter_car
+
+import inerter as it
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
+NORM = it.Norm()
+
+
+def strut(rng):
+    """A strut of two to four free values."""
+    free = lambda low, high, name: it.free(low, high, name=name)  # noqa: E731
+    damper, inerter = it.Damper(free(100.0, 1e5, "c")), it.Inerter(free(1.0, 3e3, "b"))
+    spring = it.Spring(free(5e4, 4e5, "k1"))
+    return [
+        it.Spring(80e3) | damper - inerter,
+        it.Spring(80e3) | damper | inerter,
+        it.Spring(60e3) | damper - spring - inerter,
+        it.Spring(free(3e4, 3e5, "k")) | damper - inerter,
+        it.Spring(free(3e4, 3e5, "k")) | damper - inerter - (spring | it.Damper(1e3)),
+    ][int(rng.integers(5))]
+
+
+def problem(number):
+    """A random car, an index, one or two limits that hold its optimum back or nearly so, and a step to move them by."""
+    rng = np.random.default_rng([number, 2031])
+    while True:
+        car = random_quarter_car(rng, strut(rng))
+        index, first, second = rng.permutation(np.array([J1, J3, J5], dtype=object)).tolist()
+        free = it.optimise(car, index, NORM)
+        worst, best = it.evaluate(free.design, first, NORM).value, it.optimise(car, first, NORM).value
+        if worst > 1.1 * best:  # else the two hardly contradict each other
+            break
+    limits = [it.at_most(first, best * (worst / best) ** float(rng.uniform(0.3, 0.95)))]
+    if number % 2:
+        within = it.optimise(car, second, NORM, subject_to=limits).value
+        here = it.evaluate(it.optimise(car, index, NORM, subject_to=limits).design, second, NORM).value
+        limits.append(it.at_most(second, within * (here / within) ** float(rng.uniform(0.5, 1.2))))
+    return car, index, limits, 1e-3 * np.log(worst / best)
+
+
+def by_evolution(car, index, limits, seed=0):
+    """The same problem by differential evolution: no gradients, no starts, no logarithm of the index."""
+    bounds = [tuple(np.log((v.lower, v.upper))) for v in car.free_values().values()]
+    functions = [it.Norm().objective(car, one) for one in (index, *(limit.of for limit in limits))]
+    at = lambda f, x: f.values(np.ascontiguousarray(np.exp(np.atleast_2d(x.T))))  # noqa: E731
+    scale = float(at(functions[0], np.array([[0.5 * (a + b)] for a, b in bounds]))[0])
+
+    def penalised(x):
+        over = sum(
+            np.maximum(at(f, x) / limit.value - 1.0, 0.0) for f, limit in zip(functions[1:], limits, strict=True)
+        )
+        value = at(functions[0], x)
+        return np.where(over > 0.0, scale * (1e3 + np.minimum(over, 1e6)), value)
+
+    found = scipy.optimize.differential_evolution(
+        penalised, bounds, vectorized=True, updating="deferred", popsize=24, maxiter=400, tol=1e-10, polish=False,
+        mutation=(0.4, 0.9), rng=np.random.default_rng(seed),
+    )  # fmt: skip
+    return float(found.fun)
+
+
+@pytest.mark.parametrize("number", sampled(range(50), [2, 7]))
+def test_a_second_solver_finds_the_same_optimum(number):
+    car, index, limits, _ = problem(number)
+    best = it.optimise(car, index, NORM, subject_to=limits)
+    assert best.status.ok
+    for held in best.limits:
+        assert held.value <= held.limit.value * (1.0 + 1e-6)
+    other = by_evolution(car, index, limits)
+    assert best.value <= other * (1.0 + 1e-7)
+    assert other <= best.value * (1.0 + 2e-3)  # evolution creeps along what is limited
+
+
+@pytest.mark.parametrize("number", sampled(range(50), [0, 3]))
+def test_what_a_limit_costs_is_what_moving_it_costs(number):
+    car, index, limits, step = problem(number)
+    best = it.optimise(car, index, NORM, subject_to=limits)
+    for i, held in enumerate(best.limits):
+        moved = []
+        for factor in np.exp([step, -step]).tolist():
+            others = [*limits[:i], it.at_most(limits[i].of, limits[i].value * factor), *limits[i + 1 :]]
+            moved.append(it.optimise(car, index, NORM, subject_to=others).value)
+        rising, falling = np.log(moved[0] / best.value) / step, np.log(best.value / moved[1]) / step
+        assert min(rising, falling) - 1e-3 <= held.sensitivity <= max(rising, falling) + 1e-3
+        assert held.sensitivity == pytest.approx(0.5 * (rising + falling), rel=2e-2, abs=1e-3)
+        assert best.sensitivities[held.label] == held.sensitivity
+        assert (held.label in best.active_limits) == held.active
+
+
+def quarter(low=100.0):
+    return paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(low, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b")))
+
+
+@pytest.mark.parametrize(
+    ("limit", "sign"), [(it.at_least(J3, 560.0), 1.0), (it.equal(J3, 510.0), 1.0), (it.equal(J5, 3e-5), -1.0)]
+)
+def test_limits_from_below_and_equalities(limit, sign):
+    best = it.optimise(quarter(), J1, NORM, subject_to=[limit])
+    (held,) = best.limits
+    assert held.value == pytest.approx(limit.value, rel=1e-6)
+    values = [
+        it.optimise(quarter(), J1, NORM, subject_to=[type(limit)(limit.of, limit.sense, limit.value * f)]).value
+        for f in (1.0 + 1e-3, 1.0 - 1e-3)
+    ]
+    slope = np.log(values[0] / values[1]) / np.log(1.001 / 0.999)
+    assert held.sensitivity == pytest.approx(slope, rel=2e-2)
+    assert np.sign(slope) == sign
+
+
+def test_a_limit_that_does_not_matter_changes_nothing():
+    alone, within = (
+        it.optimise(quarter(), J1, NORM),
+        it.optimise(quarter(), J1, NORM, subject_to=[it.at_most(J3, 900.0)]),
+    )
+    assert within.value == pytest.approx(alone.value, rel=1e-9)
+    assert within.active_limits == ()
+    assert list(within.sensitivities.values()) == [0.0]
+
+
+def test_what_nothing_keeps_is_said_with_the_nearest_that_is():
+    best = it.optimise(quarter(), J1, NORM, subject_to=[it.at_most(J3, 490.0)])
+    assert best.status.kind is it.StatusKind.INFEASIBLE
+    assert best.limits[0].value == pytest.approx(it.optimise(quarter(), J3, NORM).value, rel=1e-6)
+    assert "dynamic tyre load at most 490 N" in best.status.message
+    assert "501.2 N" in best.status.message
+    assert np.isnan(best.limits[0].sensitivity)
+
+
+def test_a_limit_over_two_tyres_holds_for_each():
+    rng = np.random.default_rng(5)
+    front, rear = (it.Spring(60e3) | it.Damper(it.free(100.0, 1e5, name)) for name in ("cf", "cr"))
+    car = random_half_car(rng, front, rear)
+    free = it.optimise(car, J1, NORM)
+    best = it.optimise(car, J1, NORM, subject_to=[it.at_most(J3, 400.0)])
+    outputs = [held.limit.of.output for held in best.limits]
+    assert outputs == ["tyre_front_load", "tyre_rear_load"]
+    for held in best.limits:
+        one = it.evaluate(free.design, held.limit.of, NORM).value
+        assert best.status.ok == all(h.value <= 400.0 * (1 + 1e-6) for h in best.limits)
+        assert one > 0.0
+    whole = it.evaluate(best.design, J3, NORM).value
+    assert whole == pytest.approx(sum(held.value for held in best.limits), rel=1e-12)
+    comfort = it.optimise(car, J3, NORM, subject_to=[it.at_most(J1, 1.5 * free.value)])
+    assert len(comfort.limits) == 1  # bounce and pitch add up to what is felt
+
+
+def test_limits_of_what_is_simulated():
+    screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
+    car = paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
+    for method, near in ((it.StatisticalLinearisation(), 1e-6), (it.ExpectedValue(realisations=2, seed=0), 2e-3)):
+        limit = it.at_most(J5 if near < 1e-5 else J3, 2.7e-5 if near < 1e-5 else 502.0)
+        if near < 1e-5:
+            limit = it.at_most(it.LoadCarrying(amplitude=1000.0), 2.7e-5)
+        best = it.optimise(car, J1, method, subject_to=[limit])
+        assert best.limits[0].value <= limit.value * (1.0 + 2e-4)
+        if best.active_limits:
+            assert best.limits[0].value == pytest.approx(limit.value, rel=near)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (lambda: it.at_most(J1, 0.0), "must be a positive number of m/s\\^2"),
+        (lambda: it.at_most(J1, float("nan")), "must be a positive number"),
+        (lambda: it.at_most("J1", 1.0), "is put on an index"),
+        (lambda: it.at_most(it.RideComfort, 1.0), "is put on an index"),
+        (lambda: it.optimise(quarter(), J1, NORM, subject_to=it.at_most(J3, 1.0)), "is a list of limits"),
+        (lambda: it.optimise(quarter(), J1, NORM, subject_to=[J3]), "is a list of limits"),
+        (lambda: it.optimise(quarter(), J1, NORM, subject_to="J3"), "is a list of limits"),
+        (lambda: it.optimise(quarter(), J1, NORM, subject_to=[it.equal(it.static_stiffness("front"), 1.0)]), "Nothing"),
+    ],
+)
+def test_limits_that_cannot_be(given, said):
+    with pytest.raises(it.InerterError, match=said):
+        given()

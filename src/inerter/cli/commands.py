@@ -16,6 +16,7 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.options import OWN, Cluster
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
+from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.loading import load_study
@@ -49,6 +50,7 @@ def run(
 
     def show(result: StudyResult, into: Path) -> None:
         draw_study(result.data, into / FIGURES)
+        draw_layouts(loaded, into / FIGURES)
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
 
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)

@@ -109,6 +109,8 @@ from inerter.signals.transients import step as step
 from inerter.simulation.batch import Batch as Batch
 from inerter.simulation.batch import simulate_many as simulate_many
 from inerter.simulation.histories import simulate_to_files as simulate_to_files
+from inerter.simulation.peaks import LiftOff as LiftOff
+from inerter.simulation.peaks import Peak as Peak
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.arrivals import Arrival as Arrival

@@ -1,9 +1,11 @@
 """Every public name and where it lives: type checkers read it, and so does the package itself."""
 
+from inerter.app.serve import serve as serve
 from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
 from inerter.fields import Field as Field
+from inerter.fields import choice as choice
 from inerter.fields import mount as mount
 from inerter.fields import quantity as quantity
 from inerter.files.common.folder import Intent as Intent
@@ -23,11 +25,16 @@ from inerter.identification.response import model_response as model_response
 from inerter.identification.staged import Staged as Staged
 from inerter.identification.staged import staged as staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
+from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient as DynamicLoadCoefficient
+from inerter.indices.element_force import ElementForce as ElementForce
+from inerter.indices.element_stroke import ElementStroke as ElementStroke
+from inerter.indices.element_velocity import ElementVelocity as ElementVelocity
 from inerter.indices.excitation import Excitation as Excitation
 from inerter.indices.excitation import GroundAcceleration as GroundAcceleration
 from inerter.indices.excitation import OneInput as OneInput
 from inerter.indices.excitation import Shaped as Shaped
 from inerter.indices.excitation import WhiteForce as WhiteForce
+from inerter.indices.iso2631 import iso2631 as iso2631
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
 from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.question import Combination as Combination
@@ -36,7 +43,10 @@ from inerter.indices.question import on_road as on_road
 from inerter.indices.random_response import RandomResponse as RandomResponse
 from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort
+from inerter.indices.suspension_travel import SuspensionTravel as SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
+from inerter.indices.weighted import WeightedMotion as WeightedMotion
+from inerter.indices.weighted import weighted as weighted
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare
@@ -88,6 +98,10 @@ from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
 from inerter.records.result import Response as Response
 from inerter.records.writers import write_record as write_record
+from inerter.scatter.robust import Quantile as Quantile
+from inerter.scatter.robust import robust as robust
+from inerter.scatter.tolerance import Tolerance as Tolerance
+from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.roads.iri import iri as iri
 from inerter.roads.profile import Profile as Profile
 from inerter.roads.reading import profile as profile
@@ -118,6 +132,8 @@ from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
+from inerter.trade_off.front import Front as Front
+from inerter.trade_off.pareto import pareto as pareto
 from inerter.vehicle.absorber import Absorber as Absorber
 from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar

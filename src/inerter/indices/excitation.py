@@ -65,8 +65,8 @@ class RoadVelocity:
         return self.road.velocity_intensity
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same."""
-        return mechanism
+        """The same, with both sides on one track."""
+        return mechanism.on_one_track()
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """One at each road input; with a coherence two, from the mean of the tracks and half of their difference."""

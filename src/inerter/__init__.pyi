@@ -4,6 +4,7 @@ from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
 from inerter.fields import Field as Field
+from inerter.fields import choice as choice
 from inerter.fields import mount as mount
 from inerter.fields import quantity as quantity
 from inerter.files.common.folder import Intent as Intent
@@ -23,11 +24,16 @@ from inerter.identification.response import model_response as model_response
 from inerter.identification.staged import Staged as Staged
 from inerter.identification.staged import staged as staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
+from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient as DynamicLoadCoefficient
+from inerter.indices.element_force import ElementForce as ElementForce
+from inerter.indices.element_stroke import ElementStroke as ElementStroke
+from inerter.indices.element_velocity import ElementVelocity as ElementVelocity
 from inerter.indices.excitation import Excitation as Excitation
 from inerter.indices.excitation import GroundAcceleration as GroundAcceleration
 from inerter.indices.excitation import OneInput as OneInput
 from inerter.indices.excitation import Shaped as Shaped
 from inerter.indices.excitation import WhiteForce as WhiteForce
+from inerter.indices.iso2631 import iso2631 as iso2631
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
 from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.question import Combination as Combination
@@ -36,7 +42,10 @@ from inerter.indices.question import on_road as on_road
 from inerter.indices.random_response import RandomResponse as RandomResponse
 from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort
+from inerter.indices.suspension_travel import SuspensionTravel as SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
+from inerter.indices.weighted import WeightedMotion as WeightedMotion
+from inerter.indices.weighted import weighted as weighted
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare

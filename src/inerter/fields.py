@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-_QUANTITY, _MOUNT = "inerter quantity", "inerter mount"
+_QUANTITY, _MOUNT, _CHOICE = "inerter quantity", "inerter mount", "inerter choice"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,6 +32,18 @@ class Field:
         return self.words or self.name.replace("_", " ")
 
 
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """A text: one of the `options`, or any name if there are none."""
+
+    name: str
+    options: tuple[str, ...]
+    sentence: str
+    example: str = ""
+    key: str = ""  # in files, if that is not the name
+    needed: bool = False  # whether it must be given
+
+
 def quantity(unit: str, sentence: str, example: str, *, key: str = "", words: str = "") -> Mapping[str, Any]:
     """The metadata of a dataclass field that is a positive quantity, in `unit`.
 
@@ -47,6 +59,18 @@ def quantity(unit: str, sentence: str, example: str, *, key: str = "", words: st
     return {_QUANTITY: Field("", unit, sentence, example, key, words)}
 
 
+def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:
+    """The metadata of a dataclass field that is one of these texts, or without `options` a name; as `quantity`.
+
+    >>> @dataclasses.dataclass(frozen=True)
+    ... class Wheel:
+    ...     side: str = dataclasses.field(default="left", metadata=choice(("left", "right"), "Where it is."))
+    >>> choices_of(Wheel)
+    (Choice(name='side', options=('left', 'right'), sentence='Where it is.', example='left', key='side', needed=False),)
+    """
+    return {_CHOICE: Choice("", options, sentence, example or (options[0] if options else ""), key)}
+
+
 def mount(sentence: str) -> Mapping[str, Any]:
     """The metadata of a dataclass field that is a network; files give it in their layouts, unless it may be None."""
     return {_MOUNT: sentence}
@@ -55,6 +79,11 @@ def mount(sentence: str) -> Mapping[str, Any]:
 def fields_of(kind: type) -> tuple[Field, ...]:
     """The quantities of a dataclass, in their order."""
     return _stated(kind)[0]
+
+
+def choices_of(kind: type) -> tuple[Choice, ...]:
+    """The texts of a dataclass that are chosen, in their order."""
+    return tuple(_choice_of(f) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
 
 
 def mounts_of(kind: type) -> tuple[str, ...]:
@@ -72,6 +101,12 @@ def _stated(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
     every = dataclasses.fields(kind)
     quantities = tuple(_quantity_of(field) for field in every if _QUANTITY in field.metadata)
     return quantities, {f.name: f.default is dataclasses.MISSING for f in every if _MOUNT in f.metadata}
+
+
+def _choice_of(field: dataclasses.Field[Any]) -> Choice:
+    stated: Choice = field.metadata[_CHOICE]
+    needed = field.default is dataclasses.MISSING
+    return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, needed=needed)
 
 
 def _quantity_of(field: dataclasses.Field[Any]) -> Field:

@@ -15,7 +15,7 @@ from inerter.errors import InerterError, LinearSystemError, MechanismError, Perf
 from inerter.methods.method import check_request
 from inerter.networks.transform import map_elements
 from inerter.systems.graph import full_graph, linear_graph
-from inerter.systems.outputs import force_of, main_outputs, velocity_of
+from inerter.systems.outputs import force_of, main_outputs, stroke_of, velocity_of
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.mechanism import Measures, Weighted
 
@@ -79,7 +79,7 @@ def test_all_analyses_know_the_same_names(seed):
             assert [run.unit(name) for name in names] == [system.outputs[name].unit for name in names]
         assert all(weighable(mechanism, name) for name in names)
         gone = {b.label for b in full_graph(mechanism).branches} - {b.label for b in linear_graph(mechanism).branches}
-        unknown = {called(label) for label in gone for called in (force_of, velocity_of)}
+        unknown = {called(label) for label in gone for called in (force_of, velocity_of, stroke_of)}
         linear = [name for name in names if name not in unknown or name in main_outputs(mechanism)]
         assert it.assemble(mechanism, [road.name for road in mechanism.roads], linear).outputs == tuple(linear)
         for name in set(names) - set(linear):

@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol, cast
 
+import numpy as np
+from numpy.typing import NDArray
+
 from inerter.errors import PerformanceIndexError
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
@@ -17,6 +20,7 @@ from inerter.systems.filters import Filter, as_filter
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
+Array = NDArray[np.float64]
 Given = Filter | LinearSystem | None
 
 
@@ -24,6 +28,7 @@ class Combination(Enum):
     """How the outputs make one number."""
 
     SUM_OF_RMS = auto()  # r.m.s. values of the weighted outputs, added up
+    ROOT_OF_SQUARES = auto()  # the root of the sum of their squares
     PEAK_GAIN = auto()  # largest gain over all frequencies
 
 
@@ -67,6 +72,23 @@ class Question:
         """The excitation."""
         return cast(Excitation, self.excitation)
 
+    @property
+    def is_peak(self) -> bool:
+        """Whether it asks for a peak gain; else for r.m.s. values."""
+        return self.combination is Combination.PEAK_GAIN
+
+    def combined(self, rms: Array, weights: Array) -> Array:
+        """What r.m.s. values (..., outputs) make together, with these weights."""
+        if self.combination is Combination.ROOT_OF_SQUARES:
+            return np.asarray(np.sqrt(rms**2 @ weights**2))
+        return np.asarray(rms @ weights)
+
+    def slopes(self, rms: Array, weights: Array) -> Array:
+        """The derivative of that over each of the r.m.s. values (outputs,)."""
+        if self.combination is Combination.ROOT_OF_SQUARES:
+            return np.asarray(weights**2 * rms / max(float(self.combined(rms, weights)), 1e-300))
+        return weights
+
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """How the sources reach the inputs of the mechanism that is driven, in the order in which they do."""
         return tuple(sorted(self.drive.arrivals(mechanism), key=lambda arrival: arrival.delay))
@@ -104,8 +126,8 @@ class OnRoad(Index, Protocol):
     """An index that is asked on a road."""
 
     @property
-    def road(self) -> Road:
-        """The road that all wheels pass."""
+    def road(self) -> Road | Excitation:
+        """The road that all wheels pass, or what is random in its place."""
         ...
 
 
@@ -114,24 +136,19 @@ def on_road(
     mechanism: Mechanism,
     outputs: tuple[Weighted, ...],
     where: str,
-    filter: Filter | None = None,
+    filter: Given | tuple[Given, ...] = None,
+    combination: Combination = Combination.SUM_OF_RMS,
 ) -> Question:
-    """The question of an index that is a sum of r.m.s. values on a road.
+    """The question of an index of r.m.s. values on a road, which are added up if nothing else is said.
 
     Raises `PerformanceIndexError` if there is no road, or if `outputs`, which the mechanism gives at `where`, are none.
     """
-    if not isinstance(index.road, Road):
+    if isinstance(index.road, type) or not (isinstance(index.road, Road) or getattr(index.road, "is_random", False)):
         raise PerformanceIndexError(f"{index.symbol} needs a Road(roughness=..., speed=...), got {index.road!r}.")
-    if not mechanism.roads:
+    if isinstance(index.road, Road) and not mechanism.roads:
         raise PerformanceIndexError(
             f"{index.symbol} is driven by a road, and this mechanism stands on none. Add a tyre."
         )
     if not outputs:
         raise PerformanceIndexError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
-    return Question(
-        outputs=outputs,
-        combination=Combination.SUM_OF_RMS,
-        excitation=index.road,
-        unit=index.unit,
-        filter=filter,
-    )
+    return Question(outputs, combination, index.road, index.unit, filter)

@@ -6,17 +6,34 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
-from inerter.errors import RowError
-from inerter.fields import Field, fields_of
+from inerter.errors import PerformanceIndexError, RowError
+from inerter.fields import Choice, Field, choices_of, fields_of
+from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
+from inerter.indices.element_force import ElementForce
+from inerter.indices.element_stroke import ElementStroke
+from inerter.indices.element_velocity import ElementVelocity
 from inerter.indices.load_carrying import LoadCarrying
 from inerter.indices.question import Index
 from inerter.indices.ride_comfort import RideComfort
+from inerter.indices.suspension_travel import SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad
 from inerter.rows import Rows, made_of_rows
 from inerter.signals.road import Road
 
 INDICES: Rows[type[Index]] = Rows(
-    "index", "symbol", ("title", "unit", "response", "question"), (RideComfort, TyreLoad, LoadCarrying)
+    "index",
+    "symbol",
+    ("title", "unit", "response", "question"),
+    (
+        RideComfort,
+        TyreLoad,
+        LoadCarrying,
+        SuspensionTravel,
+        DynamicLoadCoefficient,
+        ElementForce,
+        ElementStroke,
+        ElementVelocity,
+    ),
 )
 _AMPLITUDE = "amplitude"  # the setting that says how large a sinusoidal force is
 
@@ -38,6 +55,11 @@ def index_settings() -> dict[str, Field]:
     return found
 
 
+def index_choices(symbol: str) -> tuple[Choice, ...]:
+    """The texts that an index has for settings; one that is `needed` must be given."""
+    return choices_of(INDICES[symbol])
+
+
 def amplitude_of(symbol: str) -> Field | None:
     """The setting of an index that is the amplitude of its sinusoidal force; None if it has none."""
     return next((field for field in fields_of(INDICES[symbol]) if field.name == _AMPLITUDE), None)
@@ -49,9 +71,18 @@ def is_on_road(symbol: str) -> bool:
     return "road" in {field.name for field in dataclasses.fields(kind)}
 
 
-def make_index(symbol: str, road: Road | None, settings: Mapping[str, float]) -> Index:
-    """The index of that symbol, on `road` if it is asked on one, with those of the settings that are its own."""
+def make_index(symbol: str, road: Road | None, settings: Mapping[str, Any]) -> Index:
+    """The index of that symbol, on `road` if it is asked on one, with those of the settings that are its own.
+
+    Raises `PerformanceIndexError` if one is missing that it cannot do without.
+    """
     kind: Any = INDICES[symbol]
-    given = {field.name: settings[field.key] for field in fields_of(kind) if field.key in settings}
+    for text in index_choices(symbol):
+        if text.needed and text.key not in settings:
+            raise PerformanceIndexError(
+                f'{symbol} needs its {text.key}, such as {text.key} = "{text.example}": {text.sentence}'
+            )
+    own = {field.name: field.key for field in fields_of(kind)} | {text.name: text.key for text in choices_of(kind)}
+    given = {name: settings[key] for name, key in own.items() if key in settings}
     index: Index = kind(**({"road": road} if is_on_road(symbol) else {}), **given)
     return index

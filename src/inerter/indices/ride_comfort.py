@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
-from inerter.indices.question import Question, on_road
+from inerter.errors import PerformanceIndexError
+from inerter.fields import choice
+from inerter.indices.excitation import Excitation
+from inerter.indices.iso2631 import ROTATIONS, check_weighting, weighting_filter
+from inerter.indices.question import Combination, Question, on_road
 from inerter.signals.road import Road
-from inerter.vehicle.mechanism import Mechanism
+from inerter.systems.filters import Filter
+from inerter.vehicle.mechanism import Coordinate, Mechanism, Weighted
+
+_FELT = ("Wk", "Wd", "Wf")
+_SICKNESS = "Wf"
 
 
 @dataclass(frozen=True)
@@ -15,14 +23,61 @@ class RideComfort:
 
     Quarter car: 2 pi sqrt(V kappa) times the H2 norm from road velocity to body acceleration. Half car: bounce plus
     pitch times the mean lever (l_f + l_r)/2, each with its own norm. Source: Wang and Su (2008), eq. (4).
+
+    With a `weighting` it is as people feel it, by ISO 2631-1:1997: accelerations pass through "Wk" (vertical) or "Wd"
+    (horizontal); pitch and roll accelerations through We, times 0.4 and 0.63 m/rad; the value is the root of the sum
+    of the squares. With "Wf" (motion sickness) rotations do not count.
+
+    Raises `PerformanceIndexError` for another weighting.
     """
 
-    road: Road
+    road: Road | Excitation
+    weighting: str | None = field(
+        default=None,
+        metadata=choice(_FELT, "Weighting of ISO 2631-1 on J1; none if left out."),
+    )
     symbol = "J1"
     title = "ride comfort"
     unit = "m/s^2"
     response = "body acceleration per road velocity"
 
+    def __post_init__(self) -> None:
+        if self.weighting is not None and check_weighting(self.weighting) not in _FELT:
+            raise PerformanceIndexError(
+                f"Ride comfort is weighted by {', '.join(_FELT)} or not at all, got {self.weighting!r}; rotations get "
+                f"theirs with Wk and Wd."
+            )
+
     def question(self, mechanism: Mechanism) -> Question:
         """Raises `PerformanceIndexError` if the mechanism has no road or says nothing of comfort."""
-        return on_road(self, mechanism, mechanism.measures.comfort, "measures.comfort")
+        comfort, where = mechanism.measures.comfort, "measures.comfort"
+        if self.weighting is None:
+            return on_road(self, mechanism, comfort, where)
+        felt = [part for output in comfort if (part := self._felt(mechanism, output)) is not None]
+        outputs, filters = tuple(output for output, _ in felt), tuple(passed for _, passed in felt)
+        return on_road(self, mechanism, outputs, where, filters, Combination.ROOT_OF_SQUARES)
+
+    def _felt(self, mechanism: Mechanism, output: Weighted) -> tuple[Weighted, Filter] | None:
+        """An acceleration as it is felt, with the filter that it passes; None if it does not count."""
+        assert self.weighting is not None
+        moving = {f"{c.name}_acceleration": c for c in mechanism.coordinates}.get(output.output)
+        if moving is None:
+            raise PerformanceIndexError(
+                f"ISO 2631-1 weighs accelerations, and measures.comfort has {output.output!r}. Ask for comfort without "
+                f"a weighting, or name the acceleration of a coordinate."
+            )
+        if not moving.angle:
+            return output, weighting_filter(self.weighting)
+        if self.weighting == _SICKNESS:
+            return None
+        return replace(output, weight=_lever(moving)), weighting_filter("We")
+
+
+def _lever(rotating: Coordinate) -> float:
+    """What the standard multiplies a rotation by [m/rad]."""
+    if rotating.name not in ROTATIONS:
+        raise PerformanceIndexError(
+            f"ISO 2631-1 weighs pitch and roll, and does not know the rotation {rotating.name!r}. Name the coordinate "
+            f"{' or '.join(ROTATIONS)}, or leave it out of measures.comfort."
+        )
+    return ROTATIONS[rotating.name]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
+from inerter.indices.excitation import Excitation
 from inerter.indices.question import Question, on_road
 from inerter.signals.road import Road
 from inerter.systems.filters import high_pass
@@ -21,7 +22,7 @@ class TyreLoad:
     Source: Wang and Su (2008), eq. (5).
     """
 
-    road: Road
+    road: Road | Excitation
     high_pass: float | None = field(
         default=None,
         metadata=quantity("rad/s", "Corner of a filter on J3; none if left out.", "1 Hz", words="high-pass filter"),

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, PerformanceIndexError, Status, StatusKind
-from inerter.indices.question import Combination, Index, Question
+from inerter.indices.question import Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
 from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
@@ -198,7 +198,7 @@ class ApproximateLinear:
             if not runs.status.ok:
                 return Estimate(math.nan, question.unit, runs.status, notes=notes)
             places = [runs.outputs.index(output.output) for output in question.outputs]
-            pooled = not self._raw or question.combination is Combination.PEAK_GAIN
+            pooled = not self._raw or question.is_peak
             gains = _gains(squares[:, places], inputs[:, None], pooled)
             factor = _factor(question, question.arrivals(runs.system.mechanism)[0], runs)
             estimate = self._from_gains(question, linear, gains * factor, runs)
@@ -240,7 +240,7 @@ class ApproximateLinear:
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
         weights = question.drive.size * np.array([abs(output.weight) for output in question.outputs])
-        if question.combination is Combination.PEAK_GAIN:
+        if question.is_peak:
             weight = float(weights[0])
             windows = [self._window(drive.omega, times) for times in (1.0, 2.0)]
             (value, scatter, found), (wider, *_) = (
@@ -252,10 +252,12 @@ class ApproximateLinear:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
-            value, peaks, smeared = float(weights @ sizes), (), 0.0
-            scatter = (sums - sums.mean(axis=0)) @ (0.5 * weights / np.maximum(sizes, 1e-300))
+            value, peaks, smeared = float(question.combined(sizes, weights)), (), 0.0
+            scatter = (sums - sums.mean(axis=0)) @ (0.5 * question.slopes(sizes, weights) / np.maximum(sizes, 1e-300))
             if self._raw:
-                logs = np.log(np.sqrt(sums) @ weights)  # a standard error of raw ratios has no expectation, theirs has
+                logs = np.log(
+                    question.combined(np.sqrt(sums), weights)
+                )  # a standard error of raw ratios has no expectation, theirs has
                 value = float(np.exp(np.median(logs)))
                 scatter = math.sqrt(0.5 * math.pi) * value * (logs - logs.mean())
         count = scatter.size

@@ -89,7 +89,7 @@ class CompiledQuestion:
     @property
     def is_peak(self) -> bool:
         """Whether the index is a peak gain."""
-        return self.problem.question.combination is Combination.PEAK_GAIN
+        return self.problem.question.is_peak
 
     @cached_property
     def serves(self) -> NDArray[np.bool_]:
@@ -140,7 +140,7 @@ class CompiledQuestion:
     def known(self, points: Array) -> Array:
         """The index at each row of `points`; infinite where it is, nan where it is not known."""
         if not self.is_peak:
-            return np.asarray(self.output_norms(points) @ self.problem.weights)
+            return self._combined(self.output_norms(points))
         result = self._compiled(points)
         for i in np.flatnonzero(np.isnan(result)):
             result[i] = self._exact(points[i]).value
@@ -156,7 +156,7 @@ class CompiledQuestion:
     def _compiled(self, points: Array) -> Array:
         """The index by compiled code alone; infinite where the topology makes it so, nan where it is not sure."""
         if not self.is_peak:
-            return np.asarray(self._compiled_norms(points) @ self.problem.weights)
+            return self._combined(self._compiled_norms(points))
         if not self.serves[0]:
             return np.full(points.shape[0], np.inf)
         largest = gain_kernels.peaks_of(points, self.descriptor, self.twofold)[1].max(axis=1)
@@ -216,17 +216,27 @@ class CompiledQuestion:
         The adjoint's where it is confirmed, else differences: of compiled values where these are sure, else of values
         without rounding.
         """
-        weights = self.problem.weights
         if not np.all(self.serves):
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradients, good = self._with_gradients(point[None], weights)
-        found = value = float(norms[0] @ weights)
+        norms, gradients, good = self._with_slopes(point[None])
+        found = value = float(self._combined(norms)[0])
         if not (good[0] and self._steady(point[None], norms)[0]):
             value = self._exact_index(point)
         if abs(found - value) <= _SAME * value and self._confirmed(point, value, gradients[0]):
             return value, gradients[0]
-        slopes = _slopes(lambda place: float((self._compiled_norms(place[None]) @ weights)[0]), point, _FAR)
+        slopes = _slopes(lambda place: float(self._combined(self._compiled_norms(place[None]))[0]), point, _FAR)
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
+
+    def _combined(self, norms: Array) -> Array:
+        return self.problem.question.combined(norms, self.problem.weights)
+
+    def _with_slopes(self, points: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """As `_with_gradients` at one point, with those of the index."""
+        question, weights = self.problem.question, self.problem.weights
+        if question.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
+            return self._with_gradients(points, weights)
+        norms = self._with_gradients(points, np.empty(0))[0]
+        return self._with_gradients(points, question.slopes(norms[0], weights))
 
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
@@ -234,13 +244,13 @@ class CompiledQuestion:
         return self.descriptor, self.twofold, self.arrivals
 
     def _exact_index(self, point: Array) -> float:
-        return float(self._exact_norms(point) @ self.problem.weights)
+        return float(self._combined(self._exact_norms(point)))
 
     def _confirmed(self, point: Array, value: float, gradient: Array) -> bool:
         """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        ahead, behind = self._with_gradients(ends, np.empty(0))[0] @ self.problem.weights
+        ahead, behind = self._combined(self._with_gradients(ends, np.empty(0))[0])
         slope = (ahead - behind) / (2.0 * _ASTRIDE)
         return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
 
@@ -264,7 +274,7 @@ class CompiledQuestion:
 
 def kernels_of(question: Question) -> tuple[Any, ...]:
     """The compiled code that values of the question and their gradients call."""
-    if question.combination is Combination.PEAK_GAIN:
+    if question.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
     return (h2_kernels.norms,)
 
@@ -288,12 +298,12 @@ def evaluate_problems(
     problems = [linear_problem(mechanism, question, conventions) for question in questions]
     groups: dict[Any, list[int]] = {}
     for i, (question, problem) in enumerate(zip(questions, problems, strict=True)):
-        alone = question.combination is Combination.PEAK_GAIN
+        alone = question.is_peak
         key = ("peak", i) if alone else (question.excitation, _shared_filter(problem.question))
         groups.setdefault(key, []).append(i)
     result: Array = np.empty((next(iter(points.values())).size if points else 1, len(questions)))
     for members in groups.values():
-        if questions[members[0]].combination is Combination.PEAK_GAIN:
+        if questions[members[0]].is_peak:
             compiled = CompiledQuestion(problems[members[0]])
             result[:, members[0]] = compiled.known(_rows(compiled.problem.descriptor, points, result.shape[0]))
             continue
@@ -306,7 +316,7 @@ def evaluate_problems(
         places = [o.output for o in outputs]
         for i in members:
             columns = [places.index(o.output) for o in questions[i].outputs]
-            result[:, i] = norms[:, columns] @ problems[i].weights
+            result[:, i] = questions[i].combined(norms[:, columns], problems[i].weights)
     result[np.isinf(result)] = np.nan  # an infinite index has a status that is not ok
     return result
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind
-from inerter.indices.question import Combination, Index, Question
+from inerter.indices.question import Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Objective, Sees
@@ -144,7 +144,7 @@ class ExpectedValue:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
         question = under(conventions, mechanism, index.question(mechanism))
         system = piecewise(question.drive.driven(mechanism))
-        if question.combination is Combination.PEAK_GAIN:
+        if question.is_peak:
             return None
         if not is_nonlinear(system):
             return np.zeros(count), np.zeros(_MORE)
@@ -158,7 +158,7 @@ class ExpectedValue:
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
         """The compiled code of simulations, and of the methods that tell where to look."""
         quick = StatisticalLinearisation().kernels(question, search=search)
-        return (*quick, *KERNELS) if search or question.combination is Combination.PEAK_GAIN else KERNELS
+        return (*quick, *KERNELS) if search or question.is_peak else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
@@ -168,7 +168,7 @@ class ExpectedValue:
         if not _is_held(system, question, conventions) and not is_nonlinear(system):
             assert linear is not None
             return replace(linear.estimate(close(linear.descriptor, {})), standard_error=0.0)
-        if question.combination is Combination.PEAK_GAIN:
+        if question.is_peak:
             return self._peak_gain(vehicle, index, system, question, linear, pool)
         wanted = self.realisations or (_FEWEST if self.relative_error else _DEFAULT)
         design = on_roads(system, question, conventions, self.seed, self.period)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError
-from inerter.indices.question import Combination, Question
+from inerter.indices.question import Question
 from inerter.methods.method import Estimate
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak, hinf_norm
@@ -133,10 +133,10 @@ class LinearProblem:
     def estimate(self, closed: LinearSystem) -> Estimate:
         """The value of the index."""
         system = self.system(closed)
-        if self.question.combination is Combination.PEAK_GAIN:
+        if self.question.is_peak:
             return self._peak_gain(system)
         norms = h2(system, self.pade_order)
-        value = float(np.sum(self.weights * norms.outputs))
+        value = float(self.question.combined(norms.outputs, self.weights))
         return Estimate(value, self.question.unit, norms.status, notes=system.notes)
 
     def _peak_gain(self, system: LinearSystem) -> Estimate:
@@ -160,7 +160,7 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
 
 def check_peak_gain(question: Question) -> None:
     """Raises `PerformanceIndexError` for a peak gain of anything but one output of one input."""
-    if question.combination is Combination.PEAK_GAIN and (question.drive.is_random or len(question.outputs) != 1):
+    if question.is_peak and (question.drive.is_random or len(question.outputs) != 1):
         raise PerformanceIndexError("A peak gain goes from one force or motion to one output, without a random input.")
 
 

@@ -236,12 +236,13 @@ def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
     """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
     power = np.array([ran.power[: len(design.outputs)] for ran in found]) + lacking.power
     status, unit = worst([lacking.status, *(ran.status for ran in found)]), design.question.unit
-    samples = np.sqrt(np.maximum(power, 0.0)) @ design.weights
+    question, weights = design.question, design.weights
+    samples = question.combined(np.sqrt(np.maximum(power, 0.0)), weights)
     sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))
     if not np.all(np.isfinite(samples)):
-        return Estimate(float(sizes @ design.weights), unit, status, notes=lacking.notes)
+        return Estimate(float(question.combined(sizes, weights)), unit, status, notes=lacking.notes)
     mean, scatter, _ = mean_and_error(samples)
-    value = mean if design.way.hold is not None else float(sizes @ design.weights)
+    value = mean if design.way.hold is not None else float(question.combined(sizes, weights))
     error = float(np.hypot(scatter, 0.5 * lacking.unseen * value))
     return Estimate(
         value, unit, status, error, interval_of(value, error, samples.size), samples.size, notes=lacking.notes,

@@ -108,7 +108,8 @@ def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> Firs
     power = 0.5 * (np.abs(outputs) ** 2 * amplitudes[:, None] ** 2).sum(axis=0)
     if not np.all(np.isfinite(power)) or not np.all(power > 0.0) or count == 0:
         return None
-    weights = np.array([abs(output.weight) for output in question.outputs]) / (2.0 * np.sqrt(power))
+    sizes, given = np.sqrt(power), np.array([abs(output.weight) for output in question.outputs])
+    weights = question.slopes(sizes, given) / (2.0 * sizes)
     effects = np.einsum("o,ko,kof->kf", weights, np.conj(outputs), responses)
     return FirstOrder(way, velocities, effects)
 

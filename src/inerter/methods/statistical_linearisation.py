@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.question import Combination, Index, Question
+from inerter.indices.question import Index, Question
 from inerter.kernels import harmonic
 from inerter.methods.compiled_norm import kernels_of
 from inerter.methods.describing_function import HarmonicBalance, harmonic_balance
@@ -76,7 +76,7 @@ class StatisticalLinearisation:
 
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
         """The compiled code that it calls; a search of a design without friction calls that of `Norm`."""
-        if question.combination is Combination.PEAK_GAIN:
+        if question.is_peak:
             return (*(kernels_of(question) if search else ()), harmonic.gains)
         return kernels_of(question)
 
@@ -95,6 +95,6 @@ class StatisticalLinearisation:
         if not has_friction(mechanism):
             return None
         check_outputs(mechanism, [weighted.output for weighted in question.outputs])
-        if question.combination is Combination.PEAK_GAIN:
+        if question.is_peak:
             return harmonic_balance(mechanism, question)
         return GaussianClosure(mechanism, question, CONVENTIONS[self.conventions])

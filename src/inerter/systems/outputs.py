@@ -6,7 +6,7 @@ ask for, and how what they may ask for is called.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from typing import Any
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError, PerformanceIndexError
+from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.graph import Branch, Graph, Mount, full_graph
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Strut, Tyre
 
@@ -51,15 +52,16 @@ class Output:
 def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
     """Every output of `mechanism` by name.
 
-    Inputs; motions of coordinates; force, travel or load and deflection of mounts; velocity and force of elements;
-    motions over the ground. If only one strut is there, `force` and `travel` are its own.
+    Inputs; motions of coordinates; force, travel or load and deflection of mounts; velocity, force and, where
+    springs tell it, stroke of elements; motions over the ground. If only one strut is there, `force` and `travel` are
+    its own.
     """
     mounts = _of_mounts(mechanism, graph)
     found = [*_of_inputs(mechanism), *_of_coordinates(mechanism, graph), *mounts]
     if len(mechanism.struts) == 1:
         own = f"{mechanism.struts[0].name}_"
         found += [replace(o, name=o.name.removeprefix(own)) for o in found if o.name.startswith(own)]
-    found += [*_of_elements(graph), *_over_ground(mechanism, graph)]
+    found += [*_of_elements(mechanism, graph), *_over_ground(mechanism, graph)]
     known = {output.name: output for output in reversed(found)}  # a mount's own name goes before an element's
     return {output.name: known[output.name] for output in found}
 
@@ -89,6 +91,11 @@ def force_of(label: str) -> str:
 def velocity_of(label: str) -> str:
     """The name of the velocity across an element."""
     return f"{label}_velocity"
+
+
+def stroke_of(label: str) -> str:
+    """The name of an element's elongation."""
+    return f"{label}_stroke"
 
 
 def _of_inputs(mechanism: Mechanism) -> list[Output]:
@@ -147,14 +154,14 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
     return found
 
 
-def _of_elements(graph: Graph) -> list[Output]:
+def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
     places: dict[str, tuple[Branch | Mount, tuple[int, ...]]] = {
         label: (group, group.carriers) for label, group in graph.groups.items()
     }
     for i, branch in enumerate(graph.branches):
         if branch.label not in graph.silent:
             places.setdefault(branch.label, (branch, (i,)))
-    found = []
+    found, lost = [], ~_placed(mechanism, graph)
     for label, (place, carriers) in places.items():
         total = np.zeros(len(graph.branches))
         total[list(carriers)] = 1.0
@@ -163,7 +170,28 @@ def _of_elements(graph: Graph) -> list[Output]:
             Output(velocity_of(label), "m/s", f"velocity across {label}", **moved),
             Output(force_of(label), "N", f"force of {label}", forces=total),
         ]
+        if not np.any(place.nodes[lost]):
+            moved = {"displacement": place.nodes, "road": place.roads}
+            found.append(Output(stroke_of(label), "m", f"stroke of {label}", **moved))
     return found
+
+
+def _placed(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
+    """Nodes whose place is known: coordinates, and what springs and gaps join to them. Others, such as that between a
+    damper and an inerter, have velocities only.
+    """
+    known = np.arange(len(graph.nodes)) < len(mechanism.coordinates)
+    joining = [
+        b.nodes != 0.0
+        for b in graph.branches
+        if b.element.linear is Linear.STIFFNESS or b.element.switches_by(Guard.ELONGATION)
+    ]
+    while not known.all():
+        alone = [row & ~known for row in joining if np.count_nonzero(row & ~known) == 1]
+        if not alone:
+            break
+        known = known | np.any(alone, axis=0)
+    return known
 
 
 def check_inputs(
@@ -190,6 +218,20 @@ def check_bounded(mechanism: Mechanism, driven: Mechanism, name: str) -> None:
         raise PerformanceIndexError(
             f"Under ground acceleration {name!r} has no bounds, because the ground itself drifts. "
             f"Ask for {coordinate}_relative_{what}, the motion over the ground."
+        )
+
+
+def check_element(mechanism: Mechanism, label: object, called: Callable[[str], str]) -> None:
+    """Raises `PerformanceIndexError` unless there is an element of this label, and what it is `called` is known."""
+    graph = full_graph(mechanism)
+    known = outputs(mechanism, graph)
+    every = dict.fromkeys((*graph.groups, *(branch.label for branch in graph.branches)))
+    labels = [name for name in every if force_of(name) in known]
+    if not isinstance(label, str) or label not in labels:
+        raise PerformanceIndexError(f"There is no element named {label!r} (there are: {', '.join(labels) or 'none'}).")
+    if called(label) not in known:
+        raise PerformanceIndexError(
+            f"The stroke of {label!r} is not known, only its velocity: no spring tells where one of its ends is."
         )
 
 

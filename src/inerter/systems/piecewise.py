@@ -17,6 +17,7 @@ from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
+from inerter.systems.coordinates import clean, pseudo_inverse
 from inerter.systems.frame import RowBlocks
 from inerter.systems.graph import Graph, switching
 from inerter.systems.incidence import inertia_values
@@ -302,10 +303,19 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     frame, count = _Frame(system), len(system.mechanism.coordinates)
     rows = motion(frame, output, len(system.graph.nodes))
     if output.displacement.size or output.road.size:
-        moved = output.displacement[:count] if output.displacement.size else np.zeros(count)
-        over_g, over_z = (moved @ part for part in system.displacements)
+        over_g, over_z = _displaced(system, output.displacement if output.displacement.size else np.zeros(count))
         add(rows, frame.displacement(over_g, over_z + output.road if output.road.size else over_z))
     for i in np.flatnonzero(output.forces):
         add(rows, [output.forces[i] * row for row in frame.force(int(i))])
     on_eta, on_x, on_u = rows
     return on_x, on_u, on_eta
+
+
+def _displaced(system: PiecewiseSystem, nodes: Matrix) -> tuple[Matrix, Matrix]:
+    """A displacement over positions and heights of roads; positions tell those of massless nodes that are asked for."""
+    count = len(system.mechanism.coordinates)
+    if not np.any(nodes[count:]):
+        over_g, over_z = (nodes[:count] @ part for part in system.displacements)
+        return over_g, over_z
+    over_g = clean(nodes @ pseudo_inverse(system.positions))
+    return over_g, clean(-over_g @ system.heights)

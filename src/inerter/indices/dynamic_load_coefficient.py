@@ -1,0 +1,46 @@
+"""The index of how much tyre loads vary beside what they carry at rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from inerter.errors import MechanismError, PerformanceIndexError
+from inerter.indices.excitation import Excitation
+from inerter.indices.question import Question, on_road
+from inerter.signals.road import Road
+from inerter.systems.outputs import of_mount
+from inerter.systems.static_loads import static_tyre_loads
+from inerter.vehicle.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class DynamicLoadCoefficient:
+    """R.m.s. dynamic load of the tyres on a road over their static load, added up; a limit on it holds for each.
+
+    The static load follows from masses and levers. A tyre whose coefficient is 1/3 or more leaves the road now and
+    then: the linear model, which lets tyres pull, is then no longer the whole truth.
+    """
+
+    road: Road | Excitation
+    symbol = "dynamic-load-coefficient"
+    title = "dynamic load coefficient"
+    unit = "1"
+    response = "tyre force over static load per road velocity"
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `PerformanceIndexError` if the mechanism has no road, names no tyre load, or if loads at rest are not
+        known.
+        """
+        measured = mechanism.measures.tyre_load
+        if not measured:
+            return on_road(self, mechanism, (), "measures.tyre_load")
+        try:
+            at_rest = static_tyre_loads(mechanism)
+        except MechanismError as error:
+            raise PerformanceIndexError(str(error)) from error
+        carried = {of_mount(tyre)[0]: at_rest[tyre.name] for tyre in mechanism.tyres}
+        unknown = ", ".join(output.output for output in measured if output.output not in carried)
+        if unknown:
+            raise PerformanceIndexError(f"A load coefficient is about tyres, and measures.tyre_load has {unknown}.")
+        outputs = tuple(replace(output, weight=output.weight / carried[output.output]) for output in measured)
+        return on_road(self, mechanism, outputs, "measures.tyre_load")

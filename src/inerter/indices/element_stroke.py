@@ -1,0 +1,32 @@
+"""The index of the stroke of an element."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from inerter.fields import choice
+from inerter.indices.excitation import Excitation
+from inerter.indices.question import Question, on_road
+from inerter.signals.road import Road
+from inerter.systems.outputs import check_element, stroke_of
+from inerter.vehicle.mechanism import Mechanism, Weighted
+
+
+@dataclass(frozen=True)
+class ElementStroke:
+    """R.m.s. stroke of an element on a road [m]; `element` is its name, or its label where it has none.
+
+    Raises `PerformanceIndexError`, where it is used, if there is no such element.
+    """
+
+    road: Road | Excitation
+    element: str = field(metadata=choice((), "Name of the element.", example="c"))
+    symbol = "element-stroke"
+    title = "stroke of an element"
+    unit = "m"
+    response = "stroke of an element per road velocity"
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `PerformanceIndexError` if the mechanism has no road or no such element."""
+        check_element(mechanism, self.element, stroke_of)
+        return on_road(self, mechanism, (Weighted(stroke_of(self.element)),), "element")

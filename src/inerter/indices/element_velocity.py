@@ -1,0 +1,32 @@
+"""The index of the velocity across an element."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from inerter.fields import choice
+from inerter.indices.excitation import Excitation
+from inerter.indices.question import Question, on_road
+from inerter.signals.road import Road
+from inerter.systems.outputs import check_element, velocity_of
+from inerter.vehicle.mechanism import Mechanism, Weighted
+
+
+@dataclass(frozen=True)
+class ElementVelocity:
+    """R.m.s. velocity across an element on a road [m/s]; `element` is its name, or its label where it has none.
+
+    Raises `PerformanceIndexError`, where it is used, if there is no such element.
+    """
+
+    road: Road | Excitation
+    element: str = field(metadata=choice((), "Name of the element.", example="c"))
+    symbol = "element-velocity"
+    title = "velocity across an element"
+    unit = "m/s"
+    response = "velocity across an element per road velocity"
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `PerformanceIndexError` if the mechanism has no road or no such element."""
+        check_element(mechanism, self.element, velocity_of)
+        return on_road(self, mechanism, (Weighted(velocity_of(self.element)),), "element")

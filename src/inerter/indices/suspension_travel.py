@@ -1,0 +1,33 @@
+"""The index of suspension travel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from inerter.indices.excitation import Excitation
+from inerter.indices.question import Question, on_road
+from inerter.signals.road import Road
+from inerter.systems.outputs import of_mount
+from inerter.vehicle.mechanism import Mechanism, Weighted
+
+
+@dataclass(frozen=True)
+class SuspensionTravel:
+    """R.m.s. travel of the suspension on a road [m], added up over the struts; a limit on it holds for each.
+
+    These are the struts at one wheel each, that is, at one coordinate that a tyre carries, so that what joins two wheels
+    does not count, nor does a seat; where there are none, all struts.
+    """
+
+    road: Road | Excitation
+    symbol = "suspension-travel"
+    title = "suspension travel"
+    unit = "m"
+    response = "travel per road velocity"
+
+    def question(self, mechanism: Mechanism) -> Question:
+        """Raises `PerformanceIndexError` if the mechanism has no road or no strut."""
+        wheels = {name for tyre in mechanism.tyres for name, lever in tyre.port.items() if lever}
+        at_wheels = [strut for strut in mechanism.struts if len(wheels & {*strut.upper, *strut.lower}) == 1]
+        travels = tuple(Weighted(of_mount(strut)[1]) for strut in at_wheels or mechanism.struts)
+        return on_road(self, mechanism, travels, "struts")

@@ -64,6 +64,35 @@ distance_front = "0.775 m"
 distance_rear = "1.265 m\"""",
 )
 
+FULL = HALF.replace(
+    'model = "half-car"\nsprung_mass = "363.5 kg"',
+    """model = "full-car"
+sprung_mass = "727 kg"
+roll_inertia = "150 kg m^2"
+track_front = "1.4 m"
+track_rear = "1.38 m\"""",
+)
+
+ABSORBER = """
+[vehicle]
+model = "absorber"
+primary_mass = "1000 kg"
+primary_stiffness = "40 kN/m"
+mass = "50 kg"
+[elements]
+k = "1.8 kN/m"
+c = "70 N s/m"
+b = "20 kg"
+[layouts]
+TMDI = { mount = "k | c", ground = "b" }
+[signal]
+kind = "sine"
+amplitude = "100 N"
+frequency = "1 Hz"
+[simulation]
+duration = "0.5 s"
+"""
+
 RIG = """
 [vehicle]
 model = "rig"
@@ -143,7 +172,11 @@ def test_frequencies_count_cycles_and_phases_radians(load):
 
 @pytest.mark.parametrize("model", VEHICLES)
 def test_the_inputs_of_a_model_are_those_of_its_mechanism(load, model):
-    mechanism = load({"quarter-car": CAR, "half-car": HALF, "rig": RIG}[model]).design().mechanism()
+    mechanism = (
+        load({"quarter-car": CAR, "half-car": HALF, "full-car": FULL, "absorber": ABSORBER, "rig": RIG}[model])
+        .design()
+        .mechanism()
+    )
     angles = {coordinate.name for coordinate in mechanism.coordinates if coordinate.angle}
     units = {force.name: "N m" if angles & set(force.port) else "N" for force in mechanism.forces}
     assert units == dict(VEHICLES[model].forces)

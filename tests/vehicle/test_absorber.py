@@ -1,8 +1,8 @@
 """Tuned mass dampers against the closed forms of the literature.
 
 All with primary mass and stiffness 1; mu is the mass of the absorber, nu and zeta its frequency and damping ratio, so
-that its stiffness is mu nu^2 and its damping 2 zeta mu nu. An inerter of inertance beta to the ground gives the absorber
-the inertia mu + beta: under a force on the primary mass, which does not know the ground, nothing else changes.
+that its stiffness is mu nu^2 and its damping 2 zeta mu nu. An inerter of inertance beta to the ground gives the
+absorber the inertia mu + beta: under a force on the primary mass, which does not know the ground, nothing else changes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A car on four wheels: against matrices written by hand, and against the half car that it is if its sides are alike."""
+"""A car on four wheels: against matrices written by hand, and against its half car if both sides are alike."""
 
 from __future__ import annotations
 
@@ -188,7 +188,7 @@ def test_what_is_mounted_must_be_a_network(mount: str) -> None:
 
 
 def test_a_track_is_left_or_right() -> None:
-    with pytest.raises(MechanismError, match='track of road .* is "left" or "right"'):
+    with pytest.raises(MechanismError, match=r'track of road .* is "left" or "right"'):
         it.Mechanism(
             (it.Coordinate("a", 1.0),),
             (),

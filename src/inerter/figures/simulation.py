@@ -76,12 +76,13 @@ def panels(result: SimulationResult) -> list[Panel]:
             for i, (name, w) in enumerate(weights.items(), len(struts))
         )
         found.append(Panel("body acceleration", "m/s^2", body if len(body) > 1 else (Curve(body[0].output),)))
+    found += [Panel(name.replace("_", " "), outputs[name].unit, (Curve(name),)) for name in result.displacements]
     if result.tyre_loads:
         found.append(Panel("tyre load", "N", _curves(result.tyre_loads)))
     for strut in struts:
         shaded = tuple(n for n in result.nonlinear if n.strut == strut)
         inerters = result.inerters(strut)
-        if not result.tyre_loads and inerters:
+        if result.on_rig and inerters:
             found.append(Panel(f"{strut} force", "N", (Curve(force_of(strut)),)))
         title = f"{f'{strut} ' if len(struts) > 1 else ''}{'inerter' if inerters else strut} force"
         title = title.replace(f"{strut} {strut}", strut)
@@ -116,7 +117,7 @@ def simulation_figure(result: SimulationResult, window: Window) -> Figure:
             f"The window from {window[0]:g} to {window[1]:g} s holds less than two samples of those from "
             f"{run.time[0]:g} to {run.time[-1]:g} s."
         )
-    rig = not result.tyre_loads
+    rig = result.on_rig
     figure, axes = new_figure(len(wanted), height=_HEIGHT) if not rig else _with_loop(len(wanted))
     for ax, panel in zip(axes, wanted, strict=False):
         draw_panel(result, panel, inside, ax)

@@ -65,7 +65,13 @@ def amplitude_of(symbol: str) -> Field | None:
     return next((field for field in fields_of(INDICES[symbol]) if field.name == _AMPLITUDE), None)
 
 
-def make_index(symbol: str, road: Road, settings: Mapping[str, Any]) -> Index:
+def is_on_road(symbol: str) -> bool:
+    """Whether the index is asked on a road."""
+    kind: Any = INDICES[symbol]
+    return "road" in {field.name for field in dataclasses.fields(kind)}
+
+
+def make_index(symbol: str, road: Road | None, settings: Mapping[str, Any]) -> Index:
     """The index of that symbol, on `road` if it is asked on one, with those of the settings that are its own.
 
     Raises `PerformanceIndexError` if one is missing that it cannot do without.
@@ -78,6 +84,5 @@ def make_index(symbol: str, road: Road, settings: Mapping[str, Any]) -> Index:
             )
     own = {field.name: field.key for field in fields_of(kind)} | {text.name: text.key for text in choices_of(kind)}
     given = {name: settings[key] for name, key in own.items() if key in settings}
-    on_road = "road" in {field.name for field in dataclasses.fields(kind)}
-    index: Index = kind(**({"road": road} if on_road else {}), **given)
+    index: Index = kind(**({"road": road} if is_on_road(symbol) else {}), **given)
     return index

@@ -203,7 +203,7 @@ def _no_worse(one: LocalOptimum, other: LocalOptimum) -> bool:
 
 
 def sensitivities(problem: Limited, point: Array) -> list[float]:
-    """Per cent by which the index changes for one per cent of each limit, by its multiplier; nan if that is not told."""
+    """Per cent by which the index changes for one per cent of each limit: its multiplier; nan where it is not told."""
     known = problem.known(point)
     slopes, own, limit_of, signs = [], [], [], []
     for number, (peaks, function) in enumerate(zip(known, problem.functions, strict=True)):

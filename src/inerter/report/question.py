@@ -11,13 +11,13 @@ import xarray as xr
 
 from inerter.fields import fields_of
 from inerter.figures.labels import capital, index_title, indices
+from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES, amplitude_of
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
 from inerter.networks.elements import Element, Free, Tied
 from inerter.units import format_quantity
-from inerter.vehicle.registry import VEHICLES
 
 _ALSO = {  # the same value in the unit in which it is usually told
     "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
@@ -37,8 +37,11 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    rows += [(capital(f.in_words), _given(study.vehicle[f.key], f.unit)) for f in fields_of(VEHICLES[study.model])]
-    rows += [("Speed", _given(study.road.speed, "m/s")), ("Road roughness", _given(study.road.roughness, "m^3/cycle"))]
+    told = vehicle_words(study.model, study.vehicle)
+    rows += [(capital(name), unit if value is None else _given(value, unit)) for name, value, unit in told]
+    if study.road is not None:
+        rows += [("Speed", _given(study.road.speed, "m/s"))]
+        rows += [("Road roughness", _given(study.road.roughness, "m^3/cycle"))]
     for symbol in study.indices:
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in study.settings and field != amplitude]

@@ -234,7 +234,8 @@ def _check_numbers(mechanism: Mechanism) -> None:
             )
         if road.track not in TRACKS:
             raise MechanismError(
-                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one; got {road.track!r}.'
+                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one, '
+                f"got {road.track!r}."
             )
 
 

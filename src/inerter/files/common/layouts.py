@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from inerter.errors import NetworkError
-from inerter.fields import Field, fields_of, mounts_of
 from inerter.files.common.entries import Amount
 from inerter.files.common.kind_entry import KindEntry
 from inerter.files.common.problem import Problem, at
-from inerter.files.common.shape import Range, Shape
+from inerter.files.common.shape import Range
 from inerter.files.common.suggest import nearest, some
+from inerter.files.common.tables import Shape
+from inerter.files.common.vehicles import Mount, made, mounts
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.registry import kinds_by_unit
 from inerter.networks.parser import names, network
 from inerter.units import shown
-from inerter.vehicle.registry import VEHICLES
-from inerter.vehicle.vehicle import VehicleModel
+from inerter.vehicle.vehicle import Vehicle
 
 
 @dataclass(frozen=True)
@@ -27,20 +27,27 @@ class StrutLayout:
 
     struts: dict[str, str]
 
-    def design(self, model: str, vehicle: Mapping[str, float], elements: Mapping[str, Element]) -> VehicleModel:
+    def design(self, model: str, vehicle: Mapping[str, Any], elements: Mapping[str, Element]) -> Vehicle:
         """The vehicle with these struts, made of `elements`."""
-        mounted = {mount: network(text, **elements) for mount, text in self.struts.items()}
-        arguments: dict[str, Any] = {**vehicle, **mounted}
-        return VEHICLES[model](**arguments)
+        return made(model, vehicle, {mount: network(text, **elements) for mount, text in self.struts.items()})
 
     def entry(self) -> str | dict[str, str]:
         """How a file says it."""
         return dict(self.struts) if len(self.struts) > 1 else next(iter(self.struts.values()))
 
 
-def struts_of(model: str, entry: Shape | str) -> dict[str, str]:
-    """The network of every mount."""
-    return entry.model_dump() if isinstance(entry, Shape) else dict.fromkeys(mounts_of(VEHICLES[model]), entry)
+def struts_of(model: str, vehicle: Mapping[str, Any], entry: Shape | dict[str, str] | str) -> dict[str, str]:
+    """The network of every mount: as the layout gives it, else as the vehicle does.
+
+    One text is that of all mounts that need one.
+    """
+    known = mounts(model, vehicle)
+    own = {name: mount.network for name, mount in known.items() if mount.network is not None}
+    if isinstance(entry, str):
+        return {**dict.fromkeys([n for n, mount in known.items() if mount.needed] or known, entry), **own}
+    given = entry.model_dump(exclude_none=True) if isinstance(entry, Shape) else entry
+    struts = {**own, **given}
+    return {name: struts[name] for name in dict.fromkeys((*known, *struts)) if name in struts}
 
 
 def element_of(name: str, entry: Range | Amount | KindEntry) -> Element:
@@ -52,24 +59,15 @@ def element_of(name: str, entry: Range | Amount | KindEntry) -> Element:
     return kinds_by_unit()[entry.unit].of(entry.value, name)
 
 
-def in_si(fields: Iterable[Field], values: Mapping[str, float]) -> dict[str, str]:
-    """The texts of those quantities that there is a value of, in SI units."""
-    return {f.key: f"{values[f.key]!r} {f.unit}" for f in fields if f.key in values}  # repr reads back as the same
-
-
-def vehicle_entry(model: str, values: Mapping[str, float]) -> dict[str, str]:
-    """How a file says a vehicle."""
-    return {"model": model, **in_si(fields_of(VEHICLES[model]), values)}
-
-
 def layout_problems(
-    model: str, elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]
+    model: str, vehicle: Mapping[str, Any], elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]
 ) -> Iterator[Problem]:
-    """What is wrong with layouts: networks that cannot be, and elements that are not there."""
-    mounts = mounts_of(VEHICLES[model])
+    """What is wrong with layouts: networks that cannot be, mounts and elements that are not there."""
+    known = mounts(model, vehicle)
     for name, layout in layouts.items():
-        if tuple(layout.struts) != mounts:
-            yield at(("layouts", name), got="a table", **_mounted(model, mounts, layout))
+        wrong = list(_mount_problems(name, model, known, layout))
+        if wrong:
+            yield from wrong
             continue
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
@@ -77,14 +75,20 @@ def layout_problems(
             yield from network_problems(place, expression, elements)
 
 
-def _mounted(model: str, mounts: tuple[str, ...], layout: StrutLayout) -> dict[str, str]:
-    """How layouts of this vehicle are said."""
-    text = shown(next(iter(layout.struts.values())))
-    car = model.replace("-", " ")
-    if len(mounts) == 1:
-        return {"fault": f"a {car} has one {mounts[0]}", "expected": f"its network in quotes, such as {text}"}
-    table = ", ".join(f"{mount} = {text}" for mount in mounts)
-    return {"fault": f"a {car} has {', '.join(mounts[:-1])} and {mounts[-1]}", "expected": f"such as {{ {table} }}"}
+def _mount_problems(name: str, model: str, known: Mapping[str, Mount], layout: StrutLayout) -> Iterator[Problem]:
+    """Mounts that are not there, or not filled."""
+    unknown = [mount for mount in layout.struts if mount not in known]
+    if unknown and len(known) == 1:
+        (only,), text = known, shown(next(iter(layout.struts.values())))
+        fault = f"a {model.replace('-', ' ')} has one {only}"
+        yield at(("layouts", name), got="a table", fault=fault, expected=f"its network in quotes, such as {text}")
+        return
+    for mount in unknown:
+        hint = nearest(mount, known)
+        yield at(("layouts", name, mount), fault="unknown key", expected=f"one of {some(known)}", hint=hint)
+    for mount in known:
+        if known[mount].needed and mount not in layout.struts:
+            yield at(("layouts", name, mount), fault="missing", expected=f'{mount} = "k | c"')
 
 
 def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[str, Element]) -> Iterator[Problem]:

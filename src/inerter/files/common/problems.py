@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from inerter.errors import StudyError
 from inerter.files.common.kinds import kind_with
 from inerter.files.common.problem import EntryError, Problem
-from inerter.files.common.shape import Shape, Shapes
 from inerter.files.common.suggest import nearest
+from inerter.files.common.tables import Shape, Shapes
 from inerter.units import shown
 
 if TYPE_CHECKING:
@@ -22,13 +22,24 @@ _MOST, _LONGEST = 20, 600  # problems, and characters of each
 _TELLING = {"vehicle": "model", "signal": "kind"}  # the key that decides which others a section has
 
 
-def refusal(path: Path, problems: Iterable[Problem]) -> StudyError:
+class FileError(StudyError):
+    """A file that cannot be used, and its problems as data."""
+
+    def __init__(self, text: str, problems: tuple[Problem, ...]) -> None:
+        super().__init__(text, problems)
+        self.problems = problems
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def refusal(path: Path, problems: Iterable[Problem]) -> FileError:
     """The error that reports the `problems` of the file, one a line: so many as a reader may want to see."""
     every = list(problems)
     lines = [f"{path.name}: {shortened(str(problem))}" for problem in every[:_MOST]]
     if len(every) > _MOST:
         lines.append(f"{path.name}: and {len(every) - _MOST} problems more.")
-    return StudyError("\n".join(lines))
+    return FileError("\n".join(lines), tuple(every))
 
 
 def shortened(line: str) -> str:
@@ -66,7 +77,7 @@ def _where(place: tuple[str, ...], key: str, shapes: Shapes) -> str:
         return f"It is a section of {other.plural}, for: inerter {other.command}."
     elsewhere = [path for path, shape in shapes.items() if path != () and "*" not in path and key in _keys(shape)]
     for path in elsewhere:
-        if path[0] == place[0] in _TELLING:
+        if len(path) == 2 and path[0] == place[0] in _TELLING:
             return f'It is a key of {_TELLING[path[0]]} = "{path[1].strip("<>").split()[0]}".'
     elsewhere = [path for path in elsewhere if path[0] != place[0]]
     if elsewhere:
@@ -78,17 +89,24 @@ def _example(place: tuple[str, ...], shapes: Shapes) -> str:
     """The example of the key at `place`; tags at its end are not keys."""
     while _is_tag(place[-1]):
         place = place[:-1]
+    if not _has_shape(place[:-1], shapes):  # an entry of a table of names: what the table's example shows
+        return _example(place[:-1], shapes)
     for name, field in _shape(place[:-1], shapes).model_fields.items():
         if place[-1] in (name, field.alias) and field.examples:
             return str(field.examples[0])
     raise KeyError(place)
 
 
+def _has_shape(place: tuple[str, ...], shapes: Shapes) -> bool:
+    return any(_leads_to(path, place) for path in shapes)
+
+
 def _shape(place: tuple[str, ...], shapes: Shapes) -> type[Shape]:
-    for path, shape in shapes.items():
-        if len(path) == len(place) and all(a in ("*", b) for a, b in zip(path, place, strict=True)):
-            return shape
-    raise KeyError(place)
+    return next(shape for path, shape in shapes.items() if _leads_to(path, place))
+
+
+def _leads_to(path: tuple[str, ...], place: tuple[str, ...]) -> bool:
+    return len(path) == len(place) and all(a in ("*", b) for a, b in zip(path, place, strict=True))
 
 
 def _keys(shape: type[Shape]) -> list[str]:

@@ -9,8 +9,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
-    ConfigDict,
     Discriminator,
     Field,
     PlainValidator,
@@ -21,7 +19,7 @@ from pydantic import (
 
 from inerter.errors import RowError
 from inerter.fields import Field as Quantity
-from inerter.fields import fields_of, mounts_of
+from inerter.fields import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.entries import (
     Amount,
     amount,
@@ -29,11 +27,22 @@ from inerter.files.common.entries import (
     element_name,
     expression,
     layout_name,
+    not_negative,
     one_of,
     positive,
 )
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
+from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.vehicle_shapes import (
+    MECHANISM,
+    SEAT,
+    Driving,
+    MechanismTable,
+    SeatTable,
+    forces_of,
+    mechanism_shapes,
+)
 from inerter.rows import made_of_rows
 from inerter.signals.road import ROAD_CLASSES
 from inerter.vehicle.registry import VEHICLES
@@ -43,12 +52,6 @@ ROAD = (
     Quantity("roughness", "m^3/cycle", "kappa = Gd(n0) n0^2 / 2 of ISO 8608.", "5e-7 m^3/cycle", "roughness"),
 )
 ANY = "<any>"  # the shape of what does not say its kind
-
-
-class Shape(BaseModel):
-    """A table of a study file; keys that it does not know are errors."""
-
-    model_config = ConfigDict(extra="forbid")
 
 
 class RoadTable(Shape):
@@ -69,7 +72,6 @@ class RoadTable(Shape):
         return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
 
 
-Shapes = Mapping[tuple[str, ...], type[Shape]]
 AmountText = Annotated[Amount, PlainValidator(amount)]
 
 
@@ -86,11 +88,13 @@ class Range(Shape):
 
 
 def of_quantities(fields: Iterable[Quantity]) -> dict[str, Any]:
-    """Keys for quantities that must be given."""
-    return {
-        field.key: (Annotated[float, positive(field.unit)], Field(examples=[f'{field.key} = "{field.example}"']))
-        for field in fields
-    }
+    """Keys for quantities: those without a default must be given, and those whose default is zero may be zero."""
+    keys: dict[str, Any] = {}
+    for field in fields:
+        check = not_negative(field.unit) if field.default == 0.0 else positive(field.unit)
+        default = ... if field.default is None else field.default
+        keys[field.key] = (Annotated[float, check], Field(default, examples=[f'{field.key} = "{field.example}"']))
+    return keys
 
 
 def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Shapes]:
@@ -102,14 +106,55 @@ def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Sh
         return f"<{model}>" if isinstance(model, str) and f"<{model}>" in made else ANY
 
     shapes = {**made, ANY: unknown}
-    return one_of_shapes(shapes, tag), {("vehicle", name): shape for name, shape in shapes.items()}
+    places: dict[tuple[str, ...], type[Shape]] = {("vehicle", name): shape for name, shape in shapes.items()}
+    seats: dict[tuple[str, ...], type[Shape]] = {
+        ("vehicle", name, SEAT): SeatTable for name, shape in made.items() if SEAT in shape.model_fields
+    }
+    return one_of_shapes(shapes, tag), {**places, **seats, **mechanism_shapes()}
 
 
 def _vehicle_shape(model: str) -> type[Shape]:
+    if model == MECHANISM:
+        return MechanismTable
     keys = of_quantities(fields_of(VEHICLES[model]))
-    if "model" in keys:
-        raise RowError(f"{model} has a quantity 'model', a key that [vehicle] has already. Choose another name.")
-    return create_model(f"Vehicle {model}", __base__=Shape, **{**keys, "model": (Literal[model], ...)})
+    own: dict[str, Any] = {"model": (Literal[model], ...)}
+    if VEHICLES[model].moved == "road":
+        own[SEAT] = (SeatTable | None, MechanismTable.model_fields[SEAT])
+    taken = sorted(own.keys() & keys.keys())
+    if taken:
+        raise RowError(f"{model} has a quantity {taken[0]!r}, a key that [vehicle] has already. Choose another name.")
+    return create_model(f"Vehicle {model}", __base__=Shape, **{**keys, **own})
+
+
+class WithVehicle(Shape):
+    """A file with a vehicle, of which what refers to it has to know: mounts and forces that it names itself, its roads."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named_by_the_vehicle(cls, tables: Any) -> Any:
+        vehicle = tables.get("vehicle") if isinstance(tables, dict) else None
+        if not isinstance(vehicle, dict):
+            return tables
+        found, given = dict(tables), tables.get("layouts")
+        if not _needs_road(vehicle):
+            found.setdefault("road", None)
+        if isinstance(given, dict) and (SEAT in vehicle or vehicle.get("model") == MECHANISM):
+            found["layouts"] = {n: _Mounted(entry) if isinstance(entry, dict) else entry for n, entry in given.items()}
+        signal = tables.get("signal")
+        if isinstance(signal, dict):
+            found["signal"] = Driving(signal, forces_of(vehicle))
+        return found
+
+
+def _needs_road(vehicle: Mapping[str, Any]) -> bool:
+    """Whether a road must be given; of a model that is not known, it is."""
+    model = vehicle.get("model")
+    row = VEHICLES.get(model) if isinstance(model, str) else None
+    return model != MECHANISM and (row is None or row.moved == "road")
+
+
+class _Mounted(dict[str, Any]):
+    """A layout of a vehicle that names its mounts itself."""
 
 
 def one_of_shapes(shapes: Mapping[str, Any], tag: Callable[[Any], str]) -> Any:
@@ -134,23 +179,27 @@ LayoutName = Annotated[str, AfterValidator(layout_name)]
 @made_of_rows
 def layouts() -> tuple[Any, Shapes]:
     """The section [layouts], and its shapes by place: a text for all mounts, or a table with a text for each."""
-    several = dict.fromkeys(mounts for kind in VEHICLES.values() if len(mounts := mounts_of(kind)) > 1)
-    tables = {f"<{' '.join(mounts)}>": _mounts_shape(mounts) for mounts in several}
+    several = {mounts: needed_mounts_of(kind) for kind in VEHICLES.values() if len(mounts := mounts_of(kind)) > 1}
+    tables = {f"<{' '.join(mounts)}>": _mounts_shape(mounts, needed) for mounts, needed in several.items()}
 
     def tag(entry: Any) -> str:
         if not isinstance(entry, dict):
             return "<strut>"
+        if isinstance(entry, _Mounted):
+            return "<mounted>"
         return max(tables, key=lambda name: len(set(entry) & set(tables[name].model_fields)))
 
     strut = Annotated[str, PlainValidator(expression)]
-    each: Any = one_of_shapes({**tables, "<strut>": strut}, tag)
+    each: Any = one_of_shapes({**tables, "<strut>": strut, "<mounted>": dict[str, strut]}, tag)
     every: Any = dict.__class_getitem__((LayoutName, each))
     example = 'a section [layouts] with lines such as S1 = "k | c"'
     entry = Annotated[every, Field(min_length=1, examples=[example])]
     return entry, {("layouts", "*", name): shape for name, shape in tables.items()}
 
 
-def _mounts_shape(mounts: tuple[str, ...]) -> type[Shape]:
+def _mounts_shape(mounts: tuple[str, ...], needed: tuple[str, ...]) -> type[Shape]:
     text = Annotated[str, PlainValidator(expression)]
-    keys: dict[str, Any] = {mount: (text, Field(examples=[f'{mount} = "k | c"'])) for mount in mounts}
+    keys: dict[str, Any] = {
+        mount: (text, Field(... if mount in needed else None, examples=[f'{mount} = "k | c"'])) for mount in mounts
+    }
     return create_model(f"Mounts {' '.join(mounts)}", __base__=Shape, **keys)

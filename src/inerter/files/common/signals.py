@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -9,12 +10,13 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, PlainValidator, create_model
 
 from inerter.files.common.entries import one_of, text
-from inerter.files.common.shape import ANY, Shape, Shapes, one_of_shapes
+from inerter.files.common.shape import ANY, one_of_shapes
 from inerter.files.common.signal_kinds import NEEDED, SIGNALS, UNITS, unit_of
+from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.vehicle_shapes import Driving
 from inerter.rows import made_of_rows
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
-from inerter.vehicle.registry import VEHICLES
 
 
 @dataclass(frozen=True)
@@ -24,11 +26,12 @@ class SignalRequest:
     kind: str
     input: str
     values: dict[str, Any]
+    force_unit: str | None = None  # where the vehicle names the force itself
 
     @property
     def unit(self) -> str:
         """Of the signal: m, N or N m."""
-        return unit_of(self.input)
+        return self.force_unit or unit_of(self.input)
 
     @property
     def units(self) -> dict[str, str]:
@@ -54,13 +57,17 @@ class SignalRequest:
         return {"kind": self.kind, "input": self.input, **values}
 
 
-def signal_of(path: Path, model: str, entry: dict[str, Any]) -> SignalRequest:
-    """The signal that a section [signal] asks for; its file is looked for beside that at `path`."""
+def signal_of(path: Path, inputs: Mapping[str, str], entry: dict[str, Any]) -> SignalRequest:
+    """The signal that a section [signal] asks for; its file is looked for beside that at `path`.
+
+    `inputs` are what it may move, with the unit of each; it moves the first if nothing else is said.
+    """
     values = dict(entry)
-    kind, moved = values.pop("kind"), values.pop("input") or VEHICLES[model].moved
+    kind, moved = values.pop("kind"), values.pop("input") or next(iter(inputs), "road")
     if "file" in values:
         values["file"] = str((path.parent / values["file"]).absolute())
-    return SignalRequest(kind, moved, values)
+    unit = inputs.get(moved)
+    return SignalRequest(kind, moved, values, None if unit == unit_of(moved) else unit)
 
 
 class AnySignal(Shape):
@@ -91,4 +98,8 @@ def _signal_shape(kind: str, unit: str) -> type[Shape]:
 
 def _signal_tag(signal: Any) -> str:
     kind = signal.get("kind") if isinstance(signal, dict) else None
-    return f"<{kind} in {unit_of(signal.get('input'))}>" if isinstance(kind, str) and kind in SIGNALS else ANY
+    if not isinstance(kind, str) or kind not in SIGNALS:
+        return ANY
+    moved = signal.get("input")
+    own = signal.units.get(moved) if isinstance(signal, Driving) and isinstance(moved, str) else None
+    return f"<{kind} in {own or unit_of(moved)}>"

@@ -8,8 +8,9 @@ from pydantic import Field, PlainValidator
 
 from inerter.files.common.entries import expression, not_negative, one_of, positive, text, whole, yes_or_no
 from inerter.files.common.problem import EntryError
-from inerter.files.common.shape import ElementEntry, ElementName, Range, Shape
+from inerter.files.common.shape import ElementEntry, ElementName, Range
 from inerter.files.common.suggest import nearest
+from inerter.files.common.tables import Shape
 from inerter.identification.models import MODELS
 from inerter.records.record import CHANNELS
 from inerter.units import parse_quantity, shown

@@ -34,11 +34,11 @@ def load_rig(path: str | Path) -> RigRequest:
     path = Path(path)
     shape = read_shape(path, "a rig file", *shapes())
     elements = {name: element_of(name, entry) for name, entry in shape.elements.items()}
-    layouts = {name: StrutLayout(struts_of(Rig.key, entry)) for name, entry in shape.layouts.items()}
+    layouts = {name: StrutLayout(struts_of(Rig.key, {}, entry)) for name, entry in shape.layouts.items()}
     chosen = shape.rig.layout or (next(iter(layouts)) if len(layouts) == 1 else "")
-    signal = signal_of(path, Rig.key, shape.signal.model_dump())
+    signal = signal_of(path, {Rig.moved: "m"}, shape.signal.model_dump())
     problems = [
-        *layout_problems(Rig.key, elements, layouts),
+        *layout_problems(Rig.key, {}, elements, layouts),
         *chosen_layout("rig", chosen, tuple(layouts)),
         *_signal_problems(signal),
     ]

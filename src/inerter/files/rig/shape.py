@@ -18,8 +18,9 @@ from inerter.files.common.entries import (
     yes_or_no,
 )
 from inerter.files.common.kind_entry import KindEntry
-from inerter.files.common.shape import ElementName, Shape, Shapes, layouts
+from inerter.files.common.shape import ElementName, layouts
 from inerter.files.common.signals import signal_shapes
+from inerter.files.common.tables import Shape, Shapes
 from inerter.rows import made_of_rows
 
 

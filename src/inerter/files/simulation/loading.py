@@ -14,12 +14,12 @@ from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
+from inerter.files.common.vehicles import inputs, values_of, vehicle_problems
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.shape import SimulationFile, shapes
 from inerter.simulation.inputs import whole_steps
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
-from inerter.vehicle.registry import VEHICLES
 from inerter.writing import characters
 
 
@@ -39,9 +39,8 @@ def load_simulation(path: str | Path) -> SimulationRequest:
 
 
 def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
-    vehicle, settings = shape.vehicle.model_dump(), shape.simulation.model_dump()
-    model = vehicle.pop("model")
-    layouts = {name: StrutLayout(struts_of(model, entry)) for name, entry in shape.layouts.items()}
+    (model, vehicle), settings = values_of(shape.vehicle), shape.simulation.model_dump()
+    layouts = {name: StrutLayout(struts_of(model, vehicle, entry)) for name, entry in shape.layouts.items()}
     chosen = settings.pop("layout")
     if chosen is None and len(layouts) == 1:
         chosen = next(iter(layouts))
@@ -54,7 +53,7 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
         roughness=None if shape.road is None else shape.road.roughness,
         elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
-        signal=signal_of(path, model, shape.signal.model_dump()),
+        signal=signal_of(path, inputs(model, vehicle), shape.signal.model_dump()),
         layout="" if chosen is None else chosen,
         **settings,
     )
@@ -62,13 +61,13 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
 
 def _names(request: SimulationRequest) -> Iterator[Problem]:
     """Names that nothing has."""
-    yield from layout_problems(request.model, request.elements, request.layouts)
+    yield from vehicle_problems(request.model, request.vehicle)
+    yield from layout_problems(request.model, request.vehicle, request.elements, request.layouts)
     yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
-    kind = VEHICLES[request.model]
-    moved, inputs = request.signal.input, (kind.moved, *kind.forces)
-    if moved not in inputs:
-        hint = nearest(moved, inputs)
-        yield at(("signal", "input"), got=shown(moved), expected=f"one of {some(inputs)}", hint=hint)
+    moved, known = request.signal.input, inputs(request.model, request.vehicle)
+    if moved not in known:
+        hint = nearest(moved, known)
+        yield at(("signal", "input"), got=shown(moved), expected=f"one of {some(known)}", hint=hint)
 
 
 def _needs(request: SimulationRequest) -> Iterator[Problem]:

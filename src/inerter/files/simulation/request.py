@@ -8,15 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from inerter.files.common.kind_entry import entry_of
-from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
+from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.shape import ROAD
 from inerter.files.common.signals import SignalRequest
 from inerter.files.common.toml import as_toml
+from inerter.files.common.vehicles import in_si, vehicle_entry
 from inerter.networks.elements import Element
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
 from inerter.simulation.trajectory import Trajectory
-from inerter.vehicle.vehicle import VehicleModel
+from inerter.vehicle.vehicle import Vehicle
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class SimulationRequest:
     title: str
     path: Path = field(compare=False)
     model: str
-    vehicle: dict[str, float]
+    vehicle: dict[str, Any]
     speed: float | None  # [m/s]
     roughness: float | None  # [m^3/cycle]
     elements: dict[str, Element]
@@ -50,7 +51,7 @@ class SimulationRequest:
         """The files that it is read from."""
         return (self.path, *self.signal.inputs)
 
-    def design(self) -> VehicleModel:
+    def design(self) -> Vehicle:
         """The vehicle, or rig, with the chosen layout."""
         return self.layouts[self.layout].design(self.model, self.vehicle, self.elements)
 

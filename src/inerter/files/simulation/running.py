@@ -60,8 +60,18 @@ class SimulationResult:
     @property
     def accelerations(self) -> tuple[str, ...]:
         """Outputs that are accelerations of bodies, not of wheels."""
-        measures = self.mechanism.measures
-        return () if measures is None else tuple(weighted.output for weighted in measures.comfort)
+        return tuple(weighted.output for weighted in self.mechanism.measures.comfort)
+
+    @property
+    def displacements(self) -> tuple[str, ...]:
+        """The output that tells how far a force moves it, where no acceleration tells of comfort."""
+        answer = self.mechanism.measures.load_output
+        return () if answer is None or self.accelerations else (answer,)
+
+    @property
+    def on_rig(self) -> bool:
+        """Whether it is a device whose one end is moved."""
+        return self.request.signal.input == "displacement"
 
     @property
     def tyre_loads(self) -> tuple[str, ...]:
@@ -77,7 +87,7 @@ class SimulationResult:
     def main_outputs(self) -> tuple[str, ...]:
         """What a summary tells of."""
         forces = tuple(name for strut in self.mechanism.struts for name in of_mount(strut))
-        return (*self.accelerations, *self.tyre_loads, *forces)
+        return (*self.accelerations, *self.displacements, *self.tyre_loads, *forces)
 
     def rms(self, name: str) -> float:
         """Root of the mean square of an output; infinite where a motion has grown beyond all bounds."""

@@ -8,23 +8,26 @@ from pydantic import ConfigDict, Field, PlainValidator, create_model
 
 from inerter.files.common.entries import Amount, fixed_amount, one_of, positive, text, whole, yes_or_no
 from inerter.files.common.kind_entry import KindEntry
-from inerter.files.common.shape import ElementName, RoadTable, Shape, Shapes, layouts, vehicle_shapes
+from inerter.files.common.shape import ElementName, RoadTable, WithVehicle, layouts, vehicle_shapes
 from inerter.files.common.signals import signal_shapes
+from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.vehicles import models
 from inerter.rows import made_of_rows
 from inerter.units import shown
-from inerter.vehicle.registry import VEHICLES
 
 INTEGRATORS = ("event-driven", "time-stepping")
 INITIAL = ("rest", "preload", "periodic")
+
+
+def _model(value: Any) -> str:
+    return one_of("a vehicle model", models())(value)
 
 
 class AnyVehicle(Shape):
     """A vehicle whose model is missing or unknown: nothing more can be said about its keys."""
 
     model_config = ConfigDict(extra="ignore")
-    model: Annotated[str, PlainValidator(one_of("a vehicle model", VEHICLES))] = Field(
-        examples=['model = "quarter-car"']
-    )
+    model: Annotated[str, PlainValidator(_model)] = Field(examples=['model = "quarter-car"'])
 
 
 class PassedRoad(RoadTable):
@@ -46,7 +49,7 @@ class SimulationSettings(Shape):
     every: Annotated[int, whole(1, 10**9)] = 1
 
 
-class SimulationFile(Shape):
+class SimulationFile(WithVehicle):
     """The whole file, but for what rows make of its vehicle, layouts and signal."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
@@ -65,14 +68,14 @@ class SimulationFile(Shape):
 @made_of_rows
 def shapes() -> tuple[type[SimulationFile], Shapes]:
     """The shape of a simulation file, and all shapes in it by their place."""
-    vehicle, vehicles = vehicle_shapes(VEHICLES, AnyVehicle)
-    *models, last = map(shown, VEHICLES)
+    vehicle, vehicles = vehicle_shapes(models(), AnyVehicle)
+    *others, last = map(shown, models())
     layout, tables = layouts()
     signal, signals = signal_shapes()
     file = create_model(
         "SimulationFile",
         __base__=SimulationFile,
-        vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {', '.join(models)} or {last}"])),
+        vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {', '.join(others)} or {last}"])),
         layouts=(layout, ...),
         signal=(signal, Field(examples=['a section [signal] with kind = "multisine"'])),
     )

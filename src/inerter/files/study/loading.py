@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,18 +12,21 @@ from inerter.files.common.entries import Amount
 from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.shape import Shape
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.toml import read_shape
+from inerter.files.common.tables import Shape
+from inerter.files.common.toml import read_tables, shape_of
+from inerter.files.common.vehicles import values_of, vehicle_problems
 from inerter.files.study.method_problems import method_problems
-from inerter.files.study.shape import StudyFile, SweepRange, shapes
+from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, SweepRange, shapes
 from inerter.files.study.study import Study, Sweep, elements_used
-from inerter.indices.registry import index_settings
+from inerter.indices.registry import index_settings, is_on_road
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
 from inerter.signals.road import Road
 from inerter.units import shown
 from inerter.writing import characters
+
+WHAT = "a study file"
 
 
 def load_study(path: str | Path) -> Study:
@@ -31,10 +35,19 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a study file", *shapes())
-    study = _resolve(path, shape)
+    return study_of(read_tables(path, WHAT), path)
+
+
+def study_of(tables: Mapping[str, Any], path: Path) -> Study:
+    """The study that the tables of a file say; `path`, where they are from or may go to, is for messages and the title.
+
+    Raises `StudyError` as `load_study` does.
+    """
+    study = _resolve(path, shape_of(tables, path, *shapes()))
     problems = [
-        *layout_problems(study.model, study.elements, study.layouts),
+        *vehicle_problems(study.model, study.vehicle),
+        *layout_problems(study.model, study.vehicle, study.elements, study.layouts),
+        *_road_problems(study),
         *_sweep_problems(study),
         *_setting_problems(study),
         *method_problems(study),
@@ -47,9 +60,8 @@ def load_study(path: str | Path) -> Study:
 
 
 def _resolve(path: Path, shape: StudyFile) -> Study:
-    vehicle = shape.vehicle.model_dump()
-    model = vehicle.pop("model")
-    layouts = {name: StrutLayout(struts_of(model, entry)) for name, entry in shape.layouts.items()}
+    model, vehicle = values_of(shape.vehicle)
+    layouts = {name: StrutLayout(struts_of(model, vehicle, entry)) for name, entry in shape.layouts.items()}
     settings = shape.study
     baseline = settings.baseline
     if baseline is None and len(layouts) > 1:
@@ -59,7 +71,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         path=path,
         model=model,
         vehicle=vehicle,
-        road=Road(**shape.road.model_dump(exclude={"letter"})),
+        road=None if shape.road is None else Road(**shape.road.model_dump(exclude={"letter"})),
         elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
         indices=settings.indices,
@@ -75,6 +87,12 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         method_settings=_method_settings(shape),
         budgets=settings.budgets,
     )
+
+
+def _road_problems(study: Study) -> Iterator[Problem]:
+    on_roads = [symbol for symbol in study.indices if is_on_road(symbol)]
+    if study.road is None and on_roads:
+        yield at(("road",), fault=f"missing, but {some(on_roads)} needs it", expected=ROAD_EXAMPLE)
 
 
 def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:

@@ -40,12 +40,13 @@ from inerter.files.common.shape import (
     ElementName,
     Range,
     RoadTable,
-    Shape,
-    Shapes,
+    WithVehicle,
     layouts,
     of_quantities,
     vehicle_shapes,
 )
+from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.vehicles import models
 from inerter.indices.registry import INDICES, index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
@@ -93,8 +94,8 @@ def _car(value: Any) -> str:
 
 
 def _cars() -> list[str]:
-    """The models that are judged on a road."""
-    return [model for model, kind in VEHICLES.items() if kind.moved == "road"]
+    """The models that are judged, on a road or under a force."""
+    return [model for model in models() if model not in VEHICLES or VEHICLES[model].moved != "displacement"]
 
 
 class AnyCar(Shape):
@@ -104,6 +105,7 @@ class AnyCar(Shape):
     model: Annotated[str, PlainValidator(_car)] = Field(examples=['model = "quarter-car"'])
 
 
+ROAD_EXAMPLE = 'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'
 RoadShape = create_model("RoadShape", __base__=RoadTable, **of_quantities(ROAD))
 
 
@@ -128,7 +130,7 @@ class Settings(Shape):
     budgets: Annotated[tuple[str, ...], some_names("f")] = ()
 
 
-class StudyFile(Shape):
+class StudyFile(WithVehicle):
     """The whole file, but for what is made of quantities and rows."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
@@ -153,14 +155,16 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     settings = create_model("Settings", __base__=Settings, **_if_given(index_settings().values()))
     method, own = _method_shapes()
     vehicle, vehicles = vehicle_shapes(_cars(), AnyCar)
-    cars = " or ".join(map(shown, _cars()))
+    *others, last = map(shown, _cars())
+    cars = f"{', '.join(others)} or {last}"
     layout, tables = layouts()
+    some_road: Any = RoadShape | None
     section: dict[str, Any] = {"methods": (method, Field(default_factory=method))} if own else {}
     file = create_model(
         "StudyFile",
         __base__=StudyFile,
         vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {cars}"])),
-        road=(RoadShape, Field(examples=['a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'])),
+        road=(some_road, Field(examples=[ROAD_EXAMPLE])),
         layouts=(layout, ...),
         study=(settings, Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])),
         **section,

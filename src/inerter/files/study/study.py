@@ -8,11 +8,12 @@ from typing import Any
 
 from inerter.errors import NetworkError, StudyError
 from inerter.files.common.kind_entry import entry_of
-from inerter.files.common.layouts import StrutLayout, in_si, vehicle_entry
+from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_toml
+from inerter.files.common.vehicles import in_si, vehicle_entry
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
 from inerter.methods.method import Method
@@ -20,7 +21,7 @@ from inerter.methods.registry import DEFAULT, make_method, method_settings
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
 from inerter.signals.road import Road
-from inerter.vehicle.vehicle import VehicleModel
+from inerter.vehicle.vehicle import Vehicle
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ class Study:
     title: str
     path: Path = field(compare=False)
     model: str
-    vehicle: dict[str, float]
-    road: Road
+    vehicle: dict[str, Any]
+    road: Road | None  # of indices that are asked on one
     elements: dict[str, Element]  # a free element's value is named after its key, so that it is one variable
     layouts: dict[str, StrutLayout]
     indices: tuple[str, ...]
@@ -73,7 +74,7 @@ class Study:
         shared = {**{key: getattr(self, key) for key in known}, "jobs": threads}
         return make_method(name, shared, self.method_settings.get(name, {}))
 
-    def design(self, layout: str, swept: float | None = None) -> VehicleModel:
+    def design(self, layout: str, swept: float | None = None) -> Vehicle:
         """The vehicle with the struts of `layout`; `swept` replaces the value of the swept element [its SI unit].
 
         Raises `StudyError` for an unknown layout, or for `swept` where nothing is swept; `NetworkError` where `swept`
@@ -100,12 +101,15 @@ class Study:
         return {
             "title": self.title,
             "vehicle": vehicle_entry(self.model, self.vehicle),
-            "road": in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD}),
+            **({"road": self._road()} if self.road else {}),
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
             "study": self._settings(),
             **({"methods": own} if (own := self._of_methods()) else {}),
         }
+
+    def _road(self) -> dict[str, str]:
+        return in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
 
     def _of_methods(self) -> dict[str, Any]:
         return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}

@@ -81,7 +81,9 @@ def _figures(found: Reproduction, folder: Path) -> list[Drawing]:
     if found.curves is not None and "figure14" in found.parts:
         figures.append(partial(drawn.draw_figure_14, found.curves, folder))
     if "figure12" in found.parts:
-        figures.append(partial(drawn.draw_figure_12, study("table1").road, folder))
+        road = study("table1").road
+        assert road is not None
+        figures.append(partial(drawn.draw_figure_12, road, folder))
     return [*figures, partial(draw_networks, _networks(), folder, NETWORKS)]
 
 

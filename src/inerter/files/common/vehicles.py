@@ -1,0 +1,301 @@
+"""What a table [vehicle] stands for: the mounts that layouts fill, the vehicle with them, and how a file says it.
+
+A vehicle in a file is a model and its values: quantities by their keys or, of a mechanism, the tables of its parts; and
+perhaps the table of a seat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from inerter.errors import MechanismError
+from inerter.fields import Field, fields_of, mounts_of, needed_mounts_of
+from inerter.files.common.problem import Problem, at
+from inerter.files.common.suggest import nearest, some
+from inerter.files.common.tables import Shape
+from inerter.files.common.vehicle_shapes import MECHANISM, SEAT, Inertia, Length, forces_of
+from inerter.networks.elements import Damper, Network, Spring
+from inerter.units import format_quantity, shown
+from inerter.vehicle.mechanism import (
+    Coordinate,
+    Force,
+    Measures,
+    Mechanism,
+    Port,
+    RoadInput,
+    Strut,
+    Tyre,
+    Weighted,
+)
+from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.seat import Seat
+from inerter.vehicle.vehicle import Vehicle
+
+Values = Mapping[str, Any]
+Networks = Mapping[str, Network]
+_ANY: Network = Spring(1.0) | Damper(1.0)  # where it does not matter what is mounted
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A place for a network: whether every layout has to fill it, and the network if the vehicle says it itself."""
+
+    needed: bool = True
+    network: str | None = None
+
+
+def models() -> tuple[str, ...]:
+    """All models that files know."""
+    return (*VEHICLES, MECHANISM)
+
+
+def values_of(table: Shape) -> tuple[str, dict[str, Any]]:
+    """The model and the values that the table [vehicle] gives."""
+    values = table.model_dump()
+    model: str = values.pop("model")
+    if values.get(SEAT) is None:
+        values.pop(SEAT, None)
+    return model, values
+
+
+def mounts(model: str, values: Values) -> dict[str, Mount]:
+    """What layouts fill, by name; a seat last."""
+    seat = {SEAT: Mount(needed=False, network=values[SEAT]["network"])} if SEAT in values else {}
+    return {**_form(model).mounts(values), **seat}
+
+
+def made(model: str, values: Values, networks: Networks) -> Vehicle:
+    """The vehicle with these networks in its mounts."""
+    if SEAT not in values:
+        return _form(model).made(values, networks)
+    seat = values[SEAT]
+    vehicle = made(model, _without_seat(values), {name: n for name, n in networks.items() if name != SEAT})
+    place = {} if seat["place"] is None else {"place": _floats(seat["place"])}
+    return Seat(vehicle, seat["mass"], networks[SEAT], **place)
+
+
+def vehicle_entry(model: str, values: Values) -> dict[str, Any]:
+    """How a file says a vehicle, in SI units."""
+    seat = {}
+    if SEAT in values:
+        given = {"mass": f"{values[SEAT]['mass']!r} kg", "network": values[SEAT]["network"]}
+        place = values[SEAT]["place"]
+        seat = {SEAT: given if place is None else {**given, "place": _levers(place)}}
+    return {"model": model, **_form(model).entry(_without_seat(values)), **seat}
+
+
+def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | None, str]]:
+    """What a reader is told of a vehicle: names, each with a value and its unit, or with None and a text."""
+    yield from _form(model).words(_without_seat(values))
+    if SEAT in values:
+        yield "mass on the seat", values[SEAT]["mass"], "kg"
+        yield "seat mounted at", None, _place(values[SEAT]["place"] or {"sprung": 1.0})
+
+
+def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
+    """What is wrong with a vehicle, whatever is mounted in it."""
+    own = _form(model).mounts(values)
+    if SEAT in values and SEAT in own:
+        yield at(("vehicle", "struts", SEAT), fault="there is a seat in [vehicle.seat] too", expected="another name")
+        return
+    problems = list(_form(model).problems(_without_seat(values)))
+    yield from problems
+    if SEAT in values and not problems:
+        place = values[SEAT]["place"] or {"sprung": 1.0}
+        car = made(model, _without_seat(values), dict.fromkeys(own, _ANY))
+        known = {c.name: c.angle for c in car.mechanism().coordinates}
+        yield from _port_problems(("vehicle", SEAT, "place"), place, known, ())
+
+
+def inputs(model: str, values: Values) -> dict[str, str]:
+    """What a signal may move, with the unit of each; first what it moves if nothing else is said."""
+    return _form(model).inputs(values)
+
+
+def in_si(fields: Iterable[Field], values: Mapping[str, float]) -> dict[str, str]:
+    """The texts of those quantities that there is a value of, in SI units."""
+    return {f.key: f"{values[f.key]!r} {f.unit}" for f in fields if f.key in values}  # repr reads back as the same
+
+
+class _Form(Protocol):
+    def mounts(self, values: Values) -> dict[str, Mount]: ...
+
+    def made(self, values: Values, networks: Networks) -> Vehicle: ...
+
+    def entry(self, values: Values) -> dict[str, Any]: ...
+
+    def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]: ...
+
+    def problems(self, values: Values) -> Iterator[Problem]: ...
+
+    def inputs(self, values: Values) -> dict[str, str]: ...
+
+
+def _form(model: str) -> _Form:
+    return _Parts() if model == MECHANISM else _Row(model)
+
+
+def _without_seat(values: Values) -> dict[str, Any]:
+    return {key: value for key, value in values.items() if key != SEAT}
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A vehicle that is a row of the table of vehicles."""
+
+    model: str
+
+    def mounts(self, values: Values) -> dict[str, Mount]:
+        kind = VEHICLES[self.model]
+        return {name: Mount(needed=name in needed_mounts_of(kind)) for name in mounts_of(kind)}
+
+    def made(self, values: Values, networks: Networks) -> Vehicle:
+        arguments: dict[str, Any] = {**values, **networks}
+        return VEHICLES[self.model](**arguments)
+
+    def entry(self, values: Values) -> dict[str, Any]:
+        return in_si(fields_of(VEHICLES[self.model]), values)
+
+    def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
+        for field in fields_of(VEHICLES[self.model]):
+            if values[field.key] != 0.0:
+                yield field.in_words, values[field.key], field.unit
+
+    def problems(self, values: Values) -> Iterator[Problem]:
+        yield from ()
+
+    def inputs(self, values: Values) -> dict[str, str]:
+        kind = VEHICLES[self.model]
+        return {kind.moved: "m", **kind.forces}
+
+
+class _Parts:
+    """A mechanism, given by the tables of its parts."""
+
+    def mounts(self, values: Values) -> dict[str, Mount]:
+        parts = {**values["struts"], **values["tyres"]}
+        return {name: Mount(part["network"] is None, part["network"]) for name, part in parts.items()}
+
+    def made(self, values: Values, networks: Networks) -> Vehicle:
+        given = values["measures"]
+        loads = {f"{name}_load": 1.0 for name in values["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
+        ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in values["struts"].items()}
+        return Mechanism(
+            tuple(
+                Coordinate(n, float(value), isinstance(value, Inertia)) for n, value in values["coordinates"].items()
+            ),
+            tuple(Strut(name, networks[name], upper, lower) for name, (upper, lower) in ends.items()),
+            tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in values["tyres"].items()),
+            tuple(RoadInput(name, **road) for name, road in values["roads"].items()),
+            tuple(Force(name, _floats(port)) for name, port in values["forces"].items()),
+            Measures(
+                tuple(Weighted(output, float(weight)) for output, weight in given["comfort"].items()),
+                tuple(Weighted(output, float(weight)) for output, weight in loads.items()),
+                given["load_input"],
+                given["load_output"],
+            ),
+        )
+
+    def entry(self, values: Values) -> dict[str, Any]:
+        coordinates = values["coordinates"].items()
+        struts = {
+            name: _given({"upper": _levers(s["upper"]), "lower": _levers(s["lower"]), "network": s["network"]})
+            for name, s in values["struts"].items()
+        }
+        tyres = {name: _given({**t, "port": _levers(t["port"])}) for name, t in values["tyres"].items()}
+        roads = {n: {**r, "distance": f"{r['distance']!r} m"} for n, r in values["roads"].items()}
+        weights = {key: None if w is None else _levers(w) for key, w in values["measures"].items() if key in _WEIGHTS}
+        tables = {
+            "coordinates": {n: f"{v!r} {'kg m^2' if isinstance(v, Inertia) else 'kg'}" for n, v in coordinates},
+            "struts": struts,
+            "tyres": tyres,
+            "roads": roads,
+            "forces": {name: _levers(port) for name, port in values["forces"].items()},
+            "measures": _given({**values["measures"], **weights}),
+        }
+        return {key: table for key, table in tables.items() if table}
+
+    def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
+        for name, value in values["coordinates"].items():
+            yield name.replace("_", " "), value, "kg m^2" if isinstance(value, Inertia) else "kg"
+        for name, strut in values["struts"].items():
+            yield f"strut {name}", None, f"{_place(strut['upper'])} over {_place(strut['lower'])}"
+        for name, tyre in values["tyres"].items():
+            yield f"tyre {name}", None, f"{_place(tyre['port'])} over {tyre['road']}"
+        for name, road in values["roads"].items():
+            track = f", on the {road['track']}" if road["track"] else ""
+            yield f"road {name}", None, f"{format_quantity(road['distance'], 'm')} behind the first{track}"
+        for name, port in values["forces"].items():
+            yield f"force {name}", None, f"on {_place(port)}"
+
+    def problems(self, values: Values) -> Iterator[Problem]:
+        known = {name: isinstance(value, Inertia) for name, value in values["coordinates"].items()}
+        roads = tuple(values["roads"])
+        found: list[Problem] = []
+        for name, strut in values["struts"].items():
+            for end in ("upper", "lower"):
+                found += _port_problems(("vehicle", "struts", name, end), strut[end], known, roads)
+        for name, tyre in values["tyres"].items():
+            found += _port_problems(("vehicle", "tyres", name, "port"), tyre["port"], known, ())
+            if tyre["road"] not in roads:
+                hint = nearest(tyre["road"], roads)
+                wanted = f"a road, one of {some(roads) or 'none'}"
+                found.append(
+                    at(("vehicle", "tyres", name, "road"), got=shown(tyre["road"]), expected=wanted, hint=hint)
+                )
+        for name, port in values["forces"].items():
+            found += _port_problems(("vehicle", "forces", name), port, known, ())
+        if not found:
+            try:
+                self.made(values, dict.fromkeys(self.mounts(values), _ANY))
+            except MechanismError as error:
+                found.append(at(("vehicle",), str(error)))
+        yield from found
+
+    def inputs(self, values: Values) -> dict[str, str]:
+        return {**({"road": "m"} if values["roads"] else {}), **forces_of(values)}
+
+
+_WEIGHTS = ("comfort", "tyre_load")
+
+
+def _port_problems(
+    place: tuple[str, ...], port: Mapping[str, float], known: Mapping[str, bool], roads: tuple[str, ...]
+) -> Iterator[Problem]:
+    """Names in a port that are not there, and levers of the wrong kind; `known` says what is an angle."""
+    for name, lever in port.items():
+        if name not in known and name not in roads:
+            hint = nearest(name, (*known, *roads))
+            yield at((*place, name), fault="not a coordinate", expected=f"one of {some((*known, *roads))}", hint=hint)
+        elif known.get(name, False) and not isinstance(lever, Length):
+            expected = f'the lever as a length, such as "{lever:g} m"'
+            yield at((*place, name), got=f"{lever:g}", fault=f"{name} is an angle", expected=expected)
+        elif not known.get(name, False) and isinstance(lever, Length):
+            yield at((*place, name), got=f'"{lever:g} m"', fault=f"{name} is no angle", expected="a number, such as 1")
+
+
+def _floats(port: Mapping[str, float]) -> Port:
+    return {name: float(lever) for name, lever in port.items()}
+
+
+def _levers(port: Mapping[str, float]) -> dict[str, float | str]:
+    return {n: f"{float(v)!r} m" if isinstance(v, Length) else float(v) for n, v in port.items()}
+
+
+def _place(port: Mapping[str, float]) -> str:
+    """A port in words."""
+    terms = [
+        f"{format_quantity(lever, 'm')} × {name}" if isinstance(lever, Length) else _times(lever, name)
+        for name, lever in port.items()
+    ]
+    return " + ".join(terms).replace("+ -", "− ").replace("+ −", "− ") or "ground"
+
+
+def _times(lever: float, name: str) -> str:
+    return name if lever == 1.0 else f"{lever:g} × {name}"
+
+
+def _given(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if value is not None and value != {}}

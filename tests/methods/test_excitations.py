@@ -169,7 +169,7 @@ def quick_member(seed):
     """A random mechanism, a random excitation, and outputs whose norm is known."""
     family = list(FAMILIES)[seed % len(FAMILIES)]
     rng = np.random.default_rng([seed, *family.encode()])
-    for mechanism in mechanisms(family, seed, 60, 1.0):
+    for mechanism in (made for more in range(20) for made in mechanisms(family, seed + 1000 * more, 20, 1.0)):
         try:
             if not is_quick(mechanism):
                 continue
@@ -183,14 +183,14 @@ def quick_member(seed):
     raise AssertionError("none of so many is quick")
 
 
-@pytest.mark.parametrize("seed", sampled(range(300, 400), [301, 303], range(330, 400)))
+@pytest.mark.parametrize("seed", sampled(range(300, 400), [302, 307], range(330, 400)))
 def test_simulated_responses_are_the_norms(seed):
     """On the lines of a multisine, with what lies beyond them added; that may be a large part, and is said then."""
     mechanism, index, norm = quick_member(seed)
     by_time = simulated(mechanism, index)
     assert by_time.status.kind in (StatusKind.OK, StatusKind.INACCURATE), by_time.status
     assert by_time.standard_error < 0.1 * norm
-    assert by_time.value == pytest.approx(norm, rel=1e-4, abs=4.0 * by_time.standard_error)
+    assert by_time.value == pytest.approx(norm, rel=1e-6, abs=4.0 * by_time.standard_error)
 
 
 def test_friction_under_all_excitations_by_three_methods():
@@ -299,3 +299,50 @@ def test_what_cannot_be_is_refused_in_a_sentence(case):
         make()
     assert str(caught.value).endswith((".", "?"))
     assert "\n" not in str(caught.value)
+
+
+def absorber(mu, beta, k, c):
+    return it.Absorber(1.0, 1.0, mu, Spring(k) | Damper(c), Inerter(beta) if beta else None)
+
+
+def variance(mu, beta, k, c, on_absorber):
+    """Of the primary displacement, with forces of 1 and `on_absorber` on the two masses: Crandall and Mark (1963)."""
+    m, f = mu + beta, on_absorber
+    a4, a3, a2, a1, a0 = m, c * (1.0 + m), k + m * (1.0 + k), c, k
+    b2, b1, b0 = m, c * (1.0 + f), k * (1.0 + f)
+    top = b0**2 / a0 * (a2 * a3 - a1 * a4) + a3 * (b1**2 - 2.0 * b0 * b2) + a1 * b2**2
+    return top / (2.0 * (a1 * (a2 * a3 - a1 * a4) - a0 * a3**2))
+
+
+@pytest.mark.parametrize(("mu", "beta"), [(0.02, 0.0), (0.1, 0.05), (0.03, 0.4)])
+def test_tuned_mass_dampers_in_closed_form(mu, beta):
+    """Under a force, where the masses of absorber and inerter add up; over the ground, which inerters do not feel."""
+    m = mu + beta
+    nu = math.sqrt(1.0 + 0.5 * m) / (1.0 + m)  # the optimum under a white force: Asami (2002)
+    zeta = math.sqrt(m * (4.0 + 3.0 * m) / (8.0 * (1.0 + m) * (2.0 + m)))
+    k, c, S = m * nu**2, 2.0 * zeta * m * nu, 3.0
+    made = absorber(mu, beta, k, c)
+    push = it.RandomResponse({"primary_displacement": 1.0}, it.WhiteForce("primary_force", S))
+    quake = it.RandomResponse({"primary_relative_displacement": 1.0}, it.GroundAcceleration(S))
+    least = 0.5 * math.sqrt((4.0 + 3.0 * m) / (m * (1.0 + m)))
+    assert it.evaluate(made, push, it.Norm()).value ** 2 == pytest.approx(S * least, rel=1e-8)
+    assert it.evaluate(made, quake, it.Norm()).value ** 2 == pytest.approx(S * variance(mu, beta, k, c, mu), rel=1e-8)
+    opened = it.Absorber(
+        1.0, 1.0, mu, Spring(free(0.2 * k, 5.0 * k, "k")) | Damper(free(0.2 * c, 5.0 * c, "c")),
+        Inerter(beta) if beta else None,
+    )  # fmt: skip
+    found = it.optimise(opened, push, it.Norm(), seed=0)
+    assert found.value == pytest.approx(math.sqrt(S * least), rel=1e-8)
+    assert found.parameters == pytest.approx({"k": k, "c": c}, rel=1e-4)
+
+
+def test_the_least_peak_of_a_tuned_mass_damper():
+    """The exact optimum of Nishihara and Asami (2002), with an inerter to the ground as a part of its mass."""
+    m = 0.15
+    root = math.sqrt(4.0 + 3.0 * m)
+    inside = (8.0 + 9.0 * m) ** 2 * (16.0 + 9.0 * m) - 128.0 * root**3
+    least = math.sqrt(inside / (3.0 * (32.0 + 27.0 * m))) / (3.0 * m)
+    mount = Spring(free(1e-3, 1.0, name="k")) | Damper(free(1e-4, 1.0, name="c"))
+    made = it.Absorber(primary_mass=1.0, primary_stiffness=1.0, mass=0.1, mount=mount, ground=Inerter(0.05))
+    found = it.optimise(made, it.PeakResponse("primary_force", "primary_displacement"), it.Norm(), seed=0)
+    assert found.value == pytest.approx(least, rel=1e-8)

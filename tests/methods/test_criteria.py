@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from campaigns import in_parts, sampled
+from campaigns import sampled
 from filtered import iso_2631_wk
 from nodal import Nodal
 from quadrature import h2_by_quadrature
@@ -168,23 +168,20 @@ def is_damped(mechanism: it.Mechanism) -> bool:
     )
 
 
-@pytest.mark.parametrize("seed", [0, *in_parts(range(1, 13), 4)])
+@pytest.mark.parametrize("seed", sampled(range(100), [0], range(30, 100)))
 def test_each_criterion_is_the_integral_of_its_response(seed: int) -> None:
     """On random mechanisms, 100 in all, that are damped enough for a quadrature."""
-    mechanisms_looked_at, kinds = 0, set()
-    for family in FAMILIES:
-        rng = np.random.default_rng([seed, *family.encode()])
-        damped = (made for made in mechanisms(family, seed, 12, 1.0) if answers(made, it.TyreLoad(ROAD)))
-        for mechanism in [made for made in damped if is_damped(made)][:2]:
-            mechanisms_looked_at += 1
-            for index in criteria(rng, mechanism):
-                found = it.evaluate(mechanism, index, it.Norm())  # type: ignore[arg-type]
-                if not found.status.ok:
-                    continue
-                assert found.value == pytest.approx(by_quadrature(mechanism, index), rel=1e-7)
-                kinds.add(type(index))
-    assert mechanisms_looked_at >= 5
-    assert len(kinds) >= 4
+    family = list(FAMILIES)[seed % len(FAMILIES)]
+    rng = np.random.default_rng([seed, *family.encode()])
+    drawn = (made for more in range(20) for made in mechanisms(family, seed + 1000 * more, 12, 1.0))
+    mechanism = next(made for made in drawn if answers(made, it.TyreLoad(ROAD)) and is_damped(made))
+    kinds = set()
+    for index in criteria(rng, mechanism):
+        found = it.evaluate(mechanism, index, it.Norm())  # type: ignore[arg-type]
+        if found.status.ok:
+            assert found.value == pytest.approx(by_quadrature(mechanism, index), rel=1e-7)
+            kinds.add(type(index))
+    assert kinds
 
 
 def test_the_gradient_of_weighted_comfort_is_the_slope_of_its_values() -> None:

@@ -45,6 +45,8 @@ from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort
 from inerter.indices.suspension_travel import SuspensionTravel as SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
+from inerter.indices.weighted import WeightedMotion as WeightedMotion
+from inerter.indices.weighted import weighted as weighted
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare

@@ -10,21 +10,20 @@ import sys
 import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from tempfile import TemporaryDirectory
 from threading import Thread, current_thread, main_thread
 from typing import Any
 
 import uvicorn
 
-from inerter.app.requests import opened
-from inerter.app.routes import application
-from inerter.app.server import Server
 from inerter.errors import StudyError, WorkError
+from inerter.work.processes import Processes
 
 ADDRESS, PORT, TOKEN = "127.0.0.1", 8722, "INERTER_TOKEN"
 _TRIED = 20  # ports, where none is asked for
-_NOTHING: dict[str, Any] = {"name": "", "text": "", "study": {}, "problems": []}
 _BACKLOG = 2048  # connections that wait to be taken
 
 
@@ -40,20 +39,24 @@ def run(
     """Serve until an interrupt: see `serve`."""
     if min(limits) < 1:
         raise StudyError(f"A limit is a number of bytes from 1 on, got {min(limits)}.")
-    start = _NOTHING if study is None else _started(Path(study))
+    file = None if study is None else _readable(Path(study))
     with _listening(port) as listening, _folder(folder) as root, _ended_gently():
         _many_connections()
+        quick = Processes(1)
+        begun = Thread(target=_begin, args=(quick,), daemon=True)
+        begun.start()
         token = os.environ.get(TOKEN) or secrets.token_urlsafe(24)
         number = int(listening.getsockname()[1])
         link = f"http://{ADDRESS}:{number}/#token={token}"
-        app = application(Server(root, start), token, lambda: number, *limits)
+        tell(link)
+        if browser:
+            Thread(target=webbrowser.open, args=(link,), daemon=True).start()
+        app = import_module("inerter.app.routes").of_file(file, root, quick, token, lambda: number, limits)
+        begun.join()
         settings: dict[str, Any] = {"ws": "none", "proxy_headers": False, "server_header": False, "access_log": False}
         config = uvicorn.Config(
             app, log_level="warning", lifespan="on", timeout_graceful_shutdown=2, backlog=_BACKLOG, **settings
         )
-        tell(link)
-        if browser:
-            Thread(target=webbrowser.open, args=(link,), daemon=True).start()
         with suppress(KeyboardInterrupt):
             uvicorn.Server(config).run(sockets=[listening])
 
@@ -75,13 +78,20 @@ def _ended_gently() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _started(path: Path) -> dict[str, Any]:
+def _begin(process: Processes) -> None:
+    """Have a process begin while this one loads what it needs, and load what answers first."""
+    with suppress(Exception):  # what fails is begun again when it is needed
+        process.submit(resolve_name, "inerter.app.answers:first")
+
+
+def _readable(path: Path) -> Path:
     try:
-        return opened(path)
+        path.read_text(encoding="utf-8")
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror}). Check the path.") from None
     except UnicodeDecodeError:
         raise StudyError(f"{path}: not UTF-8 text; expected a study file.") from None
+    return path
 
 
 @contextmanager

@@ -33,9 +33,7 @@ def main() -> None:
         with httpx.Client(base_url=base, headers={"Authorization": f"Bearer {token}"}, timeout=120.0) as client:
             client.get("/api/about")
             client.get("/api/start")
-            print(
-                f"what there is     {time.perf_counter() - begun:6.2f} s, CPU of the server {seconds(process.pid):.2f} s"
-            )
+            print(f"what there is     {time.perf_counter() - begun:6.2f} s, CPU {seconds(process.pid):.2f} s")
             study = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
             client.post("/api/panel/indices", json={"study": study})
             print(f"first indices     {time.perf_counter() - begun:6.2f} s")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 from starlette.requests import Request
@@ -47,13 +46,12 @@ async def _example(server: Server, request: Request) -> dict[str, Any]:
     name = request.path_params["name"]
     if name not in found:
         raise Refused(404, f"There is no such example; there are {', '.join(found)}.")
-    return opened(found[name])
+    return opened(f"{name}.toml", found[name].read_text(encoding="utf-8"))
 
 
-def opened(path: Path) -> dict[str, Any]:
+def opened(name: str, text: str) -> dict[str, Any]:
     """A study file as a page opens it."""
-    text = path.read_text(encoding="utf-8")
-    return {"name": path.name, "text": text, **documents.read(text, path.name)}
+    return {"name": name, "text": text, **documents.read(text, name)}
 
 
 async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dict[str, Any]:

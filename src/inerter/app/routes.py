@@ -30,13 +30,18 @@ _NOTHING: dict[str, Any] = {"name": "", "text": "", "study": {}, "problems": []}
 
 
 def of_file(
-    file: Path | None, root: Path, quick: Executor, token: str, port: Callable[[], int], limits: tuple[int, int]
+    file: tuple[str, str] | None,
+    root: Path,
+    quick: Executor,
+    token: str,
+    port: int,
+    limits: tuple[int, int],
 ) -> App:
-    """The application that begins with a study file; `root` is where it keeps its things."""
-    return application(Server(root, opened(file) if file else _NOTHING, quick=quick), token, port, *limits)
+    """The application that begins with a study file, its name and text; `root` is where it keeps its things."""
+    return application(Server(root, opened(*file) if file else _NOTHING, quick=quick), token, port, *limits)
 
 
-def application(server: Server, token: str, port: Callable[[], int], limit: int, record_limit: int) -> App:
+def application(server: Server, token: str, port: int, limit: int, record_limit: int) -> App:
     """The application that a server of the web runs."""
 
     @asynccontextmanager

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import signal
 import socket
@@ -28,7 +29,7 @@ _BACKLOG = 2048  # connections that wait to be taken
 
 
 def run(
-    study: str | Path | None,
+    study: object,
     *,
     port: int | None,
     browser: bool,
@@ -39,19 +40,18 @@ def run(
     """Serve until an interrupt: see `serve`."""
     if min(limits) < 1:
         raise StudyError(f"A limit is a number of bytes from 1 on, got {min(limits)}.")
-    file = None if study is None else _readable(Path(study))
+    file, token = _text_of(study), _token()
     with _listening(port) as listening, _folder(folder) as root, _ended_gently():
         _many_connections()
         quick = Processes(1)
         begun = Thread(target=_begin, args=(quick,), daemon=True)
         begun.start()
-        token = os.environ.get(TOKEN) or secrets.token_urlsafe(24)
         number = int(listening.getsockname()[1])
         link = f"http://{ADDRESS}:{number}/#token={token}"
         tell(link)
         if browser:
             Thread(target=webbrowser.open, args=(link,), daemon=True).start()
-        app = import_module("inerter.app.routes").of_file(file, root, quick, token, lambda: number, limits)
+        app = import_module("inerter.app.routes").of_file(file, root, quick, token, number, limits)
         begun.join()
         settings: dict[str, Any] = {"ws": "none", "proxy_headers": False, "server_header": False, "access_log": False}
         config = uvicorn.Config(
@@ -84,14 +84,30 @@ def _begin(process: Processes) -> None:
         process.submit(resolve_name, "inerter.app.answers:first")
 
 
-def _readable(path: Path) -> Path:
+def _text_of(study: object) -> tuple[str, str] | None:
+    """The name and the text of a study file, from its path or from a study."""
+    if study is None:
+        return None
+    if not isinstance(study, str | Path):
+        text: str = resolve_name("inerter.files.study.study:write_resolved")(study)
+        return "study.toml", text
+    path = Path(study)
     try:
-        path.read_text(encoding="utf-8")
+        return path.name, path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror}). Check the path.") from None
     except UnicodeDecodeError:
         raise StudyError(f"{path}: not UTF-8 text; expected a study file.") from None
-    return path
+
+
+def _token() -> str:
+    """The token that the environment gives, or a new one."""
+    given = os.environ.get(TOKEN)
+    if given is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,200}", given):
+        raise StudyError(
+            f"{TOKEN} has 16 to 200 letters, digits, hyphens and underscores; leave it out for a new token."
+        )
+    return given or secrets.token_urlsafe(24)
 
 
 @contextmanager

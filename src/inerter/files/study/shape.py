@@ -153,6 +153,10 @@ class Settings(Shape):
     conditions: Over = None
     trade_off: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = ()
     points: Annotated[int | None, whole(3, _MOST_OF_FRONT)] = None
+    tolerance: Annotated[dict[str, Any], BeforeValidator(_by_place)] | None = Field(
+        default=None, examples=['tolerance = { c = "10 %", b = "5 %" }']
+    )
+    quantile: Annotated[float | None, PlainValidator(share)] = None
     budgets: Annotated[tuple[str, ...], some_names("f")] = ()
 
 

@@ -36,8 +36,8 @@ from inerter.indices.excitation import Shaped as Shaped
 from inerter.indices.excitation import WhiteForce as WhiteForce
 from inerter.indices.iso2631 import iso2631 as iso2631
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
-from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.measured_road import measured_road as measured_road
+from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.question import Combination as Combination
 from inerter.indices.question import Question as Question
 from inerter.indices.question import on_road as on_road

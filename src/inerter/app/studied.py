@@ -70,7 +70,7 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
     def show(result: StudyResult, into: Path) -> None:
         tell(done[0], done[0], "figures and report")
         draw_study(result.data, into / FIGURES)
-        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets)
+        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
 
     def told(count: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
         done[0] = count

@@ -11,6 +11,7 @@ from inerter.files.study.cases import cases
 from inerter.files.study.checking import check_study, study_notes
 from inerter.files.study.fronts import front_cases
 from inerter.files.study.loading import load_study
+from inerter.files.study.tolerances import tolerance_cases
 
 _WIDTH = 80
 
@@ -20,7 +21,11 @@ def check(study: Path) -> int:
     loaded = load_study(study)
     check_study(loaded)
     count = len(cases(loaded))
-    counts = {"budgets": len(budget_cases(loaded)), "fronts": len(front_cases(loaded))}
+    counts = {
+        "budgets": len(budget_cases(loaded)),
+        "fronts": len(front_cases(loaded)),
+        "tolerances": len(tolerance_cases(loaded)),
+    }
     further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
     swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in loaded.sweeps)
     _say(

@@ -29,6 +29,7 @@ from inerter.report.fronts import front_lines
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table, wrapped
+from inerter.report.tolerances import tolerance_lines
 
 _MOST = 20  # designs that are told one by one
 
@@ -51,10 +52,10 @@ def run(
     def show(result: StudyResult, into: Path) -> None:
         draw_study(result.data, into / FIGURES)
         draw_layouts(loaded, into / FIGURES)
-        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
+        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
 
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
-    asked = {"budgets": loaded.budgets, "fronts": loaded.trade_off}
+    asked = {"budgets": loaded.budgets, "fronts": loaded.trade_off, "tolerances": loaded.tolerance}
     items = " and ".join(["designs", *(kind for kind, some in asked.items() if some)])
     with (
         interruptible(lambda: kept),
@@ -78,7 +79,11 @@ def run(
             print(text, end="")
     else:
         print("\n".join([*wrapped(loaded.title), "", summary_table(result.data)]))
-        lines = (*front_lines(result.data, WIDTH), *budget_lines(result.budgets, loaded, WIDTH))
+        lines = (
+            *front_lines(result.data, WIDTH),
+            *tolerance_lines(result.tolerances, WIDTH),
+            *budget_lines(result.budgets, loaded, WIDTH),
+        )
         print("".join(f"{line}\n" for line in lines), end="")
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))

@@ -18,6 +18,7 @@ from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study, Sweep
+from inerter.files.study.tolerances import ToleranceOutcome
 from inerter.files.study.written import write_resolved
 from inerter.report.answers import answers
 from inerter.report.budgets import budget_tables
@@ -27,6 +28,7 @@ from inerter.report.fronts import front_tables
 from inerter.report.limits import limit_tables
 from inerter.report.question import computation, condition_rows, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
+from inerter.report.tolerances import tolerance_tables
 from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -47,14 +49,25 @@ class PageFigure:
 
 
 def write_report(
-    results: xr.Dataset, study: Study, figures: Path, path: Path, budgets: Sequence[BudgetOutcome] = ()
+    results: xr.Dataset,
+    study: Study,
+    figures: Path,
+    path: Path,
+    budgets: Sequence[BudgetOutcome] = (),
+    tolerances: Sequence[ToleranceOutcome] = (),
 ) -> Path:
     """Write the report of `study` to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
-    write_text(path, report(results, study, figures, budgets))
+    write_text(path, report(results, study, figures, budgets, tolerances))
     return path
 
 
-def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[BudgetOutcome] = ()) -> str:
+def report(
+    results: xr.Dataset,
+    study: Study,
+    figures: Path,
+    budgets: Sequence[BudgetOutcome] = (),
+    tolerances: Sequence[ToleranceOutcome] = (),
+) -> str:
     """The page as text."""
     swept = swept_places(results)
     return with_contents(
@@ -75,6 +88,7 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
             remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
             budgets=budget_tables(budgets, study),
             fronts=front_tables(results),
+            tolerances=tolerance_tables(tolerances),
             limits=limit_tables(results),
             conditions=condition_rows(study),
             trade_offs=[] if swept else trade_off_tables(results),

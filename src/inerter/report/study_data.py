@@ -18,7 +18,11 @@ _JSON = {"improvement_error": "improvement_error_percent"}
 
 def as_text(result: StudyResult) -> Iterator[str]:
     """All results as JSON, in pieces: a list of a million designs is never held."""
-    kinds: dict[str, Sequence[Further]] = {"budgets": result.budgets, "fronts": result.fronts}
+    kinds: dict[str, Sequence[Further]] = {
+        "budgets": result.budgets,
+        "fronts": result.fronts,
+        "tolerances": result.tolerances,
+    }
     further = {kind: [found.to_json() for found in several] for kind, several in kinds.items() if several}
     whole = json.dumps({**result.data.attrs, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it

@@ -97,7 +97,7 @@ def _run(study: Study, outcomes: Mapping[Case, Outcome], case: BudgetCase, threa
                 study.design(layout).with_values(outcomes[Case(layout, case.index)].parameters)
                 for layout in (case.layout, str(study.baseline))
             )
-            index, how = study.asked(case.index), study.method(method, threads)
+            index, how = study.over_conditions(case.index), study.method(method, threads)
             present = design_value(study, outcomes[Case(case.layout, case.index)], case.parameter)
             bounds = None if at_most else (present / _DOWN, present * _UP)
             found = budget(design, baseline, index, parameter=case.parameter, method=how, bounds=bounds)

@@ -189,7 +189,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         method = study.method(study.optimise, threads)
         limits = [limit for several in limits_in(study) for limit in several]
         free = vehicle
-        found = optimise(free, study.asked(case.index), method, subject_to=limits, seed=study.seed)
+        found = optimise(free, study.asked(case.index, case.layout), method, subject_to=limits, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
         fields = {name: getattr(found, name) for name in fields}
         fields["limits"] = [list(one) for one in kept(study, free, found.limits)]
@@ -198,7 +198,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         if found is not None and (method, index) == (study.optimise, case.index):
             return found.estimate
         try:
-            return evaluate(vehicle, study.asked(index), study.method(method, threads))
+            return evaluate(vehicle, study.asked(index, case.layout), study.method(method, threads))
         except FAILURES as error:
             if len(study.evaluate) == 1:
                 raise

@@ -59,7 +59,7 @@ def _tried(every: Cases) -> list[int]:
 def _check_design(study: Study, layout: str) -> None:
     vehicle = study.design(layout)
     mechanism = vehicle.mechanism()
-    asked = [one for name in study.indices for one in asked_of(vehicle, study.asked(name))]
+    asked = [one for name in study.indices for one in asked_of(vehicle, study.over_conditions(name))]
     questions = [index.question(case.mechanism()) for case, index in asked]
     if any(map(is_blind, study.methods)):
         for question in questions:
@@ -71,7 +71,7 @@ def _check_design(study: Study, layout: str) -> None:
         check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
-            objective_of(vehicle, study.asked(name), method)
+            objective_of(vehicle, study.asked(name, layout), method)
         bounds_of(vehicle, [limit for several in limits_in(study) for limit in several], method)
 
 

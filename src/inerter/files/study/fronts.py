@@ -30,7 +30,7 @@ class FrontCase:
     def run(self, study: Study, outcomes: Mapping[Case, Outcome], threads: int = 1) -> FrontOutcome:
         """The front. A failure is an outcome with a status and a sentence."""
         limits = [limit for several in limits_in(study) for limit in several]
-        indices = [study.asked(name) for name in study.trade_off]
+        indices = [study.asked(name, self.layout) for name in study.trade_off]
         try:
             with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 method = study.method(str(study.optimise), threads)
@@ -132,7 +132,7 @@ def with_fronts(study: Study, data: xr.Dataset, found: Sequence[FrontOutcome]) -
             designs[row, i] = [design.get(name, np.nan) for name in parameters]
         knees[row, [] if front.knee is None else [front.knee]] = True
         leaps[row, front.jumps] = True
-    indices = {name: study.asked(name) for name in study.trade_off}
+    indices = {name: study.asked(name, layouts[0]) for name in study.trade_off}
     labelled = data.assign_coords(
         criterion=list(indices),
         criterion_title=("criterion", [index.title for index in indices.values()]),

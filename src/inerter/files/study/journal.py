@@ -12,11 +12,16 @@ from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
 from inerter.files.study.fronts import FrontOutcome
 from inerter.files.study.study import Study
+from inerter.files.study.tolerances import ToleranceOutcome
 from inerter.work.journal import Journal
 
 NAME = "journal.jsonl"
-Further = BudgetOutcome | FrontOutcome
-_FURTHER: dict[str, type[Further]] = {"parameter": BudgetOutcome, "jumps": FrontOutcome}  # by a key that others lack
+Further = BudgetOutcome | FrontOutcome | ToleranceOutcome
+_FURTHER: dict[str, type[Further]] = {  # by a key that others lack
+    "parameter": BudgetOutcome,
+    "jumps": FrontOutcome,
+    "effects": ToleranceOutcome,
+}
 
 
 def journal_of(study: Study, path: Path) -> Journal:

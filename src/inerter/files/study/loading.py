@@ -21,6 +21,7 @@ from inerter.files.study.own_indices import own_index, own_index_problems
 from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, shapes
 from inerter.files.study.study import POINTS, Study, elements_used
 from inerter.files.study.sweeps import conditions_of, sweeps_of
+from inerter.files.study.tolerances import tolerance_of
 from inerter.files.study.written import texts_of
 from inerter.indices.registry import index_settings, is_on_road
 from inerter.methods.registry import methods_that, searches
@@ -59,14 +60,17 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     swept, sweep_problems = ((), []) if shape.study.sweep is None else sweeps_of(study, shape.study.sweep)
     study = replace(study, sweeps=swept)
     conditions, condition_problems = conditions_of(study, shape.conditions)
-    study = replace(study, conditions=conditions)
+    spread, spread_problems = tolerance_of(study, shape.study.tolerance or {})
+    study = replace(study, conditions=conditions, tolerance=spread)
     problems += [
         *sweep_problems,
         *condition_problems,
         *limit_problems,
+        *spread_problems,
         *_setting_problems(study, shape),
         *own_index_problems(study.indices, study.own_indices, [*study.trade_off, *(limit.of for limit in limits)]),
         *_front_problems(study, shape),
+        *_scatter_problems(study),
         *method_problems(study),
     ]
     if not problems:
@@ -105,6 +109,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         method_settings=_method_settings(shape),
         trade_off=settings.trade_off,
         points=settings.points or POINTS,
+        quantile=settings.quantile,
         budgets=settings.budgets,
     )
 
@@ -135,13 +140,20 @@ def _setting_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
         yield at(("study", "baseline"), got=shown(study.baseline), expected=wanted, hint=hint)
 
 
+def _scatter_problems(study: Study) -> Iterator[Problem]:
+    if study.quantile is not None and not study.tolerance:
+        yield at(("study", "quantile"), fault="nothing scatters", expected="a tolerance, or no quantile")
+    if study.tolerance and study.sweeps:
+        yield at(("study", "tolerance"), fault="given beside a sweep", expected="one of the two")
+
+
 def _front_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
     place = ("study", "trade_off")
     if shape.study.points is not None and not study.trade_off:
         yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
     if not study.trade_off:
         return
-    several = len({study.asked(name) for name in study.trade_off})
+    several = len({study.index(name) for name in study.trade_off})
     if several not in (2, 3) or several < len(study.trade_off):
         got = f"{len(study.trade_off)} indices" if several == len(study.trade_off) else "the same index twice"
         yield at(place, got=got, expected="two or three that differ")

@@ -178,7 +178,7 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
 
 def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
-    indices = {name: study.asked(name) for name in study.indices}
+    indices = {name: study.asked(name, next(iter(study.layouts))) for name in study.indices}
     swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}
     design = ("layout", "index", *swept)
     sizes = {

@@ -23,6 +23,7 @@ from inerter.files.study.fronts import FrontCase, FrontOutcome, front_cases, fro
 from inerter.files.study.results import Gathered, Pending
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
+from inerter.files.study.tolerances import ToleranceCase, ToleranceOutcome, tolerance_cases, tolerances_csv
 from inerter.files.study.written import write_resolved
 from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
@@ -31,9 +32,9 @@ from inerter.work.pool import Pool, pooled
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
-BUDGETS, FRONTS = "budgets.csv", "fronts.csv"
-NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, FRONTS, VERSIONS, f"{FIGURES}/", REPORT)
-_FurtherCase = BudgetCase | FrontCase
+BUDGETS, FRONTS, TOLERANCES = "budgets.csv", "fronts.csv", "tolerances.csv"
+NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, FRONTS, TOLERANCES, VERSIONS, f"{FIGURES}/", REPORT)
+_FurtherCase = BudgetCase | FrontCase | ToleranceCase
 _Done = dict[_FurtherCase, journals.Further]
 Progress = Callable[[int, int, Outcome | journals.Further | None, int], None]
 
@@ -48,6 +49,7 @@ class StudyResult:
     computed: int  # cases that this run computed; the others were there already
     budgets: tuple[BudgetOutcome, ...] = ()
     fronts: tuple[FrontOutcome, ...] = ()
+    tolerances: tuple[ToleranceOutcome, ...] = ()
     failed: bool = False  # whether a case, a budget or a front has no number at all
 
     @property
@@ -63,8 +65,8 @@ class StudyResult:
 
     @property
     def further(self) -> tuple[journals.Further, ...]:
-        """Budgets and fronts."""
-        return (*self.budgets, *self.fronts)
+        """Budgets, fronts and tolerances."""
+        return (*self.budgets, *self.fronts, *self.tolerances)
 
     def failing(self) -> Iterator[str]:
         """The lines of `failures`, one by one."""
@@ -113,6 +115,7 @@ def run_study(
         gathered, done, computed = _computed(study, results, pool, progress, compiling)
         budgets = tuple(one for case in budget_cases(study) if isinstance(one := done[case], BudgetOutcome))
         fronts = tuple(one for case in front_cases(study) if isinstance(one := done[case], FrontOutcome))
+        tolerances = tuple(one for case in tolerance_cases(study) if isinstance(one := done[case], ToleranceOutcome))
         data = with_fronts(study, gathered.dataset(), fronts)
         write_text(results.draft / RESOLVED, write_resolved(study))
         write_text(results.draft / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
@@ -120,11 +123,14 @@ def run_study(
             write_text(results.draft / BUDGETS, budgets_csv(budgets))
         if fronts:
             write_text(results.draft / FRONTS, fronts_csv(study, fronts))
+        if tolerances:
+            write_text(results.draft / TOLERANCES, tolerances_csv(tolerances))
         write_summary(results.draft / SUMMARY, study, data)
         write_netcdf(results.draft / DATASET, data)
         results.publish()
         kinds = {*gathered.kinds, *(one.status for one in done.values())}
-        result = StudyResult(results.folder, study, data, computed, budgets, fronts, StatusKind.FAILED in kinds)
+        failed = StatusKind.FAILED in kinds
+        result = StudyResult(results.folder, study, data, computed, budgets, fronts, tolerances, failed)
         finish(result, results.draft)
     return result
 
@@ -145,7 +151,7 @@ def _computed(
     journal = journals.journal_of(study, results.place / journals.NAME)
     found = Gathered(study)
     done = _read(journal, found) if results.resume else {}
-    further: list[_FurtherCase] = [*budget_cases(study), *front_cases(study)]
+    further: list[_FurtherCase] = [*budget_cases(study), *front_cases(study), *tolerance_cases(study)]
     pending = found.pending()
     if pending:
         _prepare(pool, study, compiling)

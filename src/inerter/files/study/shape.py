@@ -205,6 +205,16 @@ class Settings(Shape):
     points: Annotated[int | None, whole(3, _MOST_OF_FRONT)] = Field(
         default=None, description="How many designs of a front.", examples=["points = 25"]
     )
+    tolerance: Annotated[dict[str, Any], BeforeValidator(_by_place)] | None = Field(
+        default=None,
+        description="By what part values scatter: what the index then is, and what matters.",
+        examples=['tolerance = { c = "10 %", b = "5 %" }'],
+    )
+    quantile: Annotated[float | None, SHARE] = Field(
+        default=None,
+        description="The part of all scattered designs that is to be at least as good.",
+        examples=["quantile = 0.95"],
+    )
 
 
 class StudyFile(WithVehicle):

@@ -14,10 +14,10 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.vehicles import in_si, vehicle_entry
-from inerter.files.study.conditions import OVER, StudyCondition, condition_of
+from inerter.files.study.conditions import OVER, StudyCondition, condition_of, what_of
 from inerter.files.study.limits import StudyLimit
 from inerter.files.study.own_indices import OwnIndex
-from inerter.files.study.places import Place, with_numbers
+from inerter.files.study.places import Place, element_at, place_of, with_numbers
 from inerter.indices.names import index_names
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
@@ -27,6 +27,8 @@ from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
 from inerter.networks.elements import Element
 from inerter.networks.parser import names
+from inerter.scatter.robust import Quantile
+from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
 from inerter.signals.road import Road
 from inerter.vehicle.vehicle import Vehicle
 
@@ -77,6 +79,8 @@ class Study:
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
     trade_off: tuple[str, ...] = ()  # two or three indices, whose front of each layout is asked for
     points: int = POINTS  # of each front
+    tolerance: dict[str, float] = field(default_factory=dict)  # by what part of itself the number at a place scatters
+    quantile: float | None = None  # of what an index becomes then, which takes its place
     budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
     @property
@@ -97,7 +101,26 @@ class Study:
         """The index that the study calls so, as it asks it."""
         return make_index(self.symbol(name), self.road, self.settings_of(name))
 
-    def asked(self, name: str) -> Asked:
+    def asked(self, name: str, layout: str) -> Asked:
+        """What is asked of a layout for that index: it over the conditions, at its quantile if there is one."""
+        index = self.over_conditions(name)
+        if self.quantile is None or not (spread := self.spread(layout)):
+            return index
+        return Quantile(index, scatter_of(spread, DISTRIBUTIONS[0]), self.quantile, seed=self.seed)
+
+    def spread(self, layout: str) -> dict[str, float]:
+        """By what part of themselves values of a layout scatter, by their names."""
+        if not self.tolerance:
+            return {}
+        names, found = {e for e, layouts in elements_used(self).items() if layout in layouts}, {}
+        for label, part in self.tolerance.items():
+            place = place_of(label)
+            known = what_of(self, place)
+            if known is not None and element_at(place) in ("", *names):
+                found[known[1]] = part
+        return found
+
+    def over_conditions(self, name: str) -> Asked:
         """That index over the conditions of the study, if there are any."""
         index = self.index(name)
         if not self.conditions:
@@ -196,6 +219,8 @@ class Study:
             "conditions": self.over if self.conditions else None,
             "trade_off": list(self.trade_off) or None,
             "points": self.points if self.trade_off else None,
+            "tolerance": self.tolerance or None,
+            "quantile": self.quantile,
             "budgets": list(self.budgets) or None,
         }
         return {key: value for key, value in settings.items() if value is not None}

@@ -52,7 +52,7 @@ def number_of(study: Study, place: Place) -> Number:
     """The number that is to take other values; raises `EntryError` where there is none that can."""
     number, element = number_at(study, place), element_at(place)
     if number is None:
-        raise _unknown(study, place)
+        raise unknown_place(study, place)
     if isinstance(number.value, Free):
         hint = "Fix it, or leave the sweep out."
         raise EntryError(fault=f"{element} is free", expected="an element with a fixed value", hint=hint)
@@ -62,7 +62,8 @@ def number_of(study: Study, place: Place) -> Number:
     return number
 
 
-def _unknown(study: Study, place: Place) -> EntryError:
+def unknown_place(study: Study, place: Place) -> EntryError:
+    """That nothing stands at a place, and what may be meant."""
     if element_at(place) == place.key:
         missing = f"{shown(place.key)} is not in [elements], where there are {some(study.elements)}"
         return EntryError(fault=missing, hint=nearest(place.key, places(study)))

@@ -43,6 +43,7 @@ from inerter.files.common.shape import (
     vehicle_shapes,
 )
 from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.ties import TieEntry, is_tie, tie_entry
 from inerter.files.common.vehicles import models
 from inerter.files.study.conditions import OVER
 from inerter.files.study.limits import LimitEntry, LimitShape
@@ -160,13 +161,19 @@ class Settings(Shape):
     budgets: Annotated[tuple[str, ...], some_names("f")] = ()
 
 
+_AnyElement = Annotated[
+    Annotated[ElementEntry, Tag("<own>")] | Annotated[TieEntry, PlainValidator(tie_entry), Tag("<tied>")],
+    Discriminator(lambda value: "<tied>" if is_tie(value) else "<own>"),
+]
+
+
 class StudyFile(WithVehicle):
     """The whole file, but for what is made of quantities and rows."""
 
     title: Annotated[str | None, PlainValidator(text)] = None
     vehicle: Any
     road: Any
-    elements: dict[ElementName, ElementEntry] = Field(
+    elements: dict[ElementName, _AnyElement] = Field(
         min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
     )
     layouts: Any
@@ -208,7 +215,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         **vehicles,
         ("road",): RoadShape,
         **kinds,
-        ("elements", "*", "<range>"): Range,
+        ("elements", "*", "<own>", "<range>"): Range,
         **tables,
         ("study",): settings,
         ("study", "sweep", "*", "<range>"): SweepRange,

@@ -45,6 +45,8 @@ from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort
 from inerter.indices.suspension_travel import SuspensionTravel as SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
+from inerter.indices.weighted import WeightedMotion as WeightedMotion
+from inerter.indices.weighted import weighted as weighted
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare
@@ -105,10 +107,12 @@ from inerter.scatter.robust import Quantile as Quantile
 from inerter.scatter.robust import robust as robust
 from inerter.scatter.tolerance import Tolerance as Tolerance
 from inerter.scatter.tolerance import tolerance as tolerance
+from inerter.signals.coherence import Coherence as Coherence
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
 from inerter.signals.harmonics import multisine as multisine
 from inerter.signals.harmonics import sine as sine
+from inerter.signals.harmonics import two_tracks as two_tracks
 from inerter.signals.records import held_noise as held_noise
 from inerter.signals.road import ROAD_CLASSES as ROAD_CLASSES
 from inerter.signals.road import Road as Road

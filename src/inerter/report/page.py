@@ -137,7 +137,7 @@ def environment(*packages: str) -> Environment:
 
 def printed_sentence(sentence: str) -> str:
     """A sentence with a minus where there is one, and per cent on the line of their number."""
-    text = sentence.replace(" +- ", " ± ").replace(" %", f"{_SPACE}%")
+    text = sentence.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}").replace(" %", f"{_SPACE}%")
     return re.sub(r" -(?=[\d.]|inf\b)", " −", text)
 
 

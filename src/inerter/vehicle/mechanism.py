@@ -113,6 +113,8 @@ class Mechanism:
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
             object.__setattr__(self, name, _parts(name, getattr(self, name), kind))
+        if self.ground_moves:
+            object.__setattr__(self, "forces", _with_ground(self.forces, self.coordinates))
         _check_measures(self.measures)
         _check_names(self)
         _check_numbers(self)
@@ -133,8 +135,7 @@ class Mechanism:
         """
         if self.ground_moves:
             return self
-        masses = {c.name: -c.inertia for c in self.coordinates if not c.angle}
-        return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, masses)), ground_moves=True)
+        return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, {})), ground_moves=True)
 
     def on_one_track(self) -> Mechanism:
         """The same mechanism with tyres that meet the road at once on one road, where it lies alike on both sides.
@@ -197,6 +198,12 @@ def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
         if not isinstance(part, kind) or parts == (given,):
             raise MechanismError(f"The {name} of a mechanism are a tuple of {kind.__name__}(...), got {given!r}.")
     return parts
+
+
+def _with_ground(forces: Iterable[Force], coordinates: Iterable[Coordinate]) -> tuple[Force, ...]:
+    """The forces, that of the ground on the masses as they are now."""
+    masses = {c.name: -c.inertia for c in coordinates if not c.angle}
+    return tuple(replace(f, port=masses) if f.name == GROUND_ACCELERATION else f for f in forces)
 
 
 def _check_measures(measures: object) -> None:

@@ -1,5 +1,6 @@
 """Every public name and where it lives: type checkers read it, and so does the package itself."""
 
+from inerter.app.serve import serve as serve
 from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
@@ -97,12 +98,22 @@ from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
 from inerter.records.result import Response as Response
 from inerter.records.writers import write_record as write_record
+from inerter.scatter.robust import Quantile as Quantile
+from inerter.scatter.robust import robust as robust
+from inerter.scatter.tolerance import Tolerance as Tolerance
+from inerter.scatter.tolerance import tolerance as tolerance
+from inerter.roads.iri import iri as iri
+from inerter.roads.profile import Profile as Profile
+from inerter.roads.reading import profile as profile
+from inerter.roads.reading import read_profile as read_profile
+from inerter.roads.spectrum import road_spectrum as road_spectrum
+from inerter.signals.coherence import Coherence as Coherence
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
 from inerter.signals.harmonics import multisine as multisine
 from inerter.signals.harmonics import sine as sine
+from inerter.signals.harmonics import two_tracks as two_tracks
 from inerter.signals.records import held_noise as held_noise
-from inerter.signals.records import profile as profile
 from inerter.signals.road import ROAD_CLASSES as ROAD_CLASSES
 from inerter.signals.road import Road as Road
 from inerter.signals.signal import Signal as Signal
@@ -119,6 +130,8 @@ from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
+from inerter.trade_off.front import Front as Front
+from inerter.trade_off.pareto import pareto as pareto
 from inerter.vehicle.absorber import Absorber as Absorber
 from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar

@@ -6,13 +6,10 @@ import json
 import os
 import shlex
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
-from textwrap import indent, wrap
-from typing import Any
-
-import numpy as np
+from textwrap import wrap
 
 from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
@@ -27,12 +24,11 @@ from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.budgets import budget_lines
 from inerter.report.findings import headlines
-from inerter.report.json_data import json_data
 from inerter.report.page import write_report
+from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table, wrapped
 
 _MOST = 20  # designs that are told one by one
-_JSON = {"improvement_error": "improvement_error_percent"}
 
 
 def run(
@@ -74,7 +70,7 @@ def run(
         )
     _say(f"report: {folder / REPORT}")
     if as_json:
-        for text in _as_json(result):
+        for text in as_text(result):
             print(text, end="")
     else:
         print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrapped(text)))
@@ -142,43 +138,6 @@ def _judge(result: StudyResult) -> int:
     if result.not_ok > _MOST:
         _say(f"and {result.not_ok - _MOST} more like these; {result.folder / SUMMARY} tells all")
     return int(result.failed)
-
-
-def _as_json(result: StudyResult) -> Iterator[str]:
-    """All results as JSON, in pieces: a list of a million designs is never held."""
-    budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
-    whole = json.dumps({**result.data.attrs, "designs": [None], **budgets}, indent=2)
-    before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
-    separator = "\n"
-    yield before
-    for design in _designs(result):
-        yield separator + indent(json.dumps(design, indent=2), "    ")
-        separator = ",\n"
-    yield f"{after}\n"
-
-
-def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
-    """What there is to say of each design and method."""
-    data = result.data
-    errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
-    arrays = {name: data[name].values for name in ("value", "improvement", "status", "parameter_value", *errors)}
-    labels = {str(dim): data[dim].values.tolist() for dim in data.value.dims}
-    units = dict(zip(labels["index"], data.index_unit.values.tolist(), strict=True))
-    parameters = data.parameter.values.tolist()
-    where = data.value.dims.index("method")
-    for place in np.ndindex(data.value.shape):
-        design = place[:where] + place[where + 1 :]
-        names = {dim: column[i] for (dim, column), i in zip(labels.items(), place, strict=True)}
-        values = zip(parameters, arrays["parameter_value"][design].tolist(), strict=True)
-        yield {
-            **names,
-            "value": json_data(arrays["value"][place].item()),
-            "unit": units[names["index"]],
-            "improvement_percent": json_data(arrays["improvement"][place].item()),
-            **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
-            "status": arrays["status"][design],
-            "parameters": {name: value for name, value in values if np.isfinite(value)},
-        }
 
 
 def _say(message: str) -> None:

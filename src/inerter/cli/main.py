@@ -16,6 +16,7 @@ from typing import Annotated
 from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
+from inerter.app.serve import LIMIT, RECORD_LIMIT
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
 from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
 from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
@@ -31,6 +32,7 @@ EXAMPLES = """Examples:
   inerter rig examples/rig_fit.toml -o fit.csv
   inerter identify fit.csv --model ball-screw
   inerter reproduce    lists the papers
+  inerter serve    opens the workbench in the browser
 
 Exit codes: 0 done, 1 the work failed, 2 the request was wrong, 130 interrupted by Ctrl-C."""
 
@@ -191,6 +193,38 @@ def rig(
     from inerter.cli.rig import rig as command
 
     return command(config, output, force=force)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter serve
+  inerter serve examples/quarter-car.toml
+  inerter serve my-study.toml --port 8722 --no-browser"""
+)
+def serve(
+    study: Path | None = None,
+    /,
+    *,
+    port: Annotated[int | None, Parameter(help="The port to listen on; a free one if left out.")] = None,
+    browser: Annotated[bool, Parameter(help="Whether to open the page.")] = True,
+    limit: Annotated[int, Parameter(help="Bytes that a request may have.")] = LIMIT,
+    record_limit: Annotated[int, Parameter(help="Bytes that a measured record may have.")] = RECORD_LIMIT,
+    folder: Annotated[
+        Path | None, Parameter(help="Where long work and records are kept; until the end only if left out.")
+    ] = None,
+) -> int:
+    """Open the workbench in the browser: draw a strut, move a slider, see all that follows.
+
+    It listens on this machine alone, and prints its link. Ctrl-C ends it.
+
+    Parameters
+    ----------
+    study
+        The study file (TOML) to begin with.
+    """
+    from inerter.cli.serve import serve as command
+
+    return command(study, port, folder, (limit, record_limit), browser=browser)
 
 
 app.command(

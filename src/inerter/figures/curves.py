@@ -11,12 +11,12 @@ Matrix = NDArray[np.float64]
 _MOST_POINTS = 4000  # of a curve; more are drawn as the range that they cover
 
 
-def thinned(time: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
-    """The same curve to the eye with at most 4000 points: of each piece the lowest and the highest.
+def thinned(time: Matrix, values: Matrix, most: int = _MOST_POINTS) -> tuple[Matrix, Matrix]:
+    """The same curve to the eye with at most so many points: of each piece the lowest and the highest.
 
     Values that are no numbers are breaks in the curve.
     """
-    size = -(-2 * time.size // _MOST_POINTS)
+    size = -(-2 * time.size // most)
     if size < 3:
         return time, values
     at = np.array([i for piece in _pieces(time.size, size) for i in _extremes(values, piece)])

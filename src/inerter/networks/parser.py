@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import NoReturn
 
@@ -11,6 +11,19 @@ from inerter.errors import NetworkError
 from inerter.networks.elements import Element, Network, Parallel, Series, check_network
 
 _DEEPEST = 100
+
+
+class ExpressionError(NetworkError):
+    """An expression that is no network, and the place in it, counted from 0, where that shows."""
+
+    def __init__(self, text: str, at: int) -> None:
+        super().__init__(text, at)
+        self.at = at
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 _TOKEN = re.compile(r"\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()\-]))")
 
 
@@ -26,7 +39,27 @@ def network(expression: str, /, **parts: Network) -> Network:
     >>> network("k - b", k=Spring(1e3), b=Inerter(20.0))
     Series(parts=(Spring(stiffness=1000.0, name='k'), Inerter(inertance=20.0, name='b')))
     """
-    return _Parser(expression, _tokens(expression), {n: _named(check_network(p), n) for n, p in parts.items()}).parse()
+    known = {name: _named(check_network(part), name) for name, part in parts.items()}
+    return _joined(parsed(expression, known), known)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of an expression: a name, or parts joined; it is `expression[begin:end]`, without brackets around it."""
+
+    begin: int
+    end: int
+    name: str = ""
+    sign: str = ""  # that joins its parts: "|" or "-"
+    parts: tuple[Part, ...] = ()
+
+
+def parsed(expression: str, known: Container[str] | None = None) -> Part:
+    """What an expression joins, each part with its place in the text.
+
+    Raises `ExpressionError` for a syntax error, or for a name that is not `known` where that is given.
+    """
+    return _Parser(expression, _tokens(expression), known).parse()
 
 
 def names(expression: str) -> tuple[str, ...]:
@@ -59,35 +92,45 @@ def written(network: Network, names: Iterable[str]) -> str:
     return text(network, "")
 
 
+def _joined(part: Part, known: Mapping[str, Network]) -> Network:
+    """The network that a part of an expression stands for."""
+    if part.name:
+        return known[part.name]
+    first, *rest = (_joined(each, known) for each in part.parts)
+    for other in rest:
+        first = first | other if part.sign == "|" else first - other
+    return first
+
+
 @dataclass
 class _Parser:
     expression: str
     tokens: list[tuple[str, int]]
-    parts: Mapping[str, Network]
+    known: Container[str] | None
     position: int = 0
     depth: int = 0
 
-    def parse(self) -> Network:
+    def parse(self) -> Part:
         result = self._parallel()
         if self._next() is not None:
             self._fail("expected '|', '-' or the end here")
         return result
 
-    def _parallel(self) -> Network:
-        result = self._series()
-        while self._next() == "|":
-            self.position += 1
-            result = result | self._series()
-        return result
+    def _parallel(self) -> Part:
+        return self._several("|", self._series)
 
-    def _series(self) -> Network:
-        result = self._atom()
-        while self._next() == "-":
-            self.position += 1
-            result = result - self._atom()
-        return result
+    def _series(self) -> Part:
+        return self._several("-", self._atom)
 
-    def _atom(self) -> Network:
+    def _several(self, sign: str, one: Callable[[], Part]) -> Part:
+        """One part, or as many as `sign` joins, with the brackets that stand around them."""
+        begin, parts = self._place(), [one()]
+        while self._next() == sign:
+            self.position += 1
+            parts.append(one())
+        return parts[0] if len(parts) == 1 else Part(begin, self._end(), sign=sign, parts=tuple(parts))
+
+    def _atom(self) -> Part:
         token = self._next()
         if token == "(":
             self.position += 1
@@ -102,19 +145,31 @@ class _Parser:
             return result
         if token is None or not token[0].isalpha():
             self._fail("expected a name or '(' here")
-        if token not in self.parts:
-            known = ", ".join(self.parts) or "none"
-            self._fail(f"there is no element named {token!r} (defined: {known})")
+        if self.known is not None and token not in self.known:
+            names = ", ".join(self.known) if isinstance(self.known, Iterable) else ""
+            self._fail(f"there is no element named {token!r} (defined: {names or 'none'})")
+        begin = self._place()
         self.position += 1
-        return self.parts[token]
+        return Part(begin, begin + len(token), token)
 
     def _next(self) -> str | None:
         return self.tokens[self.position][0] if self.position < len(self.tokens) else None
 
+    def _place(self) -> int:
+        """Where the next token begins."""
+        return self.tokens[self.position][1] if self.position < len(self.tokens) else len(self.expression)
+
+    def _end(self) -> int:
+        """Where the last token ends."""
+        token, begin = self.tokens[self.position - 1]
+        return begin + len(token)
+
     def _fail(self, problem: str) -> NoReturn:
-        inside = self.position < len(self.tokens)
-        column = self.tokens[self.position][1] if inside else len(self.expression)
-        raise NetworkError(f"Network {self.expression!r}, column {column + 1}: {problem}.")
+        raise _wrong(self.expression, self._place(), f"{problem}.")
+
+
+def _wrong(expression: str, place: int, problem: str) -> ExpressionError:
+    return ExpressionError(f"Network {expression!r}, column {place + 1}: {problem}", place)
 
 
 def _tokens(expression: str) -> list[tuple[str, int]]:
@@ -125,15 +180,13 @@ def _tokens(expression: str) -> list[tuple[str, int]]:
     while position < end:
         match = _TOKEN.match(expression, position)
         if match is None:
-            column = position + len(expression[position:]) - len(expression[position:].lstrip()) + 1
-            raise NetworkError(
-                f"Network {expression!r}, column {column}: {expression[column - 1]!r} is not part of the syntax. "
-                f"Use names, '|' (parallel), '-' (series) and brackets."
-            )
+            place = position + len(expression[position:]) - len(expression[position:].lstrip())
+            remedy = "Use names, '|' (parallel), '-' (series) and brackets."
+            raise _wrong(expression, place, f"{expression[place]!r} is not part of the syntax. {remedy}")
         result.append((match.group(1) or match.group(2), match.start(match.lastindex or 0)))
         position = match.end()
     if not result:
-        raise NetworkError("A network expression is empty. Write, for example, 'k | c - b'.")
+        raise ExpressionError("A network expression is empty. Write, for example, 'k | c - b'.", 0)
     return result
 
 

@@ -69,11 +69,11 @@ def _layout(source: str, head: bytes) -> TableLayout:
         raise RecordError(f"{source} is empty; expected a header with names and units, and rows of numbers.")
     lines, encoding = _decoded(source, head, raw)
     for at, line in enumerate(lines):
-        for delimiter in _DELIMITERS:
-            cells = _cells(line, delimiter)
-            if len(cells) >= 2 and _is_data(lines[at : at + 3], delimiter, len(cells)):
-                offset = start + sum(map(len, raw[:at]))
-                return _described(source, lines, at, delimiter, offset, encoding)
+        delimiters = [delimiter for delimiter in _DELIMITERS if _divides(lines[at : at + 3], delimiter)]
+        if delimiters:  # one that leaves numbers alone goes before one that leaves others
+            delimiter = next((d for d in delimiters if all(map(_is_value_or_missing, _cells(line, d)))), delimiters[0])
+            offset = start + sum(map(len, raw[:at]))
+            return _described(source, lines, at, delimiter, offset, encoding)
     first = next((line for line in lines if line.strip()), "with one very long line")
     raise RecordError(
         f"{source}: no rows of numbers in two or more columns were found; the file begins {shown(first.strip())}. "
@@ -111,15 +111,20 @@ def _is_number(cell: str) -> bool:
     return _NUMBER.fullmatch(cell) is not None
 
 
-def _is_data(lines: list[str], delimiter: str | None, columns: int) -> bool:
+def _is_value_or_missing(cell: str) -> bool:
+    return _is_number(cell) or cell.casefold() in MISSING
+
+
+def _divides(lines: list[str], delimiter: str | None) -> bool:
     """Whether these lines look like rows of numbers: as many cells, two numbers or one and the rest missing."""
+    columns = len(_cells(lines[0], delimiter))
     rows = [cells for line in lines if (cells := _cells(line, delimiter))]
-    return all(len(cells) == columns and _is_row(cells) for cells in rows)
+    return columns >= 2 and all(len(cells) == columns and _is_row(cells) for cells in rows)
 
 
 def _is_row(cells: list[str]) -> bool:
     numbers = sum(map(_is_number, cells))
-    return numbers >= 2 or (numbers == 1 and all(_is_number(cell) or cell.casefold() in MISSING for cell in cells))
+    return numbers >= 2 or (numbers == 1 and all(map(_is_value_or_missing, cells)))
 
 
 def _described(

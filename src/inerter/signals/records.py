@@ -40,22 +40,6 @@ def held_noise(
     return Signal.sampled(time, np.resize(value, count + 1), "zero", periodic=True, speed=speed, label=label)
 
 
-def profile(path: str | os.PathLike[str], speed: float) -> Sampled:
-    """A measured road, driven at `speed` [m/s] from its first point at t = 0.
-
-    `path` is a CSV file with a column of distances and one of heights, whose units stand in the header, such as
-    `distance [m], height [mm]`. The points are joined by a cubic spline.
-
-    Raises `SignalError`, which names the line, for a file that cannot be read as such.
-    """
-    speed = positive("The speed over a profile", speed, "m/s")
-    if not isinstance(path, str | os.PathLike):
-        raise SignalError(f"A profile is read from the path of a CSV file, got {path!r}.")
-    name = os.fspath(path)
-    distance, height = _columns(name, "profile", {"distance": "m", "height": "m"})
-    return Signal.sampled((distance - distance[0]) / speed, height, speed=speed, label=f"profile {Path(name).name}")
-
-
 def recorded(
     path: str | os.PathLike[str],
     unit: str = "m",

@@ -22,13 +22,24 @@ _MOST, _LONGEST = 20, 600  # problems, and characters of each
 _TELLING = {"vehicle": "model", "signal": "kind"}  # the key that decides which others a section has
 
 
-def refusal(path: Path, problems: Iterable[Problem]) -> StudyError:
+class FileError(StudyError):
+    """A file that cannot be used, and its problems as data."""
+
+    def __init__(self, text: str, problems: tuple[Problem, ...]) -> None:
+        super().__init__(text, problems)
+        self.problems = problems
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def refusal(path: Path, problems: Iterable[Problem]) -> FileError:
     """The error that reports the `problems` of the file, one a line: so many as a reader may want to see."""
     every = list(problems)
     lines = [f"{path.name}: {shortened(str(problem))}" for problem in every[:_MOST]]
     if len(every) > _MOST:
         lines.append(f"{path.name}: and {len(every) - _MOST} problems more.")
-    return StudyError("\n".join(lines))
+    return FileError("\n".join(lines), tuple(every))
 
 
 def shortened(line: str) -> str:

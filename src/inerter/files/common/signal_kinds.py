@@ -10,9 +10,10 @@ from pydantic import PlainValidator
 
 from inerter.errors import RowError
 from inerter.files.common.entries import any_quantity, one_of, positive, text, whole, yes_or_no
+from inerter.roads.reading import profile
 from inerter.rows import Rows, made_of_rows
 from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
-from inerter.signals.records import held_noise, profile, recorded
+from inerter.signals.records import held_noise, recorded
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
 from inerter.signals.transients import bump, chirp, step

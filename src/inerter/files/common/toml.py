@@ -27,7 +27,11 @@ def read_shape(path: Path, what: str, file: type[File], shapes: Shapes) -> File:
 
     Raises `StudyError` as `read_tables` does, or with a line for every entry that does not fit.
     """
-    tables = read_tables(path, what)
+    return shape_of(read_tables(path, what), path, file, shapes)
+
+
+def shape_of(tables: Mapping[str, Any], path: Path, file: type[File], shapes: Shapes) -> File:
+    """Tables as the shape of a kind of file; `path`, where they are from, is for messages."""
     try:
         return file.model_validate(tables)
     except ValidationError as error:
@@ -48,6 +52,11 @@ def read_tables(path: Path, what: str) -> dict[str, Any]:
         raise StudyError(f"{path}: there is no such file; expected {what}. Check the path.") from None
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror}); expected {what}.") from None
+    return tables_of(data, path, what)
+
+
+def tables_of(data: bytes, path: Path, what: str) -> dict[str, Any]:
+    """The tables that the bytes of a TOML file say; raises `StudyError` where they are no TOML."""
     if len(data) > _LARGEST:
         raise refusal(
             path, [Problem(fault=f"larger than {_LARGEST} bytes", expected=f"{what}, which is a page of TOML")]

@@ -12,7 +12,7 @@ from inerter.files.common.layouts import element_of, network_problems
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest
-from inerter.files.common.toml import read_shape
+from inerter.files.common.toml import read_tables, shape_of
 from inerter.files.identification.shape import CHOOSE, SHAPES, IdentificationFile
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
@@ -86,7 +86,12 @@ def load_identification(path: str | Path) -> IdentificationRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a configuration for inerter identify", IdentificationFile, SHAPES)
+    return identification_of(read_tables(path, "a configuration for inerter identify"), path)
+
+
+def identification_of(tables: Mapping[str, Any], path: Path) -> IdentificationRequest:
+    """The configuration that tables say; `path`, where they are from, is for messages."""
+    shape = shape_of(tables, path, IdentificationFile, SHAPES)
     record, settings = shape.record.model_dump(), shape.fit.model_dump()
     roles = ("displacement", "force", "time", "velocity", "acceleration")
     channels = {role: value for role in roles if (value := record.pop(role)) is not None}

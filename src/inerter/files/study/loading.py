@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
-from inerter.files.common.toml import read_shape
+from inerter.files.common.toml import read_tables, shape_of
 from inerter.files.common.vehicles import values_of, vehicle_problems
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, SweepRange, shapes
@@ -25,6 +26,8 @@ from inerter.signals.road import Road
 from inerter.units import shown
 from inerter.writing import characters
 
+WHAT = "a study file"
+
 
 def load_study(path: str | Path) -> Study:
     """The study in the TOML file at `path`.
@@ -32,8 +35,15 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a study file", *shapes())
-    study = _resolve(path, shape)
+    return study_of(read_tables(path, WHAT), path)
+
+
+def study_of(tables: Mapping[str, Any], path: Path) -> Study:
+    """The study that the tables of a file say; `path`, where they are from or may go to, is for messages and the title.
+
+    Raises `StudyError` as `load_study` does.
+    """
+    study = _resolve(path, shape_of(tables, path, *shapes()))
     problems = [
         *vehicle_problems(study.model, study.vehicle),
         *layout_problems(study.model, study.vehicle, study.elements, study.layouts),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from inerter.errors import SignalError
-from inerter.signals.records import profile
+from inerter.roads.reading import profile
 
 
 @pytest.fixture
@@ -35,22 +35,22 @@ def test_columns_in_either_order_and_any_unit_of_length(road_file):
 
 HEADER = "distance [m], height [mm]\n"
 BAD = {
-    "no units": ("distance, height\n0,0\n1,1\n", "line 1: expected a header with units, such as"),
-    "no header": ("0,0\n1,1\n", 'line 1: expected a header with units, .* got "0,0"'),
-    "one unit": ("distance [m], height\n0,0\n1,1\n", "line 1: expected a header with units"),
-    "twice the same": ("height [m], height [mm]\n0,0\n1,1\n", "line 1: expected a header"),
-    "unknown unit": ("distance [m], height [furl]\n0,0\n1,1\n", 'line 1: .*the unit "furl" is not known'),
-    "unit of another kind": ("distance [s], height [mm]\n0,0\n1,1\n", "line 1: .*unit of another kind"),
-    "a word": (HEADER + "0, 0\n1, one\n2, 1\n", 'line 3: expected a finite number .* got " one"'),
-    "not a number": (HEADER + "0, 0\n1, nan\n", "line 3: expected a finite number"),
-    "an empty cell": (HEADER + "0,\n1, 1\n", "line 2: expected a finite number"),
-    "a third cell": (HEADER + "0, 0, 5\n", "line 2: expected two cells with a comma between them, got 3"),
-    "semicolons": ("distance [m]; height [mm]\n0; 0\n", "line 1: expected two cells .* got 1"),
-    "decimal comma": (HEADER + "0,5, 1,2\n", "line 2: expected two cells .* got 4"),
-    "backwards": (HEADER + "0, 0\n\n2, 0\n1, 0\n", "line 5: the distances .* must increase, got 1 m after 2 m"),
-    "one point": (HEADER + "0, 0\n", "needs at least two points, got 1"),
-    "nothing": ("\n\n", "is empty: expected a header"),
-    "an open quote": (HEADER + '"0, 0\n', "cannot be read as a CSV file"),
+    "no units": ("distance, height\n0,0\n1,1\n", "'distance' has no unit. Name the unit of the distance"),
+    "no header": ("0,0\n1,1\n", "has no header, and several columns increase throughout"),
+    "no header, no unit": ("0,0\n1,1\n2,0\n", "'column 0' has no unit"),
+    "one unit": ("distance [m], height\n0,0\n1,1\n", "'height' has no unit. Name the unit of the height"),
+    "twice the same": ("height [m], height [mm]\n0,0\n1,1\n", r"height \[m\] and height \[mm\] may both be the height"),
+    "unknown unit": ("distance [m], height [furl]\n0,0\n1,1\n", "the unit \"furl\" of 'height' is none of length"),
+    "unit of another kind": ("distance [s], height [mm]\n0,0\n1,1\n", 'the unit "s" .* is none of length'),
+    "a word": (HEADER + "0, 0\n1, 1\n2, 1\n3, one\n", 'line 5: expected a number with a decimal point, got "one"'),
+    "not a number": (HEADER + "0, 0\n1, nan\n", "height .* missing or no finite number at 1 points, .* point 1"),
+    "an empty cell": (HEADER + "0, 1\n1,\n", "height .* missing or no finite number"),
+    "a third cell": (HEADER + "0, 0, 5\n1, 0, 5\n", "line 1: the header has 2 columns, the rows below it have 3"),
+    "decimal commas among commas": (HEADER + "0,5, 1,2\n1,5, 1,2\n", "needs another delimiter than a comma"),
+    "backwards": (HEADER + "0, 0\n\n2, 0\n1, 0\n", "must increase, but point 2 is at 1 m after 2 m"),
+    "one point": (HEADER + "0, 0\n", "a vector of two or more real numbers"),
+    "nothing": ("\n\n", "is empty; expected a header"),
+    "an open quote": (HEADER + '"0, 0\n', "no rows of numbers"),
 }
 
 
@@ -71,12 +71,12 @@ def test_no_file(tmp_path):
 
 def test_not_text(tmp_path):
     (tmp_path / "road.csv").write_bytes(b"\xff\xfe\x00\x81")
-    with pytest.raises(SignalError, match="cannot be read as a CSV file"):
+    with pytest.raises(SignalError, match=r"road\.csv is written in UTF-16"):
         profile(tmp_path / "road.csv", 20.0)
 
 
 def test_bad_arguments(road_file):
     with pytest.raises(SignalError, match=r"speed over a profile must be a positive number of m/s, got 0\.0"):
         profile(road_file(HEADER + "0,0\n1,1\n"), 0.0)
-    with pytest.raises(SignalError, match="read from the path of a CSV file, got 5"):
+    with pytest.raises(SignalError, match="read from the path of a CSV or CRG file, got 5"):
         profile(5, 20.0)

@@ -1,0 +1,1 @@
+"""The workbench: a page in the browser, and the JSON interface behind it."""

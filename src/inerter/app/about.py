@@ -1,0 +1,105 @@
+"""What there is to choose from, told from the tables of rows."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import inerter
+from inerter.app.documents import read
+from inerter.app.kinds import KINDS
+from inerter.app.panels import PANELS
+from inerter.fields import Field, fields_of, mounts_of
+from inerter.files.common.shape import ROAD
+from inerter.files.common.signal_kinds import SIGNALS
+from inerter.files.identification.shape import CHOOSE
+from inerter.identification.models import MODELS
+from inerter.indices.registry import INDICES
+from inerter.methods.linear import CONVENTIONS
+from inerter.methods.registry import METHODS, averages, method_settings, searches, words_of
+from inerter.networks.elements import Element
+from inerter.networks.elements.registry import ELEMENTS
+from inerter.vehicle.registry import VEHICLES
+
+_FOLDERS = ("app/examples", "../../examples")  # in the package, and beside its sources
+
+
+def about() -> dict[str, Any]:
+    """Rows of every kind, each with what a page needs to show it."""
+    return {
+        "version": inerter.__version__,
+        "elements": [_element(kind) for kind in ELEMENTS.values()],
+        "indices": [_index(symbol) for symbol in INDICES],
+        "methods": [_method(name) for name in METHODS],
+        "vehicles": [
+            {
+                "key": key,
+                "fields": _fields(fields_of(kind)),
+                "mounts": list(mounts_of(kind)),
+                "moved": kind.moved,
+                "forces": dict(kind.forces),
+            }
+            for key, kind in VEHICLES.items()
+        ],
+        "road": _fields(ROAD),
+        "signals": [_signal(key) for key in SIGNALS],
+        "conventions": list(CONVENTIONS),
+        "panels": [{"key": panel.key, "title": panel.title} for panel in PANELS.values()],
+        "work": [{"key": kind.key, "title": kind.title, "keys": list(kind.keys)} for kind in KINDS.values()],
+        "models": [*MODELS, CHOOSE],
+        "examples": list(examples()),
+    }
+
+
+@lru_cache(1)
+def examples() -> dict[str, Path]:
+    """The study files that come with the package, by their names."""
+    here = Path(__file__).parents[1]
+    folder = next((here / place for place in _FOLDERS if (here / place).is_dir()), here / _FOLDERS[0])
+    found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    return {name: path for name, path in found.items() if not read(path.read_text(encoding="utf-8"))["problems"]}
+
+
+def _element(kind: type[Element]) -> dict[str, Any]:
+    said = ("key", "symbol", "quantity", "unit", "sentence", "example", "may_vanish", "tried")
+    return {
+        **{name: getattr(kind, name) for name in said},
+        "more": _fields(kind.more),
+        "switches": kind.switch is not None,
+        "states": list(kind.switch.states.values()) if kind.switch else [],
+        "drawing": [[list(point) for point in line] for line in kind.drawing],
+    }
+
+
+def _index(symbol: str) -> dict[str, Any]:
+    kind = INDICES[symbol]
+    return {
+        "symbol": symbol,
+        **{name: text for name in ("title", "unit", "response") if isinstance(text := getattr(kind, name), str)},
+        "settings": _fields(fields_of(kind)),
+    }
+
+
+def _method(name: str) -> dict[str, Any]:
+    kind: Any = METHODS[name]
+    return {
+        "name": name,
+        "words": words_of(name),
+        "sees": kind.sees.name.lower(),
+        "searches": searches(name),
+        "averages": averages(name),
+        "settings": _fields(method_settings(name)),
+    }
+
+
+def _signal(key: str) -> dict[str, Any]:
+    kind = SIGNALS[key]
+    keys = [{"key": name, "unit": told.unit, "example": told.example} for name, told in kind.keys.items()]
+    return {"key": key, "keys": keys, "of_roads": kind.of_roads}
+
+
+def _fields(fields: Iterable[Field]) -> list[dict[str, Any]]:
+    return [dataclasses.asdict(field) for field in fields]

@@ -1,0 +1,321 @@
+"""The answers of panels: each is a function from a study and the body of a request to data that JSON can hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pkgutil import resolve_name
+from typing import Any
+
+import numpy as np
+
+from inerter.app.designs import Design, baseline_of, design_of, designs_of
+from inerter.app.documents import study_from
+from inerter.app.histories import history
+from inerter.app.panels import PANELS
+from inerter.app.wire import encoded
+from inerter.errors import DesignError, Status, StatusKind, StudyError
+from inerter.files.study.cases import FAILURES, Case, Outcome, run_case
+from inerter.files.study.method_problems import budget_method
+from inerter.files.study.responses import responses
+from inerter.files.study.study import Study
+from inerter.methods.compare import Comparison, compare
+from inerter.methods.method import Estimate, evaluate
+from inerter.methods.registry import DEFAULT, methods_that, searches
+from inerter.networks.elements import Element
+from inerter.networks.elements.algebra import Network, Parallel
+from inerter.optimisation.budget import budget as find_budget
+from inerter.optimisation.threads import one_blas_thread
+from inerter.scatter.tolerance import tolerance
+from inerter.systems.graph import full_graph
+from inerter.systems.outputs import outputs
+
+Body = Mapping[str, Any]
+Answer = dict[str, Any]
+
+
+_SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
+_FIRST = {
+    "vehicle": {
+        "model": "quarter-car",
+        "sprung_mass": "250 kg",
+        "unsprung_mass": "35 kg",
+        "tyre_stiffness": "150 kN/m",
+    },
+    "road": {"speed": "25 m/s", "roughness": "5e-7 m^3/cycle"},
+    "elements": {"k": "120 kN/m", "c": "2 kN s/m"},
+    "layouts": {"S1": "k | c"},
+    "study": {"indices": ["J1"]},
+}
+
+
+def first() -> None:
+    """Answer once what is asked most, so that nothing is left to be loaded."""
+    for key in ("indices", "response"):
+        encoded(answered(key, {"study": _FIRST}))
+
+
+def answered(key: str, body: Body) -> Answer:
+    """The answer of a panel.
+
+    Raises what the library raises of what was asked.
+    """
+    with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        answer: Callable[[Study, Body], Answer] = resolve_name(PANELS[key].home)
+        return answer(study_from(body["study"]), body)
+
+
+def indices(study: Study, body: Body) -> Answer:
+    designs = designs_of(study, body)
+    baseline = baseline_of(study, body, designs)
+    indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
+    known = {(index, method): _estimate(study, baseline, index, method) for index in indices for method in methods}
+    return {
+        "designs": [
+            {
+                **design.told(study),
+                "results": [
+                    _result(study, design, baseline, known[index, method], index, method)
+                    for index in indices
+                    for method in methods
+                ],
+            }
+            for design in designs
+        ],
+        "baseline": None if baseline is None else baseline.told(study),
+    }
+
+
+def _estimate(study: Study, design: Design | None, index: str, method: str) -> Estimate | None:
+    """The value of an index; where it cannot be had, nan with a status that says why."""
+    if design is None:
+        return None
+    asked, how = study.index(index), study.method(method)
+    try:
+        return evaluate(design.mechanism, asked, how)
+    except FAILURES as error:
+        return Estimate(np.nan, asked.unit, Status(StatusKind.FAILED, str(error)))
+
+
+def _result(
+    study: Study, design: Design, baseline: Design | None, known: Estimate | None, index: str, method: str
+) -> Answer:
+    same = known is not None and baseline is not None and design.vehicle == baseline.vehicle
+    found = known if same else _estimate(study, design, index, method)
+    assert found is not None
+    better = (
+        None if baseline is None or known is None else _better(study, design, baseline, (found, known), (index, method))
+    )
+    asked = study.index(index)
+    return {
+        "index": index,
+        "title": asked.title,
+        "unit": asked.unit,
+        "method": method,
+        "value": found.value,
+        "standard_error": found.standard_error,
+        "status": found.status.kind.value,
+        "message": found.status.message,
+        "notes": list(found.notes),
+        "realisations": found.realisations,
+        "improvement_percent": None if better is None else better[0],
+        "improvement_error_percent": None if better is None else better[1],
+    }
+
+
+def _better(
+    study: Study, design: Design, baseline: Design, found: tuple[Estimate, Estimate], asked: tuple[str, str]
+) -> tuple[float, float | None] | None:
+    """Per cent below the baseline, and the standard error where there is scatter."""
+    value, base = (estimate.value for estimate in found)
+    if not np.isfinite(base):
+        return None
+    percent = 100.0 * (1.0 - value / base)
+    if found[0].standard_error is None:
+        return percent, None
+    index, method = asked
+    try:
+        known = found[1]
+        two: Comparison = compare(
+            design.mechanism, baseline.mechanism, study.index(index), study.method(method), known=known
+        )
+    except FAILURES:
+        return percent, None
+    return percent, two.percent_error
+
+
+def response(study: Study, body: Body) -> Answer:
+    """The frequency responses of all designs over the same frequencies, made as those of a study's results are."""
+    designs, indices = designs_of(study, body), tuple(body.get("indices") or study.indices)
+    numbered = {str(number): design for number, design in enumerate(designs)}
+    each = replace(study, indices=indices, layouts={n: study.layouts[design.layout] for n, design in numbered.items()})
+    data = responses(each, {Case(n, index): design.values for n, design in numbered.items() for index in indices})
+    curves = [
+        {
+            "name": design.name,
+            "layout": design.layout,
+            "index": index,
+            "title": gains.attrs["long_name"],
+            "unit": gains.attrs["units"],
+            "label": label,
+            "gain": gain,
+        }
+        for index in indices
+        if (gains := data.get(f"gain_{index}")) is not None
+        for design, several in zip(designs, gains.values, strict=True)
+        for label, gain in zip(data[f"output_{index}"].values.tolist(), several, strict=True)
+    ]
+    return {"frequency": data.omega.values / (2.0 * np.pi), "curves": curves}
+
+
+def mechanism(study: Study, body: Body) -> Answer:
+    design = one_design(study, body)
+    mechanism = design.mechanism
+    angles = {c.name for c in mechanism.coordinates if c.angle}
+
+    def end(port: Mapping[str, float]) -> Answer:
+        return {"port": dict(port), "x": sum(lever for name, lever in port.items() if name in angles)}
+
+    known = outputs(mechanism, full_graph(mechanism))
+    return {
+        **design.told(study),
+        "coordinates": [{"name": c.name, "inertia": c.inertia, "angle": c.angle} for c in mechanism.coordinates],
+        "struts": [
+            {"name": s.name, "upper": end(s.upper), "lower": end(s.lower), "network": tree_of(s.network)}
+            for s in mechanism.struts
+        ],
+        "tyres": [
+            {"name": t.name, **end(t.port), "road": t.road, "network": tree_of(t.network)} for t in mechanism.tyres
+        ],
+        "roads": [{"name": r.name, "distance": r.distance} for r in mechanism.roads],
+        "forces": [{"name": f.name, **end(f.port)} for f in mechanism.forces],
+        "outputs": [{"name": o.name, "unit": o.unit, "title": o.title} for o in known.values()],
+    }
+
+
+def tree_of(network: Network) -> Answer:
+    """A network as data: what joins its parts, and of each element what it is and its value."""
+    if isinstance(network, Element):
+        return {
+            "kind": "element",
+            "name": network.label,
+            "key": network.key,
+            "unit": network.unit,
+            "value": network.value,
+        }
+    sign = "parallel" if isinstance(network, Parallel) else "series"
+    return {"kind": sign, "parts": [tree_of(part) for part in network.parts]}  # type: ignore[attr-defined]
+
+
+def optimum(study: Study, body: Body) -> Answer:
+    """The best design of each layout for each index that is asked for, as a study finds and judges it."""
+    wanted = tuple(body.get("indices") or study.indices)
+    asked = replace(
+        study,
+        indices=tuple(dict.fromkeys([*study.indices, *wanted])),  # each design is judged by all
+        optimise=body.get("method") or study.optimise or methods_that(searches)[0],
+        evaluate=tuple(body.get("methods") or study.evaluate),
+        sweep=None,
+    )
+    layouts = body.get("layouts") or study.layouts
+    for layout in layouts:
+        study.design(layout)
+    for name in asked.methods:
+        asked.method(name)
+    found = [run_case(asked, Case(layout, index)) for layout in layouts for index in wanted]
+    return {"designs": [_told(study, outcome) for outcome in found]}
+
+
+def _told(study: Study, outcome: Outcome) -> Answer:
+    """An outcome, with its values as texts that read back as the same."""
+    return {
+        **outcome.to_json(),
+        "notes": ["".join(map(str, note)) for note in outcome.notes],
+        "texts": texts_of(study, outcome.parameters),
+    }
+
+
+def texts_of(study: Study, values: Mapping[str, float]) -> dict[str, str]:
+    """Values of elements as texts that read back as the same."""
+    return {name: f"{value!r} {study.elements[name].unit}" for name, value in values.items()}
+
+
+def budget(study: Study, body: Body) -> Answer:
+    design = one_design(study, body)
+    baseline = baseline_of(study, body, [])
+    if baseline is None:
+        raise DesignError("A budget needs a baseline: a second layout, or `baseline` in the request.")
+    method = body.get("method") or budget_method(study)
+    found = find_budget(
+        design.vehicle,
+        baseline.vehicle,
+        study.index(needed(body, "index")),
+        parameter=needed(body, "parameter"),
+        method=study.method(method),
+    )
+    return {
+        "parameter": found.parameter,
+        "method": method,
+        "unit": found.unit,
+        "value": found.value,
+        "standard_error": found.standard_error,
+        "interval": found.interval,
+        "bounds": found.bounds,
+        "crossings": [
+            {"value": c.value, "standard_error": c.standard_error, "better": c.better} for c in found.crossings
+        ],
+        "status": found.status.kind.value,
+        "message": found.status.message,
+    }
+
+
+def scatter(study: Study, body: Body) -> Answer:
+    """What an index becomes when values of a design scatter, and which of them matters most."""
+    design, index = one_design(study, body), study.index(needed(body, "index"))
+    method = body.get("method") or DEFAULT
+    found = tolerance(
+        design.vehicle,
+        index,
+        study.method(method),
+        spread=needed(body, "spread"),
+        samples=body.get("samples") or _SAMPLES,
+        seed=body.get("seed") or 0,
+    )
+    counts, edges = np.histogram(found.values[np.isfinite(found.values)], bins=40)
+    return {
+        **design.told(study),
+        "index": index.symbol,
+        "unit": index.unit,
+        "method": method,
+        "nominal": found.nominal.value,
+        "mean": found.mean,
+        "standard_deviation": found.standard_deviation,
+        "quantiles": {str(share): found.quantile(share) for share in _SHARES},
+        "worst": found.worst,
+        "worst_values": found.worst_values,
+        "main": found.main,
+        "total": found.total,
+        "histogram": {"edges": edges, "counts": counts},
+        "status": found.status.kind.value,
+        "message": found.status.message,
+    }
+
+
+def needed(body: Body, key: str) -> Any:
+    """What a request cannot do without; raises `StudyError` where it is left out."""
+    if not body.get(key):
+        raise StudyError(f"The request needs `{key}`.")
+    return body[key]
+
+
+def motion(study: Study, body: Body) -> Answer:
+    return history(study, one_design(study, body), body)
+
+
+def one_design(study: Study, body: Body) -> Design:
+    """The one design that a request is about: its `design`, or its `layout` at the `values` of that."""
+    given = body.get("design")
+    if given:
+        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
+    layout = body.get("layout") or next(iter(study.layouts))
+    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})

@@ -1,0 +1,132 @@
+"""The bodies of requests: which keys each has. They are checked by these, and described by them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Text = Annotated[str, Field(max_length=200)]
+Name = Annotated[str, Field(max_length=200)]
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Document = Annotated[dict[str, Any], Field(description="A study document: the tables of a study file.")]
+Values = Annotated[
+    dict[str, str | Number],
+    Field(description="Values of free elements: texts with a unit, or numbers in the SI unit."),
+]
+
+
+class Body(BaseModel):
+    """The body of a request; keys that it does not know are errors."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class Given(Body):
+    """A design: a layout, and a value for each of its free elements."""
+
+    layout: Name
+    values: Values = {}
+    name: Text = ""
+
+
+class ReadStudy(Body):
+    """A study file as text, or a document whose problems are asked for."""
+
+    text: str | None = None
+    study: Document | None = None
+    name: Text = ""
+
+
+class CheckStudy(Body):
+    """A study document."""
+
+    study: Document
+
+
+class WriteStudy(Body):
+    """A study document, and designs at which it is to be fixed, if any."""
+
+    study: Document
+    designs: Annotated[list[Given], Field(max_length=100)] = []
+
+
+class ParseNetwork(Body):
+    """The text of a network, and the names that it may use."""
+
+    text: str
+    elements: dict[str, Any] | list[str] | None = None
+
+
+class Quantity(Body):
+    """A text that is to be read, in `unit` if it is given; or a value in `unit` that is to be written."""
+
+    text: str | None = None
+    value: Number | None = None
+    unit: Text | None = None
+    digits: Annotated[int, Field(ge=1, le=17)] = 4
+
+
+class Quantities(Body):
+    """Several of them."""
+
+    items: Annotated[list[Quantity], Field(max_length=10_000)]
+
+
+class OfDesigns(Body):
+    """What all requests about designs have."""
+
+    study: Document
+    designs: Annotated[list[Given], Field(max_length=100)] = []
+    layouts: Annotated[list[Name], Field(max_length=1000)] = []
+    values: Annotated[dict[str, Values], Field(description="By layout, where `designs` are not given.")] = {}
+    baseline: Given | None = None
+    indices: list[Name] = []
+    methods: list[Name] = []
+
+
+class PanelRequest(OfDesigns):
+    """A request to a panel."""
+
+    client: Annotated[str, Field(max_length=100, description="One for each page that is open.")] = ""
+    sequence: Annotated[Number, Field(description="Rises with each request of the page to the panel.")] = 0
+    design: Given | None = None
+    layout: Name | None = None
+    index: Name | None = None
+    parameter: Name | None = None
+    method: Name | None = None
+    duration: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
+    step: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
+    seed: Annotated[int, Field(ge=0)] = 0
+    spread: Annotated[dict[Name, Number], Field(description="By what part of themselves values scatter.")] = {}
+    samples: Annotated[int, Field(ge=2, le=65536)] | None = None
+    outputs: list[Name] = []
+
+
+class WorkRequest(OfDesigns):
+    """A request for long work."""
+
+    kind: Name
+    study: Document = {}
+    title: Text = ""
+    wait: Annotated[Number, Field(ge=0.0, le=30.0, description="Seconds to wait for its end.")] = 0.0
+    method: Name | None = None
+    sweep: dict[str, Any] | None = None
+    points: Annotated[int, Field(ge=3, le=200)] | None = None
+    records: Annotated[list[Name], Field(max_length=100)] = []
+    model: Name | None = None
+    config: dict[str, Any] | None = None
+
+
+class FigureRequest(OfDesigns):
+    """A request for a picture."""
+
+    kind: Name
+    format: Name = "svg"
+
+
+class ExportRequest(Body):
+    """A panel, and its request, whose numbers are wanted as a table."""
+
+    panel: Name
+    request: PanelRequest

@@ -1,0 +1,96 @@
+"""The designs that a request is about: layouts of a study with a value for everything that is free."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite, sqrt
+from typing import Any
+
+from inerter.errors import DesignError
+from inerter.files.study.study import Study
+from inerter.networks.elements import Free
+from inerter.units import parse_quantity, shown
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
+
+Values = Mapping[str, "str | float"]
+
+
+@dataclass(frozen=True)
+class Design:
+    """A layout with numbers only."""
+
+    name: str
+    layout: str
+    vehicle: Vehicle
+    values: dict[str, float]  # of what was free, in SI units
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """What analysis takes."""
+        return self.vehicle.mechanism()
+
+    def told(self, study: Study) -> dict[str, Any]:
+        """What an answer says of it."""
+        values = {
+            name: {"value": value, "unit": study.elements[name].unit, "text": f"{value!r} {study.elements[name].unit}"}
+            for name, value in self.values.items()
+        }
+        return {"name": self.name, "layout": self.layout, "values": values}
+
+
+def design_of(study: Study, layout: str, values: Values, name: str = "") -> Design:
+    """A layout at these values; what is left out is the geometric mean of its bounds.
+
+    Raises `StudyError` for an unknown layout, `DesignError` for a value of no element, or one that is not positive;
+    `UnitError` for a text that is no quantity of the element.
+    """
+    vehicle = study.design(layout)
+    for key in values:
+        if key not in study.elements:
+            known = ", ".join(study.elements)
+            raise DesignError(f"Got a value of {shown(key)}, which is not in [elements], where there are {known}.")
+    chosen = {
+        key: _number(key, values[key], study.elements[key].unit) if key in values else _middle(free)
+        for key, free in vehicle.free_values().items()
+    }
+    return Design(name or layout, layout, vehicle.with_values(chosen), chosen)
+
+
+def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
+    """The `designs` of a request, or its `layouts` (all, if they are left out) with the `values` of each."""
+    if body.get("designs"):
+        return [design_of(study, d["layout"], d.get("values") or {}, d.get("name") or "") for d in body["designs"]]
+    values = body.get("values") or {}
+    return [design_of(study, layout, values.get(layout) or {}) for layout in body.get("layouts") or study.layouts]
+
+
+def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]) -> Design | None:
+    """What designs are compared with: the `baseline` of a request, else that of the study among the designs, or at the
+    `values` that the request has for it.
+    """
+    given = body.get("baseline")
+    if given:
+        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
+    if study.baseline is None:
+        return None
+    here = next((design for design in designs if design.layout == study.baseline), None)
+    return here or design_of(study, study.baseline, (body.get("values") or {}).get(study.baseline) or {})
+
+
+def elements_of(mechanism: Mechanism) -> Iterator[str]:
+    """The labels of all elements of the struts."""
+    for strut in mechanism.struts:
+        yield from (element.label for element in strut.network.elements())
+
+
+def _number(name: str, given: str | float, unit: str) -> float:
+    value = parse_quantity(given, unit) if isinstance(given, str) else float(given)
+    if not isfinite(value) or value < 0.0:
+        raise DesignError(f"The value of {shown(name)} must be a positive number of {unit}, got {shown(given)}.")
+    return value
+
+
+def _middle(free: Free) -> float:
+    return sqrt(free.lower * free.upper) if free.lower > 0.0 else 0.5 * free.upper

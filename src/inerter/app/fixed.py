@@ -1,0 +1,72 @@
+"""A study document with its designs fixed: what `inerter run` then judges are those very designs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from copy import deepcopy
+from typing import Any
+
+from inerter.app.designs import Design
+from inerter.files.study.study import Study
+
+_SEARCH = ("optimise", "budgets", "sweep")  # keys of [study] that ask for more than the value of a design
+
+
+def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:
+    """The document with the layouts of these designs alone, their free values fixed to the last digit.
+
+    An element that has several values becomes several elements, each with the name of its layout.
+    """
+    names, elements = _renamed(study, designs)
+    made = deepcopy(dict(document))
+    free = {name for design in designs for name in design.vehicle.free_values()} | {
+        n for d in designs for n in d.values
+    }
+    kept = {name: entry for name, entry in made["elements"].items() if name not in free}
+    made["elements"] = {**kept, **elements}
+    keys = _keys(designs)
+    made["layouts"] = {
+        key: _entry(made["layouts"][design.layout], {name: new for (k, name), new in names.items() if k == key})
+        for key, design in zip(keys, designs, strict=True)
+    }
+    settings = {key: value for key, value in made["study"].items() if key not in _SEARCH}
+    base = next((key for key, design in zip(keys, designs, strict=True) if design.layout == study.baseline), keys[0])
+    made["study"] = {**settings, "baseline": base}
+    return made
+
+
+def _keys(designs: Iterable[Design]) -> list[str]:
+    """A layout's name for each design, none of them twice."""
+    keys: list[str] = []
+    for design in designs:
+        number = sum(key == design.layout or key.startswith(f"{design.layout}.") for key in keys)
+        keys.append(design.layout if not number else f"{design.layout}.{number + 1}")
+    return keys
+
+
+def _renamed(study: Study, designs: Sequence[Design]) -> tuple[dict[tuple[str, str], str], dict[str, str]]:
+    """By layout and element the name that the element gets, and what the elements of these names are."""
+    keys = _keys(designs)
+    names: dict[tuple[str, str], str] = {}
+    elements: dict[str, str] = {}
+    for name in dict.fromkeys(name for design in designs for name in design.values):
+        values = {key: d.values[name] for key, d in zip(keys, designs, strict=True) if name in d.values}
+        several = len(set(values.values())) > 1
+        for key, value in values.items():
+            new = _free_name(f"{name}_{re.sub(r'[^A-Za-z0-9]', '_', key)}", study, elements) if several else name
+            names[key, name] = new
+            elements[new] = f"{value!r} {study.elements[name].unit}"
+    return names, elements
+
+
+def _free_name(wanted: str, study: Study, taken: Mapping[str, str]) -> str:
+    while wanted in study.elements or wanted in taken:
+        wanted += "_"
+    return wanted
+
+
+def _entry(entry: Any, names: Mapping[str, str]) -> Any:
+    if isinstance(entry, Mapping):
+        return {mount: _entry(text, names) for mount, text in entry.items()}
+    return re.sub(r"[A-Za-z][A-Za-z0-9_]*", lambda found: names.get(found[0], found[0]), entry)

@@ -1,0 +1,33 @@
+"""What is found in a measured record."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from inerter.figures.curves import thinned
+from inerter.files.identification.loading import RecordRequest
+from inerter.files.identification.running import read
+
+_SHOWN = 2000  # samples of a channel
+
+
+def found_in(path: str) -> dict[str, Any]:
+    """What is in a record, and what is worth knowing about it.
+
+    Raises `RecordError` for a file that cannot be used.
+    """
+    reading = read(Path(path), RecordRequest())
+    record = reading.received
+    return {
+        "name": record.source,
+        "samples": int(record.time.size),
+        "duration": float(record.time[-1] - record.time[0]),
+        "channels": [
+            dict(zip(("name", "time", "values"), (name, *thinned(record.time, values, _SHOWN)), strict=True))
+            for name, values in record.channels().items()
+            if name != "time"
+        ],
+        "notes": list(record.notes),
+        "findings": [{"severity": f.severity, "about": f.about, "sentence": f.sentence} for f in reading.findings],
+    }

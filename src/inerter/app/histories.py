@@ -1,0 +1,96 @@
+"""Motions as a page draws them: few samples of each output, the states of friction and gaps, the car in motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from inerter.app.designs import Design
+from inerter.errors import StudyError
+from inerter.figures.curves import thinned
+from inerter.files.study.study import Study
+from inerter.signals.harmonics import multisine
+from inerter.simulation.simulate import simulate
+from inerter.simulation.trajectory import Trajectory
+from inerter.systems.outputs import main_outputs
+from inerter.vehicle.mechanism import Mechanism
+
+_MOST = 2000  # samples of an output
+_FRAMES = 60.0  # a second, of the car in motion
+_MOST_EVENTS, _LONGEST = 5000, 120.0
+_DURATION, _STEP = 10.0, 5e-4  # [s]
+
+
+def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
+    """The motion of a design over a random road of the study.
+
+    Raises `StudyError` for a time that is too long to be looked at; what `simulate` raises.
+    """
+    duration, step = float(body.get("duration") or _DURATION), float(body.get("step") or _STEP)
+    if duration > _LONGEST:
+        raise StudyError(
+            f"Got {duration:g} s; a page shows at most {_LONGEST:g} s. Longer ones are for: inerter simulate."
+        )
+    if study.road is None:
+        raise StudyError("The motion is one over a road, and this study has none. Add [road].")
+    road = multisine(study.road, seed=int(body.get("seed") or 0))
+    run = simulate(design.vehicle, road=road, duration=duration, step=step, initial="rest")
+    mechanism = design.mechanism
+    names = body.get("outputs") or main_outputs(mechanism)
+    shaded = _shaded(run)
+    return {
+        **design.told(study),
+        "signals": [_drawn(run, name) for name in names],
+        "motion": _motion(run, mechanism),
+        "shaded": shaded,
+        "events": len(run.events),
+        "rms": {name: run.rms(name) for name in names},
+        "peaks": {name: float(np.abs(run[name]).max()) for name in names},
+        "duration": duration,
+        "step": step,
+        "status": run.status.kind.value,
+        "message": run.status.message,
+    }
+
+
+def _drawn(run: Trajectory, name: str) -> dict[str, Any]:
+    """An output by the lowest and the highest sample of each piece, at their times."""
+    time, values = thinned(run.time, run[name], _MOST)
+    return {
+        "name": name,
+        "label": run.outputs[name].title,
+        "unit": run.outputs[name].unit,
+        "time": time,
+        "values": values,
+    }
+
+
+def _motion(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
+    """Coordinates and roads at even times, as many a second as a screen shows."""
+    time = np.arange(run.time[0], run.time[-1] + 0.5 / _FRAMES, 1.0 / _FRAMES)
+    at = {name: np.interp(time, run.time, run[output]) for name, output in _moved(mechanism).items()}
+    return {
+        "time": time,
+        "coordinates": {c.name: at[c.name] for c in mechanism.coordinates},
+        "roads": {r.name: at[r.name] for r in mechanism.roads},
+    }
+
+
+def _moved(mechanism: Mechanism) -> dict[str, str]:
+    """The outputs that say where coordinates and roads are."""
+    coordinates = {c.name: f"{c.name}_displacement" for c in mechanism.coordinates}
+    return {**coordinates, **{r.name: r.name for r in mechanism.roads}}
+
+
+def _shaded(run: Trajectory) -> list[dict[str, Any]]:
+    """When each element that switches was in which of its states."""
+    states: dict[str, set[str]] = {element: {state} for element, state in run.states.items()}
+    for event in run.events[:_MOST_EVENTS]:
+        states[event.element] |= {event.after}
+    return [
+        {"element": element, "state": state, "intervals": run.intervals(element, state)[:_MOST_EVENTS]}
+        for element, several in states.items()
+        for state in sorted(several)
+    ]

@@ -1,0 +1,40 @@
+"""Long work on records: what a measured device is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from inerter.app.documents import PATH
+from inerter.app.kinds import RESULTS, Tell
+from inerter.errors import RecordError
+from inerter.files.common.folder import Intent, claimed
+from inerter.files.common.toml import tables_of
+from inerter.files.identification.loading import identification_of
+from inerter.files.identification.running import read, run_identification
+from inerter.report.identification import OWN, write_fit, write_identification
+from inerter.report.identification_data import identification_data
+from inerter.report.identified_values import elements_block
+
+Body = Mapping[str, Any]
+
+
+def identify(body: Body, folder: Path, tell: Tell) -> Any:
+    records = [Path(record) for record in body.get("records") or ()]
+    if not records:
+        raise RecordError("Which records? Send their files to /api/records, and give the ids as `records`.")
+    request = identification_of({"model": {}, **(body.get("config") or {})}, PATH)
+    request = replace(request, name=body.get("model") or request.name)
+    request.models()
+    readings = []
+    for number, path in enumerate(records):
+        tell(number, len(records), f"reading {path.name}")
+        readings.append(read(path, request.record))
+    with claimed(Intent(folder / RESULTS, "identify", OWN, tuple(records))) as results:
+        found = run_identification(readings, request, lambda part: tell(round(1000.0 * part), 1000, "fitting"))
+        write_fit(found, results.draft)
+        results.publish()
+        write_identification(found, results.draft, lambda part: tell(round(1000.0 * part), 1000, "drawing"))
+    return {**identification_data(found), "device": tables_of(elements_block(found).encode(), PATH, "a device")}

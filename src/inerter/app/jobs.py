@@ -1,0 +1,167 @@
+"""The queue of long work: one piece after another in a process of its own, each in a folder that outlives the page."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+import time
+from collections.abc import AsyncIterator, Mapping
+from concurrent.futures import BrokenExecutor, Executor
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from secrets import token_hex
+from typing import Any
+
+from inerter.app.kinds import KINDS, RESULTS
+from inerter.app.wire import Refused, encoded
+from inerter.app.working import REQUEST, RESULT, STOP, events_of, work, write_event
+from inerter.work.processes import Processes
+
+_GRACE = 5.0  # seconds that work has to stop at its next check, before its process is ended
+_LOOK = 0.05  # seconds between two looks at what happened
+_MOST = 200  # pieces of work that are kept
+ENDED = ("done", "failed", "stopped")
+
+
+@dataclass
+class Job:
+    """A piece of long work."""
+
+    id: str
+    kind: str
+    title: str
+    folder: Path
+    state: str = "waiting"
+    begun: float | None = None
+    ended: float | None = None
+    sentence: str = ""
+    over: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def told(self) -> dict[str, Any]:
+        """What there is to say of it."""
+        events, _ = events_of(self.folder)
+        progress = next((e for e in reversed(events) if e["event"] == "progress"), {"done": 0, "total": 0, "told": ""})
+        return {
+            **{key: getattr(self, key) for key in ("id", "kind", "title", "state", "begun", "ended", "sentence")},
+            **{key: progress[key] for key in ("done", "total", "told")},
+        }
+
+    def files(self) -> dict[str, Path]:
+        """The files of its results, by the names under which they are given."""
+        root = self.folder / RESULTS
+        found = {path.relative_to(root): path for path in sorted(root.rglob("*")) if path.is_file()}
+        return {
+            name.as_posix(): path
+            for name, path in found.items()
+            if not path.is_symlink() and not any(part.startswith(".") for part in name.parts)
+        }
+
+
+@dataclass
+class Jobs:
+    """All long work, and the process that does it."""
+
+    root: Path
+    worker: Executor = field(default_factory=lambda: Processes(1))
+    known: dict[str, Job] = field(default_factory=dict)
+    _queue: asyncio.Queue[Job] = field(default_factory=asyncio.Queue)
+
+    def add(self, kind: str, request: Mapping[str, Any], title: str = "") -> Job:
+        """Put work into the queue; raises `Refused` where too much is kept already."""
+        for old in [job for job in self.known.values() if job.state in ENDED][: max(len(self.known) - _MOST + 1, 0)]:
+            self.forget(old)
+        if len(self.known) >= _MOST:
+            raise Refused(400, f"{_MOST} pieces of work are waiting. Stop some of them first.")
+        name = token_hex(8)
+        job = Job(name, kind, title or KINDS[kind].title, self.root / name)
+        job.folder.mkdir(parents=True)
+        (job.folder / REQUEST).write_bytes(encoded({**request, "kind": kind}))
+        self.known[name] = job
+        self._queue.put_nowait(job)
+        return job
+
+    def get(self, name: str) -> Job:
+        """The work of that id; raises `Refused` if there is none."""
+        if name not in self.known:
+            raise Refused(404, "There is no such work; perhaps it was forgotten, or the server has begun afresh.")
+        return self.known[name]
+
+    def stop(self, job: Job) -> None:
+        """Have work stop at its next check; what waits is stopped at once."""
+        if job.state == "waiting":
+            self._end(job, {"event": "stopped"})
+        elif job.state == "running":
+            (job.folder / STOP).touch()
+
+    def forget(self, job: Job) -> None:
+        """Forget work that has ended, and its files."""
+        self.known.pop(job.id, None)
+        shutil.rmtree(job.folder, ignore_errors=True)
+
+    async def run(self) -> None:
+        """Do what is in the queue, for ever."""
+        while True:
+            job = await self._queue.get()
+            if job.state == "waiting":
+                await self._do(job)
+
+    async def events(self, job: Job, start: int = 0) -> AsyncIterator[tuple[int, dict[str, Any]]]:
+        """All events of work behind so many bytes, each with where it ends, until the work has ended."""
+        while True:
+            over = job.state in ENDED
+            found, end = events_of(job.folder, start)
+            for event in found:
+                yield end, event
+            start = end
+            if over:
+                return
+            with suppress(TimeoutError):
+                await asyncio.wait_for(job.over.wait(), _LOOK)
+
+    async def _do(self, job: Job) -> None:
+        job.state, job.begun = "running", time.time()
+        try:
+            future = asyncio.wrap_future(self.worker.submit(work, str(job.folder)))
+            asked: float | None = None
+            while not future.done():
+                await asyncio.wait((future,), timeout=_LOOK)
+                if asked is None and (job.folder / STOP).exists():
+                    asked = time.monotonic()
+                if asked is not None and time.monotonic() - asked > _GRACE:
+                    future.cancel()
+                    await asyncio.to_thread(self.worker.shutdown, wait=False, cancel_futures=True)
+                    self._end(job, {"event": "stopped"})
+                    return
+            self._end(job, future.result())
+        except BrokenExecutor:
+            sentence = "The process that did this work has ended, perhaps for want of memory."
+            self._end(job, {"event": "failed", "sentence": sentence})
+        except Exception as error:  # whatever it is, the queue goes on
+            self._end(job, {"event": "failed", "sentence": str(error)})
+
+    def _end(self, job: Job, how: dict[str, Any]) -> None:
+        with suppress(OSError):
+            write_event(job.folder, how)
+        job.state, job.ended, job.sentence = how["event"], time.time(), how.get("sentence", "")
+        job.over.set()
+
+
+def result_of(job: Job) -> bytes:
+    """The result of work as text of JSON; raises `Refused` where there is none."""
+    if job.state != "done":
+        raise Refused(404, f"This work is {job.state}; it has no result. {job.sentence}".strip())
+    return (job.folder / RESULT).read_bytes()
+
+
+def with_result(job: Job) -> bytes:
+    """What there is to say of work, with its result if it is done."""
+    told = encoded(job.told())
+    return told if job.state != "done" else told[:-1] + b', "result": ' + result_of(job) + b"}"
+
+
+def as_event(number: int, event: Mapping[str, Any]) -> bytes:
+    """A server-sent event."""
+    data = {key: value for key, value in event.items() if key != "event"}
+    return f"id: {number}\nevent: {event['event']}\ndata: {json.dumps(data)}\n\n".encode()

@@ -1,0 +1,44 @@
+"""Panels: quick answers about designs. A further one is one more row, and a function that answers it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from inerter.methods.registry import DEFAULT, METHODS, is_blind
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A panel: what it is, the function that answers it, and whether it does so at once if nothing is simulated."""
+
+    key: str
+    title: str
+    home: str
+    quick: bool = True
+
+
+PANELS = {
+    panel.key: panel
+    for panel in (
+        Panel("indices", "Indices beside the baseline", "inerter.app.answers:indices"),
+        Panel("response", "Frequency response", "inerter.app.answers:response"),
+        Panel("mechanism", "The vehicle as it is joined", "inerter.app.answers:mechanism"),
+        Panel("optimise", "The best values", "inerter.app.answers:optimum"),
+        Panel("history", "The motion on a road", "inerter.app.answers:motion", quick=False),
+        Panel("tolerance", "What scatter makes of an index", "inerter.app.answers:scatter", quick=False),
+        Panel("budget", "How much friction, play or softness it bears", "inerter.app.answers:budget", quick=False),
+    )
+}
+
+
+def at_once(key: str, body: Mapping[str, Any]) -> bool:
+    """Whether an answer takes no longer than a slider waits: nothing is simulated for it."""
+    study = body.get("study")
+    asked = study.get("study") if isinstance(study, Mapping) else None
+    asked = asked if isinstance(asked, Mapping) else {}
+    named = body.get("methods") or asked.get("evaluate")
+    search = (body.get("method") or asked.get("optimise")) if key == "optimise" else None
+    methods = [search or DEFAULT, *(named if isinstance(named, list | tuple) else ())]
+    return PANELS[key].quick and all(is_blind(name) for name in methods if isinstance(name, str) and name in METHODS)

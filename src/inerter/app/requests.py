@@ -1,0 +1,231 @@
+"""The requests that there are, and what answers each."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import FileResponse, Response
+
+from inerter.app import about, bodies, documents, parts
+from inerter.app.calls import panel
+from inerter.app.described import Endpoint, openapi
+from inerter.app.designs import designs_of
+from inerter.app.fixed import fixed
+from inerter.app.jobs import Job, as_event, result_of, with_result
+from inerter.app.kinds import KINDS
+from inerter.app.panels import PANELS, at_once
+from inerter.app.responses import as_events, as_json, media_type
+from inerter.app.server import Server
+from inerter.app.wire import Refused, decoded, encoded
+from inerter.files.common.toml import as_toml
+
+
+async def _about(server: Server, request: Request) -> dict[str, Any]:
+    return {**await asyncio.to_thread(about.about), "kernels": server.warming.told()}
+
+
+async def _ready(server: Server, request: Request) -> Response:
+    return as_events(as_event(number, event) async for number, event in server.warming.events())
+
+
+async def _start(server: Server, request: Request) -> dict[str, Any]:
+    return server.start
+
+
+async def _examples(server: Server, request: Request) -> dict[str, Any]:
+    found = await asyncio.to_thread(about.examples)
+    return {"examples": [{"name": name, **_opened(path)} for name, path in found.items()]}
+
+
+async def _example(server: Server, request: Request) -> dict[str, Any]:
+    found = await asyncio.to_thread(about.examples)
+    name = request.path_params["name"]
+    if name not in found:
+        raise Refused(404, f"There is no such example; there are {', '.join(found)}.")
+    return opened(found[name])
+
+
+def opened(path: Path) -> dict[str, Any]:
+    """A study file as a page opens it."""
+    text = path.read_text(encoding="utf-8")
+    return {"name": path.name, "text": text, **documents.read(text, path.name)}
+
+
+def _opened(path: Path) -> dict[str, Any]:
+    study = opened(path)["study"]
+    return {"title": study.get("title", path.stem)}
+
+
+async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dict[str, Any]:
+    if (body.text is None) == (body.study is None):
+        raise Refused(400, "Give either the text of a study file or a study document.")
+    if body.text is not None:
+        return await asyncio.to_thread(documents.read, body.text, body.name)
+    return {"study": body.study, "problems": await asyncio.to_thread(documents.problems, body.study)}
+
+
+async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> dict[str, Any]:
+    return await asyncio.to_thread(documents.checked, body.study)
+
+
+async def _write(server: Server, request: Request, body: bodies.WriteStudy) -> dict[str, Any]:
+    def written() -> dict[str, Any]:
+        if not body.designs:
+            return {"text": as_toml(body.study)}
+        study = documents.study_from(body.study)
+        document = fixed(body.study, study, designs_of(study, body.model_dump()))
+        return {"text": as_toml(document), "study": document}
+
+    return await asyncio.to_thread(written)
+
+
+async def _parse(server: Server, request: Request, body: bodies.ParseNetwork) -> dict[str, Any]:
+    return parts.parse_network(body.text, body.elements)
+
+
+async def _quantity(server: Server, request: Request, body: bodies.Quantity) -> dict[str, Any]:
+    return await asyncio.to_thread(parts.quantity, body.model_dump())
+
+
+async def _quantities(server: Server, request: Request, body: bodies.Quantities) -> dict[str, Any]:
+    items = [item.model_dump() for item in body.items]
+    return {"items": await asyncio.to_thread(lambda: [parts.quantity(item) for item in items])}
+
+
+async def _panel(server: Server, request: Request, body: bodies.PanelRequest) -> Response:
+    key = request.path_params["name"]
+    if key not in PANELS:
+        raise Refused(404, f"There is no panel {key!r}; there are {', '.join(PANELS)}.")
+    asked = body.model_dump(exclude_unset=True)
+    lane = "quick" if at_once(key, asked) else "slow"
+    if lane == "slow" or key == "optimise":
+        await server.warming.wait()
+    call = panel, "inerter.app.answers:answered", key, asked
+    found = await server.newest.ask(server.lanes[lane], (body.client, key), body.sequence, call)
+    return as_json(found)
+
+
+async def _add_work(server: Server, request: Request, body: bodies.WorkRequest) -> Response:
+    if body.kind not in KINDS:
+        raise Refused(400, f"There is no work of the kind {body.kind!r}; there are {', '.join(KINDS)}.")
+    asked = body.model_dump(exclude_unset=True, exclude={"wait", "title", "kind"})
+    asked["records"] = [str(server.records.get(record)) for record in body.records]
+    job = server.jobs.add(body.kind, asked, body.title)
+    if body.wait:
+        with suppress(TimeoutError):
+            await asyncio.wait_for(job.over.wait(), body.wait)
+    return as_json(with_result(job), 201)
+
+
+async def _all_work(server: Server, request: Request) -> dict[str, Any]:
+    return {"work": [job.told() for job in server.jobs.known.values()]}
+
+
+async def _one_work(server: Server, request: Request) -> dict[str, Any]:
+    return _job(server, request).told()
+
+
+async def _work_events(server: Server, request: Request) -> Response:
+    job, last = _job(server, request), request.headers.get("last-event-id", "0")
+    start = int(last) if last.isascii() and last.isdigit() and len(last) < 16 else 0
+    return as_events(as_event(number, event) async for number, event in server.jobs.events(job, start))
+
+
+async def _stop_work(server: Server, request: Request) -> dict[str, Any]:
+    job = _job(server, request)
+    if job.over.is_set():
+        server.jobs.forget(job)
+        return {"id": job.id, "state": "forgotten"}
+    server.jobs.stop(job)
+    return job.told()
+
+
+async def _work_result(server: Server, request: Request) -> Response:
+    return as_json(result_of(_job(server, request)))
+
+
+async def _work_files(server: Server, request: Request) -> dict[str, Any]:
+    files = _job(server, request).files()
+    return {"files": [{"name": name, "size": path.stat().st_size} for name, path in files.items()]}
+
+
+async def _work_file(server: Server, request: Request) -> Response:
+    files, name = _job(server, request).files(), request.path_params["name"]
+    if name not in files:
+        raise Refused(404, "This work has no such file.")
+    return FileResponse(files[name], media_type=media_type(name), filename=files[name].name)
+
+
+def _job(server: Server, request: Request) -> Job:
+    return server.jobs.get(request.path_params["id"])
+
+
+async def _take_record(server: Server, request: Request) -> Response:
+    number = await server.records.take(request.query_params.get("name", ""), request.stream())
+    path = server.records.get(number)
+    try:
+        found = await server.aside("inerter.app.found:found_in", str(path))
+    except Refused:
+        server.records.forget(number)
+        raise
+    return as_json(encoded({"id": number, "size": path.stat().st_size})[:-1] + b", " + found[1:], 201)
+
+
+async def _forget_record(server: Server, request: Request) -> dict[str, Any]:
+    server.records.forget(request.path_params["id"])
+    return {"id": request.path_params["id"], "state": "forgotten"}
+
+
+async def _figure(server: Server, request: Request, body: bodies.FigureRequest) -> Response:
+    found = await server.aside("inerter.app.pictures:picture", body.model_dump())
+    return Response(found, media_type=media_type(f".{body.format}"))
+
+
+async def _csv(server: Server, request: Request, body: bodies.ExportRequest) -> Response:
+    await server.warming.wait()
+    found = await server.aside("inerter.app.tables:as_csv", body.panel, body.request.model_dump(exclude_unset=True))
+    return Response(decoded(found), media_type="text/csv; charset=utf-8")
+
+
+async def _openapi(server: Server, request: Request) -> dict[str, Any]:
+    return openapi(ENDPOINTS)
+
+
+ENDPOINTS = (
+    Endpoint("GET", "/api/openapi.json", "This description", _openapi),
+    Endpoint("GET", "/api/about", "What there is to choose from", _about),
+    Endpoint("GET", "/api/ready", "Which kernels are compiled still", _ready, media="text/event-stream"),
+    Endpoint("GET", "/api/start", "The study of the command line", _start),
+    Endpoint("GET", "/api/examples", "The examples that come with the package", _examples),
+    Endpoint("GET", "/api/examples/{name}", "One of them", _example),
+    Endpoint("POST", "/api/study/read", "The document of a study file, and its problems", _read, bodies.ReadStudy),
+    Endpoint("POST", "/api/study/check", "What is to be known before any work", _check, bodies.CheckStudy),
+    Endpoint("POST", "/api/study/write", "A document as a study file", _write, bodies.WriteStudy),
+    Endpoint("POST", "/api/network/parse", "A network as a tree with places", _parse, bodies.ParseNetwork),
+    Endpoint("POST", "/api/quantity", "A quantity read or written", _quantity, bodies.Quantity),
+    Endpoint("POST", "/api/quantities", "Several of them", _quantities, bodies.Quantities),
+    Endpoint("POST", "/api/panel/{name}", "A quick answer, the newest wins", _panel, bodies.PanelRequest),
+    Endpoint("POST", "/api/work", "Begin long work", _add_work, bodies.WorkRequest),
+    Endpoint("GET", "/api/work", "All long work", _all_work),
+    Endpoint("GET", "/api/work/{id}", "One of them", _one_work),
+    Endpoint("GET", "/api/work/{id}/events", "How far it is", _work_events, media="text/event-stream"),
+    Endpoint("DELETE", "/api/work/{id}", "Stop it, or forget it", _stop_work),
+    Endpoint("GET", "/api/work/{id}/result", "What it has found", _work_result),
+    Endpoint("GET", "/api/work/{id}/files", "The files of its results", _work_files),
+    Endpoint("GET", "/api/work/{id}/files/{name:path}", "One of them", _work_file, media="application/octet-stream"),
+    Endpoint(
+        "POST",
+        "/api/records",
+        "A measured record, and what is found in it",
+        _take_record,
+        accepts="application/octet-stream",
+        query=("name",),
+    ),
+    Endpoint("DELETE", "/api/records/{id}", "Delete a record", _forget_record),
+    Endpoint("POST", "/api/figure", "A picture", _figure, bodies.FigureRequest, media="image/svg+xml"),
+    Endpoint("POST", "/api/export/csv", "The numbers of a panel as a table", _csv, bodies.ExportRequest, "text/csv"),
+)

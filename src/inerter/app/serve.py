@@ -1,0 +1,42 @@
+"""`serve`: the workbench on this machine. What it needs is an extra, and is loaded when it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+
+from inerter.errors import StudyError
+
+LIMIT, RECORD_LIMIT = 10_000_000, 2_000_000_000  # bytes
+_EXTRA = {"starlette", "uvicorn", "anyio", "h11"}
+
+
+def serve(
+    study: str | Path | None = None,
+    *,
+    port: int | None = None,
+    browser: bool = True,
+    limit: int = LIMIT,
+    record_limit: int = RECORD_LIMIT,
+    folder: str | Path | None = None,
+    tell: Callable[[str], object] = print,
+) -> None:
+    """Serve the workbench on this machine, and open it in the browser; returns when it is interrupted.
+
+    `port` is chosen if it is left out. Bodies of requests have `limit` bytes at most, measured records `record_limit`.
+    Long work and records are kept in `folder`, or until the end if none is given. `tell` is given the link. A script
+    that calls this needs the line `if __name__ == "__main__":`, because processes are started afresh and import it.
+
+    Raises `StudyError` for a study file that cannot be read, for a port that is not free, and where the extra `web` is
+    not installed.
+    """
+    try:
+        running = import_module("inerter.app.running")
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] not in _EXTRA:
+            raise
+        raise StudyError(
+            'The workbench needs libraries that are not installed: pip install "inerter[web]", then try again.'
+        ) from None
+    running.run(study, port=port, browser=browser, limits=(limit, record_limit), folder=folder, tell=tell)

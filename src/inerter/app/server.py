@@ -1,0 +1,67 @@
+"""What a server holds: its processes, and what was sent to it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from concurrent.futures import Executor
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from inerter.app.calls import call
+from inerter.app.jobs import Jobs
+from inerter.app.lanes import Lane, Newest, Waiting
+from inerter.app.records import Records
+from inerter.app.warming import Warming
+from inerter.work.processes import Processes
+
+_LANES = {  # norms; what simulates; records, figures and tables
+    "quick": ("inerter.app.answers",),
+    "slow": ("inerter.app.answers",),
+    "aside": ("inerter.app.found", "inerter.app.pictures", "inerter.app.tables"),
+}
+
+
+@dataclass
+class Server:
+    """What a server holds: the study that it was started with, its processes, and what was sent to it."""
+
+    root: Path  # the folder of long work and records
+    start: dict[str, Any]  # the study of the command line
+    process: Callable[[], Executor] = lambda: Processes(1)  # what lanes and long work are done by
+    newest: Newest = field(default_factory=Newest)
+    lanes: dict[str, Lane] = field(init=False)
+    jobs: Jobs = field(init=False)
+    records: Records = field(init=False)
+    warming: Warming = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.lanes = {name: Lane(homes, self.process()) for name, homes in _LANES.items()}
+        self.jobs, self.records = Jobs(self.root / "work", self.process()), Records(self.root / "records")
+        self.warming = Warming(self.root / "kernels.jsonl")
+
+    @asynccontextmanager
+    async def running(self) -> AsyncIterator[None]:
+        """The processes are there inside, and gone afterwards."""
+        tasks = [asyncio.create_task(lane.work()) for lane in self.lanes.values()]
+        tasks += [asyncio.create_task(self.jobs.run()), asyncio.create_task(self._get_ready())]
+        try:
+            yield
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            workers = [*(lane.worker for lane in self.lanes.values()), self.jobs.worker]
+            for worker in workers:
+                await asyncio.to_thread(worker.shutdown, wait=False, cancel_futures=True)
+
+    async def _get_ready(self) -> None:
+        await self.lanes["quick"].begin()
+        await self.warming.run(self.jobs.worker)
+        await self.lanes["slow"].begin()
+
+    async def aside(self, home: str, *args: Any) -> bytes:
+        """What a function of that name gives in the process for everything that is asked now and then."""
+        return await self.lanes["aside"].answer(Waiting((call, home, *args)))

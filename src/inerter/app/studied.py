@@ -1,0 +1,118 @@
+"""Long work on studies: optima, whole studies, sweeps, comparisons, in calls of what the command line calls."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from inerter.app.answers import optimum
+from inerter.app.designs import designs_of
+from inerter.app.documents import study_from
+from inerter.app.kinds import RESULTS, Tell
+from inerter.errors import DesignError, StudyError
+from inerter.figures.study import draw_study
+from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.cases import Outcome
+from inerter.files.study.running import StudyResult, run_study
+from inerter.files.study.study import Study
+from inerter.methods.compare import compare
+from inerter.report.page import write_report
+from inerter.report.study_data import as_text
+
+Body = Mapping[str, Any]
+
+
+def optimise(body: Body, folder: Path, tell: Tell) -> Any:
+    study = study_from(body["study"])
+    layouts, indices = body.get("layouts") or list(study.layouts), body.get("indices") or list(study.indices)
+    cases = [(layout, index) for layout in layouts for index in indices]
+    found: list[Any] = []
+    for layout, index in cases:
+        tell(len(found), len(cases), f"{layout} {index}")
+        found += optimum(study, {**body, "layouts": [layout], "indices": [index]})["designs"]
+    tell(len(found), len(cases), "")
+    return {"designs": found}
+
+
+def run(body: Body, folder: Path, tell: Tell) -> Any:
+    return _studied(study_from(body["study"]), folder, tell)
+
+
+def sweep(body: Body, folder: Path, tell: Tell) -> Any:
+    document = dict(body["study"])
+    if not isinstance(asked := document.get("study"), Mapping):
+        raise StudyError("A sweep needs a study document with a section [study].")
+    settings = {key: value for key, value in asked.items() if key != "budgets"}
+    if body.get("sweep"):
+        settings["sweep"] = body["sweep"]
+    if body.get("indices"):
+        settings["indices"] = body["indices"]
+    document["study"] = settings
+    study = study_from(document)
+    if study.sweep is None:
+        raise StudyError('A sweep needs `sweep`, such as {"k": {"from": "10 kN/m", "to": "300 kN/m", "points": 30}}.')
+    wanted = body.get("layouts") or list(study.layouts)
+    for layout in wanted:
+        study.design(layout)
+    layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
+    return _studied(replace(study, layouts=layouts), folder, tell)
+
+
+def _studied(study: Study, folder: Path, tell: Tell) -> Any:
+    """What `inerter run` does, in the folder of the work."""
+
+    def show(result: StudyResult, into: Path) -> None:
+        tell(done[0], done[0], "figures and report")
+        draw_study(result.data, into / FIGURES)
+        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets)
+
+    def told(count: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
+        done[0] = count
+        tell(count, total, f"{last.layout} {last.index}" if last else "")
+
+    done = [0]
+    result = run_study(
+        study,
+        folder / RESULTS,
+        jobs=max((os.cpu_count() or 2) - 1, 1),
+        progress=told,
+        compiling=lambda title, number, total: tell(0, 0, f"compiling kernels {number} of {total}: {title}"),
+        finish=show,
+    )
+    return json.loads("".join(as_text(result)))
+
+
+def compared(body: Body, folder: Path, tell: Tell) -> Any:
+    study = study_from(body["study"])
+    designs = designs_of(study, body)
+    if not 2 <= len(designs) <= 4:
+        raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
+    first, *others = designs
+    indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
+    asked = [(design, index, method) for design in others for index in indices for method in methods]
+    rows: list[dict[str, Any]] = []
+    for design, index, method in asked:
+        tell(len(rows), len(asked), f"{design.name} {index}")
+        found = compare(design.mechanism, first.mechanism, study.index(index), study.method(method))
+        rows.append(
+            {
+                "name": design.name,
+                "index": index,
+                "method": method,
+                "unit": found.first.unit,
+                "value": found.first.value,
+                "first_value": found.second.value,
+                "difference": found.difference.value,
+                "standard_error": found.difference.standard_error,
+                "improvement_percent": -found.percent,
+                "improvement_error_percent": found.percent_error,
+                "status": found.status.kind.value,
+                "message": found.status.message,
+            }
+        )
+    return {"designs": [design.told(study) for design in designs], "comparisons": rows}

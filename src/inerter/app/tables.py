@@ -1,0 +1,76 @@
+"""The numbers of a panel as CSV, each so that it reads back as the same."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Mapping
+from itertools import chain
+from typing import Any
+
+from inerter.app.answers import answered
+from inerter.errors import StudyError
+
+Rows = Iterable[list[Any]]
+
+
+def as_csv(panel: str, request: Mapping[str, Any]) -> str:
+    """The answer of a panel as a table; raises `StudyError` for a panel that is none, and what it raises."""
+    if panel not in _TABLES:
+        raise StudyError(f"There are tables of {', '.join(_TABLES)}, not of {panel!r}.")
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(
+        [_cell(value) for value in row] for row in _TABLES[panel](answered(panel, request))
+    )
+    return text.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    """Floats in full, nothing where there is no number, and no text that a spreadsheet takes for a formula."""
+    if isinstance(value, float):
+        return "" if value != value else repr(float(value))
+    text = "" if value is None else value
+    return f"'{text}" if isinstance(text, str) and text[:1] in tuple("=+-@\t\r") else text
+
+
+def _indices(answer: Mapping[str, Any]) -> Rows:
+    said = (
+        "index",
+        "method",
+        "value",
+        "unit",
+        "standard_error",
+        "improvement_percent",
+        "improvement_error_percent",
+        "status",
+    )
+    names = list(dict.fromkeys(chain.from_iterable(design["values"] for design in answer["designs"])))
+    units = {name: told["unit"] for design in answer["designs"] for name, told in design["values"].items()}
+    yield ["design", "layout", *said, *(f"{name} [{units[name]}]" for name in names)]
+    for design in answer["designs"]:
+        values = [design["values"].get(name, {}).get("value") for name in names]
+        for result in design["results"]:
+            yield [design["name"], design["layout"], *(result[key] for key in said), *values]
+
+
+def _response(answer: Mapping[str, Any]) -> Rows:
+    curves = answer["curves"]
+    yield ["frequency [Hz]", *(f"{c['name']} {c['index']} {c['label']} [{c['unit']}]" for c in curves)]
+    yield from (
+        list(row) for row in zip(answer["frequency"].tolist(), *(c["gain"].tolist() for c in curves), strict=True)
+    )
+
+
+def _history(answer: Mapping[str, Any]) -> Rows:
+    """Each output has times of its own, where it is lowest and highest."""
+    yield ["output", "time [s]", "value", "unit"]
+    for signal in answer["signals"]:
+        for time, value in zip(signal["time"].tolist(), signal["values"].tolist(), strict=True):
+            yield [signal["name"], time, value, signal["unit"]]
+
+
+_TABLES: dict[str, Callable[[Mapping[str, Any]], Rows]] = {
+    "indices": _indices,
+    "response": _response,
+    "history": _history,
+}

@@ -1,0 +1,67 @@
+"""Answers and errors as they go over the wire."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from inerter.app.documents import problems_of
+from inerter.errors import InerterError, WorkError
+
+
+class Refused(Exception):  # noqa: N818 -- an answer, not a fault
+    """A request that is refused, with the status of the answer and a sentence."""
+
+    def __init__(self, status: int, /, sentence: str, **more: Any) -> None:
+        super().__init__(status, sentence, more)
+        self.status, self.body = status, {"sentence": sentence, **more}
+
+
+def encoded(data: Any) -> bytes:
+    """Data as JSON: nan is null, infinity is text, arrays are lists."""
+    return json.dumps(_plain(data), ensure_ascii=False, allow_nan=False).encode("utf-8", "backslashreplace")
+
+
+def decoded(text: bytes) -> Any:
+    """JSON as data; raises `Refused` where it is none."""
+    try:
+        return json.loads(text, parse_constant=_no_number)
+    except (ValueError, RecursionError) as error:
+        raise Refused(400, f"The body is not JSON ({_shortly(error)}).") from None
+
+
+def refusal_of(error: Exception) -> Refused:
+    """What answers a request that the library refuses."""
+    if isinstance(error, WorkError):
+        return Refused(500, str(error))
+    if isinstance(error, InerterError):
+        return Refused(400, str(error), problems=problems_of(error))
+    return Refused(400, f"This cannot be computed ({_shortly(error)}).", problems=[])
+
+
+def _no_number(text: str) -> Any:
+    raise ValueError(f"{text} is no number of JSON")
+
+
+def _shortly(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0][:200]
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case Mapping():
+            return {str(key): _plain(item) for key, item in value.items()}
+        case list() | tuple():
+            return [_plain(item) for item in value]
+        case np.ndarray():
+            finite = value.dtype.kind != "f" or bool(np.isfinite(value).all())
+            return value.tolist() if finite else _plain(value.tolist())
+        case np.generic():
+            return _plain(value.item())
+        case float() if not math.isfinite(value):
+            return None if math.isnan(value) else str(value)
+    return value

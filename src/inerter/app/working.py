@@ -1,0 +1,78 @@
+"""What a process does with a piece of long work: it tells what happens in a file, and stops when another file asks."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from pkgutil import resolve_name
+from typing import Any
+
+from inerter.app.calls import called
+from inerter.app.kinds import KINDS
+from inerter.app.wire import decoded, encoded
+from inerter.writing import whole
+
+REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "stop"
+_OFTEN = 0.05  # seconds between two lines about progress
+
+
+class Stopped(Exception):  # noqa: N818 -- nothing is wrong
+    """Somebody asked that the work stops."""
+
+
+@dataclass
+class _Telling:
+    folder: Path
+    last: float = 0.0
+
+    def __call__(self, done: int, total: int, told: str) -> None:
+        if (self.folder / STOP).exists():
+            raise Stopped
+        now = time.monotonic()
+        if now - self.last > _OFTEN or done == total:
+            self.last = now
+            write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told})
+
+
+def work(folder: str) -> dict[str, Any]:
+    """Do the work whose request is in a folder, and write its result there; returns how it ended."""
+    place = Path(folder)
+    request = decoded((place / REQUEST).read_bytes())
+    stopped = False
+
+    def run() -> Any:
+        nonlocal stopped
+        try:
+            return resolve_name(KINDS[request["kind"]].home)(request, place, _Telling(place))
+        except Stopped:
+            stopped = True
+            return None
+
+    status, found = called(run)
+    if stopped:
+        return {"event": "stopped"}
+    if status != 200:
+        return {"event": "failed", **found}
+    with whole(place / RESULT) as draft:
+        draft.write_bytes(found)
+    return {"event": "done"}
+
+
+def write_event(folder: Path, event: dict[str, Any]) -> None:
+    """Append an event to those of a piece of work."""
+    with (folder / EVENTS).open("ab") as stream:
+        stream.write(encoded({**event, "time": time.time()}) + b"\n")
+
+
+def events_of(folder: Path, start: int = 0) -> tuple[list[dict[str, Any]], int]:
+    """The events behind so many bytes, and how many bytes there are now; a line without its end is left for later."""
+    path = folder / EVENTS
+    if not path.exists():
+        return [], start
+    with path.open("rb") as stream:
+        stream.seek(start)
+        text = stream.read()
+    whole_text = text[: text.rfind(b"\n") + 1]
+    return [json.loads(line) for line in whole_text.splitlines()], start + len(whole_text)

@@ -1,0 +1,52 @@
+"""The results of a study as data: what `inerter run --json` prints."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from textwrap import indent
+from typing import Any
+
+import numpy as np
+
+from inerter.files.study.running import StudyResult
+from inerter.report.json_data import json_data
+
+_JSON = {"improvement_error": "improvement_error_percent"}
+
+
+def as_text(result: StudyResult) -> Iterator[str]:
+    """All results as JSON, in pieces: a list of a million designs is never held."""
+    budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
+    whole = json.dumps({**result.data.attrs, "designs": [None], **budgets}, indent=2)
+    before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
+    separator = "\n"
+    yield before
+    for design in _designs(result):
+        yield separator + indent(json.dumps(design, indent=2), "    ")
+        separator = ",\n"
+    yield f"{after}\n"
+
+
+def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
+    """What there is to say of each design and method."""
+    data = result.data
+    errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
+    arrays = {name: data[name].values for name in ("value", "improvement", "status", "parameter_value", *errors)}
+    labels = {str(dim): data[dim].values.tolist() for dim in data.value.dims}
+    units = dict(zip(labels["index"], data.index_unit.values.tolist(), strict=True))
+    parameters = data.parameter.values.tolist()
+    where = data.value.dims.index("method")
+    for place in np.ndindex(data.value.shape):
+        design = place[:where] + place[where + 1 :]
+        names = {dim: column[i] for (dim, column), i in zip(labels.items(), place, strict=True)}
+        values = zip(parameters, arrays["parameter_value"][design].tolist(), strict=True)
+        yield {
+            **names,
+            "value": json_data(arrays["value"][place].item()),
+            "unit": units[names["index"]],
+            "improvement_percent": json_data(arrays["improvement"][place].item()),
+            **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
+            "status": arrays["status"][design],
+            "parameters": {name: value for name, value in values if np.isfinite(value)},
+        }

@@ -1,0 +1,122 @@
+"""A measured profile: heights over the distance along one track of a road, or two."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import RecordError, SignalError
+from inerter.signals.arguments import positive
+from inerter.signals.signal import Sampled, Signal
+
+Matrix = NDArray[np.float64]
+LEFT, RIGHT = "left", "right"
+_EVEN = 1e-3  # of an interval: distances that stray less from an even spacing count as even
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Heights [m] over the distance [m] along a road; with `right` there are two tracks, of which `height` is the left.
+
+    Raises `RecordError` unless all are finite vectors of one length of at least two, and the distance increases.
+    """
+
+    distance: Matrix  # (n,) [m]
+    height: Matrix  # (n,) [m]
+    right: Matrix | None = None  # (n,) [m]
+    source: str = "profile"
+
+    def __post_init__(self) -> None:
+        for name in ("distance", "height", "right"):
+            given = getattr(self, name)
+            if given is None and name == "right":
+                continue
+            values: NDArray[np.generic] = np.asarray(given)
+            if values.ndim != 1 or values.dtype.kind not in "fiu" or values.size < 2:
+                raise RecordError(f"The {name} of a profile must be a vector of two or more real numbers [m].")
+            if values.size != np.size(self.distance):
+                raise RecordError(
+                    f"The {name} of a profile must be as long as its distance, got {values.size} and "
+                    f"{np.size(self.distance)} points."
+                )
+            array = np.array(values, dtype=float)
+            bad = np.flatnonzero(~np.isfinite(array))
+            if bad.size:
+                raise RecordError(
+                    f"The {name} of {self.source!r} is missing or no finite number at {bad.size} points, the first is "
+                    f"point {bad[0]}. Fill these gaps, or cut the profile there."
+                )
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        back = np.flatnonzero(np.diff(self.distance) <= 0.0)
+        if back.size:
+            i = int(back[0])
+            raise RecordError(
+                f"The distances of {self.source!r} must increase, but point {i + 1} is at {self.distance[i + 1]:.9g} m "
+                f"after {self.distance[i]:.9g} m. Sort the points, and drop repeated ones."
+            )
+
+    @property
+    def tracks(self) -> dict[str, Matrix]:
+        """The heights of each track by its name, "left" and "right"; of a single one by the name ""."""
+        return {"": self.height} if self.right is None else {LEFT: self.height, RIGHT: self.right}
+
+    @property
+    def length(self) -> float:
+        """From the first point to the last [m]."""
+        return float(self.distance[-1] - self.distance[0])
+
+    @property
+    def interval(self) -> float:
+        """Mean distance between points [m]."""
+        return self.length / (self.distance.size - 1)
+
+    def even(self, interval: float | None = None) -> Profile:
+        """The same profile at evenly spaced points, by lines between those there are.
+
+        Without an `interval` [m], the mean one; itself, where its points are evenly spaced already.
+
+        Raises `RecordError` unless the interval is positive and at most the length.
+        """
+        if interval is None:
+            grid = self.distance[0] + self.interval * np.arange(self.distance.size)
+            if np.max(np.abs(self.distance - grid)) <= _EVEN * self.interval:
+                return self
+            interval = self.interval
+        if not is_number(interval) or not 0.0 < interval <= self.length:
+            raise RecordError(
+                f"A profile of {self.length:g} m cannot have a point every {interval!r} m; take an interval within it."
+            )
+        points = int(np.floor(self.length / interval * (1.0 + 1e-12))) + 1
+        grid = self.distance[0] + interval * np.arange(points)
+        along = [np.interp(grid, self.distance, heights) for heights in self.tracks.values()]
+        return replace(self, distance=grid, height=along[0], right=along[1] if len(along) > 1 else None)
+
+    def driven(self, speed: float, track: str = "") -> Sampled:
+        """One track as a signal: driven over at `speed` [m/s] from its first point at t = 0, by a cubic spline.
+
+        Raises `SignalError` unless `speed` is positive, and `track` one of its tracks.
+        """
+        velocity = positive("The speed over a profile", speed, "m/s")
+        if track not in self.tracks:
+            raise SignalError(f"{self.source!r} has no track {track!r}: {_tracks_there(self.tracks)}.")
+        label = " ".join(filter(None, ("profile", self.source, track)))
+        return Signal.sampled(
+            (self.distance - self.distance[0]) / velocity, self.tracks[track], speed=velocity, label=label
+        )
+
+    def signals(self, speed: float) -> Sampled | dict[str, Sampled]:
+        """What `simulate(..., road=...)` takes: one signal, or one for the left and one for the right track.
+
+        Raises `SignalError` unless `speed` [m/s] is positive.
+        """
+        found = {track: self.driven(speed, track) for track in self.tracks}
+        return found.get("", found)
+
+
+def _tracks_there(tracks: Mapping[str, Matrix]) -> str:
+    return "it is one track, with the name ''" if "" in tracks else "there are 'left' and 'right'"

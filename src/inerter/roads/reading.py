@@ -1,0 +1,254 @@
+"""Reading a measured profile: tables as those of records, and OpenCRG."""
+
+from __future__ import annotations
+
+import os
+import re
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypedDict, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import RecordError, SignalError, UnitError
+from inerter.records import tables
+from inerter.records.channels import Channel
+from inerter.records.optional import library, translated
+from inerter.roads.profile import Profile
+from inerter.signals.signal import Sampled
+from inerter.units import parse_quantity, shown
+
+Matrix = NDArray[np.float64]
+_TABLES = (".csv", ".tsv", ".txt", ".dat")
+# Words that tell a column by themselves, in the order in which they are looked for.
+_WORDS = {
+    "distance": r"distance|dist|chainage|station|stationing|position|pos|x|s|u",
+    "right": r"right|r|zr",
+    "height": r"left|l|zl|height|elevation|profile|altitude|z|y",
+}
+
+
+class Columns(TypedDict, total=False):
+    """Which column is which, by its name in the file or its number from 0."""
+
+    distance: str | int | None
+    height: str | int | None
+    right: str | int | None
+
+
+def read_profile(
+    path: str | os.PathLike[str],
+    *,
+    units: Mapping[str, str] | None = None,
+    interval: float | None = None,
+    lateral: Sequence[float] | None = None,
+    **named: Unpack[Columns],
+) -> Profile:
+    """The profile in a table (.csv, .tsv, .txt, .dat) or in an OpenCRG file (.crg).
+
+    A table has columns of distances and heights, in any order, with any separator, decimal point or comma, and with a
+    header or without: `distance`, `height` (of the left track, where there are two) and `right` are named as in the
+    file, numbered from 0, or found by an obvious name (distance, x, height, elevation, left, right, ...); without a
+    header the one that increases is the distance. Units stand in the header, or in `units`, such as {"distance": "m",
+    "height": "mm"}, which hold for both tracks. `interval` [m] gives the spacing where there are no distances.
+
+    `lateral` are the positions [m] at which a .crg file is read, left of its reference line positive: one, or those of
+    the left and the right track; (0,) if it is left out. That needs PyOpenCRG (`pip install "inerter[roads]"`).
+
+    Raises `RecordError` for a file, column or unit that cannot be used, in one sentence that says what to try.
+    """
+    name = _checked(path, named)
+    source, suffix = Path(name).name, Path(name).suffix.lower()
+    if suffix == ".crg":
+        if units is not None or interval is not None or named:
+            raise RecordError("An OpenCRG file says itself what is where: give its path, and `lateral` if you like.")
+        return _from_crg(name, source, _checked_lateral(lateral))
+    if lateral is not None:
+        raise RecordError("`lateral` is for OpenCRG files; the tracks of a table are columns, `height` and `right`.")
+    return _from_table(name, source, _checked_units(units), interval, named)
+
+
+def profile(path: str | os.PathLike[str], speed: float) -> Sampled:
+    """A measured road of one track, driven at `speed` [m/s] from its first point at t = 0, by a cubic spline.
+
+    `path` is a file as `read_profile` reads it without being told more.
+
+    Raises `SignalError` for a file that cannot be read as such, or has two tracks.
+    """
+    try:
+        return read_profile(path).driven(speed)
+    except RecordError as problem:
+        raise SignalError(str(problem)) from None
+
+
+def _checked(path: str | os.PathLike[str], named: Columns) -> str:
+    for role in named:
+        if role not in Columns.__annotations__:
+            raise RecordError(
+                f"read_profile(...) has no argument {role!r}; columns are {', '.join(Columns.__annotations__)}."
+            )
+    if not isinstance(path, str | os.PathLike):
+        raise RecordError(f"A profile is read from the path of a CSV or CRG file, got {path!r}.")
+    name = os.fsdecode(path)
+    if "\0" in name or os.path.isdir(name):
+        raise RecordError(f"{name!r} cannot be read: it is no file. Give the path of a CSV or CRG file.")
+    if not os.path.exists(name):
+        raise RecordError(f"There is no file {name!r}, looked for in {os.getcwd()!r}.")
+    suffix = Path(name).suffix.lower()
+    if suffix not in (*_TABLES, ".crg"):
+        raise RecordError(
+            f"{Path(name).name}: profiles are read from {', '.join((*_TABLES, '.crg'))}, by the suffix of the file, "
+            f"not from {suffix or 'a file without one'}. Export or rename it."
+        )
+    return name
+
+
+def _checked_units(units: object) -> dict[str, str]:
+    if units is None:
+        return {}
+    if not isinstance(units, Mapping) or not {*units} <= {"distance", "height"}:
+        raise RecordError(f'The units of a profile are such as {{"distance": "m", "height": "mm"}}, got {units!r}.')
+    return dict(units)
+
+
+def _from_table(
+    name: str, source: str, units: dict[str, str], interval: float | None, named: Mapping[str, Any]
+) -> Profile:
+    if interval is not None and (not is_number(interval) or interval <= 0.0):
+        raise RecordError(f"The interval between points must be a positive number of m, got {interval!r}.")
+    if interval is not None and named.get("distance") is not None:
+        raise RecordError(f"Give the interval ({interval:g} m) or the column of distances, not both.")
+    try:
+        with tables.opened(name, source) as contents:
+            columns = dict(zip(contents.channels, contents.read(contents.channels, _silent), strict=True))
+    except OSError as problem:
+        raise RecordError(f"{source} cannot be opened: {problem.strerror}.") from None
+    values = {channel: np.asarray(samples.values, dtype=float) for channel, samples in columns.items()}
+    chosen = _chosen(source, values, {role: named.get(role) for role in _WORDS}, spaced=interval is not None)
+    found: dict[str, Matrix] = {
+        role: np.asarray(values[channel] * _scale(source, role, channel, units), dtype=float)
+        for role, channel in chosen.items()
+        if not (role == "distance" and interval is not None)
+    }
+    if interval is not None:
+        found["distance"] = interval * np.arange(found["height"].size, dtype=float)
+    return Profile(found["distance"], found["height"], found.get("right"), source)
+
+
+def _silent(fraction: float) -> None:
+    pass
+
+
+def _chosen(
+    source: str, values: Mapping[Channel, Matrix], named: Mapping[str, str | int | None], spaced: bool
+) -> dict[str, Channel]:
+    """The column of each role; `spaced` says that no distances are needed."""
+    channels = tuple(values)
+    asked = {role: _named(source, channels, role, given) for role, given in named.items() if given is not None}
+    chosen = dict(asked)
+    for role, words in _WORDS.items():
+        if role not in chosen and not (role == "distance" and spaced):
+            left = [channel for channel in channels if channel not in chosen.values()]
+            alike = [channel for channel in left if _is_called(channel.name, words)]
+            if len(alike) > 1:
+                names = " and ".join(channel.label for channel in alike[:3])
+                raise RecordError(f"{source}: {names} may both be the {role}. Name it: {role}={alike[0].name!r}.")
+            chosen |= {role: alike[0]} if alike else {}
+    if chosen == asked and not any(channel.unit for channel in channels):  # no header, or a remark taken for one
+        chosen |= _by_order(source, values, chosen, spaced)
+    for role in ("distance", "height"):
+        if role not in chosen and not (role == "distance" and spaced):
+            there = ", ".join(channel.label for channel in channels[:12])
+            raise RecordError(
+                f"{source}: no column has an obvious name for the {role}; there are {there}. Name it, such as "
+                f"{role}={channels[-1].name!r}{', or give the interval' if role == 'distance' else ''}."
+            )
+    if len(set(chosen.values())) < len(chosen):
+        raise RecordError(f"{source}: one column is named for two of {', '.join(chosen)}. Name another one.")
+    return chosen
+
+
+def _is_called(name: str, words: str) -> bool:
+    plain = re.sub(r"[_.\-/]", " ", name).casefold()
+    return re.search(rf"(?<!\w)(?:{words})(?!\w)", plain) is not None
+
+
+def _by_order(
+    source: str, values: Mapping[Channel, Matrix], chosen: Mapping[str, Channel], spaced: bool
+) -> dict[str, Channel]:
+    """Of a table without a header: the distance is the one column that increases; then heights, left before right."""
+    left = [channel for channel in values if channel not in chosen.values()]
+    found: dict[str, Channel] = {}
+    if "distance" not in chosen and not spaced:
+        rising = [channel for channel in left if np.all(np.diff(values[channel]) > 0.0)]
+        if len(rising) != 1:
+            which = "no column increases" if not rising else "several columns increase"
+            raise RecordError(
+                f"{source} has no header, and {which} throughout, so that the distance is not known. Name it by its "
+                f"number, such as distance=0."
+            )
+        found["distance"] = rising[0]
+        left.remove(rising[0])
+    if "height" not in chosen and len(left) + ("right" in chosen) in (1, 2):
+        found["height"] = left.pop(0)
+        found |= {"right": left[0]} if left else {}
+    return found
+
+
+def _named(source: str, channels: Sequence[Channel], role: str, given: object) -> Channel:
+    if isinstance(given, int) and not isinstance(given, bool) and 0 <= given < len(channels):
+        return channels[given]
+    alike = [channel for channel in channels if channel.name == given]
+    if len(alike) != 1:
+        there = ", ".join(channel.label for channel in channels[:12])
+        raise RecordError(f"{source} has no single column {given!r} for the {role}; there are {there}.")
+    return alike[0]
+
+
+def _scale(source: str, role: str, channel: Channel, units: Mapping[str, str]) -> float:
+    """What one unit of the column is worth [m]."""
+    kind = "distance" if role == "distance" else "height"
+    unit = units.get(kind, channel.unit)
+    example = {"distance": "m", "height": "mm"}[kind]
+    if not isinstance(unit, str) or not unit.strip():
+        raise RecordError(
+            f'{source}: {channel.name!r} has no unit. Name the unit of the {kind}, such as units={{"{kind}": '
+            f'"{example}"}}.'
+        )
+    try:
+        worth = parse_quantity(f"1 {unit.strip()}", "m")
+    except UnitError:
+        raise RecordError(
+            f"{source}: the unit {shown(unit)} of {channel.name!r} is none of length. Name the unit of the {kind}, "
+            f'such as units={{"{kind}": "{example}"}}.'
+        ) from None
+    return worth
+
+
+def _checked_lateral(lateral: object) -> tuple[float, ...]:
+    if lateral is None:
+        return (0.0,)
+    given = tuple(lateral) if isinstance(lateral, Sequence) and not isinstance(lateral, str) else ()
+    if len(given) not in (1, 2) or not all(map(is_number, given)):
+        raise RecordError(
+            f"`lateral` is one position [m], or two, left and right, such as (0.75, -0.75); got {lateral!r}."
+        )
+    return tuple(map(float, given))
+
+
+def _from_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
+    crg = library("pyopencrg", "roads", "OpenCRG files")
+    with translated(source, "OpenCRG"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # its remarks on headers that no height depends on
+        road = crg.read(name)
+        distance, low, high = np.array(road.u, dtype=float), float(road.v_min), float(road.v_max)
+        heights = [np.asarray(road.uv_to_z(distance, np.full(distance.size, at)), dtype=float) for at in lateral]
+    for at in lateral:
+        if not low - 1e-6 <= at <= high + 1e-6:
+            raise RecordError(
+                f"{source} reaches from {low:g} to {high:g} m beside its reference line, not to {at:g} m."
+            )
+    return Profile(distance, heights[0], heights[1] if len(heights) > 1 else None, source)

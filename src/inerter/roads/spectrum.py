@@ -1,0 +1,104 @@
+"""How rough a profile is over wavenumbers: its spectrum, and the straight line of ISO 8608 through it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import RecordError
+from inerter.roads.profile import Profile
+from inerter.signals.road import ROAD_CLASSES, Road, RoadClass
+
+Matrix = NDArray[np.float64]
+N0 = 0.1  # [cycle/m]
+LOWEST, HIGHEST = 0.011, 2.83  # [cycle/m] of the line of ISO 8608
+_OCTAVE = 12  # parts of an octave in which densities are averaged before the line is laid
+_FEWEST = 3  # bands that make a line
+_SEGMENTS = 8  # of the profile, which overlap by half
+
+
+@dataclass(frozen=True, eq=False)
+class RoadSpectrum:
+    """The one-sided density of the heights over wavenumber, and the line Gd(n) = Gd(n0) (n / n0)^-waviness through it.
+
+    The line is that of least squares between the logarithms of densities averaged in twelfths of an octave from
+    `lowest` to `highest`; `scatter` is the standard deviation of these from the line, as a factor.
+    """
+
+    wavenumber: Matrix  # (n,) [cycle/m]
+    density: Matrix  # (n,) [m^3]
+    unevenness: float  # Gd(n0) of the line [m^3]
+    waviness: float
+    standard: float  # Gd(n0) of the line whose waviness is 2, as ISO 8608 has it [m^3]
+    scatter: float
+    lowest: float  # [cycle/m] of the line
+    highest: float
+
+    @property
+    def iso8608_class(self) -> RoadClass:
+        """The class of the line whose waviness is 2."""
+        return next(c for c in ROAD_CLASSES.values() if self.standard < c.highest)
+
+    def road(self, speed: float) -> Road:
+        """The road of waviness 2 that is as rough, for indices; it is driven at `speed` [m/s]."""
+        return Road(roughness=0.5 * self.standard * N0**2, speed=speed)
+
+
+def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIGHEST, track: str = "") -> RoadSpectrum:
+    """The spectrum of one track of a profile, by Welch's method, and the line through it from `lowest` to `highest`.
+
+    The profile is cut into pieces that overlap by half, a straight line is taken from each, and Hann's window put on
+    it. Without a `track`, of two tracks the mean. Points that are not evenly spaced are joined by lines.
+
+    Raises `RecordError` for a profile that is too short, or spaced too widely, for three bands of the line.
+    """
+    if not isinstance(profile, Profile):
+        raise RecordError(f"A road spectrum is that of a profile, such as read_profile(...), got {profile!r}.")
+    if not (is_number(lowest) and is_number(highest) and 0.0 < lowest < highest):
+        raise RecordError(
+            f"The line is laid from a low to a higher wavenumber [cycle/m], got {lowest!r} to {highest!r}."
+        )
+    even = profile.even()
+    if track and track not in even.tracks:
+        raise RecordError(f"{profile.source!r} has no track {track!r}.")
+    heights = [even.tracks[track]] if track else list(even.tracks.values())
+    size = max(2 * even.distance.size // (_SEGMENTS + 1), min(even.distance.size, 16))
+    wavenumber, densities = scipy.signal.welch(
+        np.array(heights), fs=1.0 / even.interval, nperseg=size, window="hann", detrend="linear"
+    )  # type: ignore[call-overload]
+    density = np.mean(densities, axis=0)
+    if not np.any(density[1:] > 0.0):
+        raise RecordError(f"{profile.source!r} is flat: there is no spectrum to lay a line through.")
+    n, smooth = _bands(wavenumber[1:], density[1:], lowest, highest)
+    if n.size < _FEWEST:
+        raise RecordError(
+            f"{profile.source!r} is {profile.length:g} m long with a point every {even.interval:g} m: too short, or "
+            f"too widely spaced, for a line from {lowest:g} to {highest:g} cycle/m."
+        )
+    x, y = np.log(n / N0), np.log(smooth)
+    slope, intercept = np.polyfit(x, y, 1)
+    return RoadSpectrum(
+        wavenumber=wavenumber[1:],
+        density=density[1:],
+        unevenness=math.exp(intercept),
+        waviness=-float(slope),
+        standard=math.exp(float(np.mean(y + 2.0 * x))),
+        scatter=math.exp(float(np.std(y - slope * x - intercept))),
+        lowest=float(n[0]),
+        highest=float(n[-1]),
+    )
+
+
+def _bands(wavenumber: Matrix, density: Matrix, lowest: float, highest: float) -> tuple[Matrix, Matrix]:
+    """Means in bands of a twelfth of an octave, where there are lines: wavenumber (geometric mean) and density."""
+    inside = (wavenumber >= lowest) & (wavenumber <= highest) & (density > 0.0)
+    n, d = wavenumber[inside], density[inside]
+    number = np.floor(_OCTAVE * np.log2(n / lowest)).astype(int) if n.size else np.zeros(0, int)
+    found = np.unique(number)
+    centre = np.array([np.exp(np.mean(np.log(n[number == band]))) for band in found])
+    return centre, np.array([np.mean(d[number == band]) for band in found])

@@ -1,0 +1,1 @@
+"""Designs whose values scatter: what that does to an index, and which design bears it best."""

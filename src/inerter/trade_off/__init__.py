@@ -1,0 +1,1 @@
+"""Trade-offs: the best designs of several indices at once."""

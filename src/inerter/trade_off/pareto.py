@@ -1,0 +1,402 @@
+"""`pareto`: the front of two or three indices, each point a local optimum of exact gradients from many starts.
+
+The criteria are normalised by what the single optima have of them. A point of the front is the solution of: the least
+t such that criterion i exceeds a_i by t at the most, where a lies on the line (or triangle) through the single optima.
+So points are evenly spread whether the front is convex or not, and one after the other starts from its neighbours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, pairwise
+from numbers import Integral
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.errors import DesignError, InerterError, PerformanceIndexError, Status, StatusKind
+from inerter.methods.asking import Asked, estimate_of, objective_of
+from inerter.methods.combined import Part, combined
+from inerter.methods.method import Differentiable, Method, check_request
+from inerter.methods.norm import Norm
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.networks.elements import Free
+from inerter.optimisation.constrained import Limited, polished, searches, trust_region_within
+from inerter.optimisation.held import held_at
+from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
+from inerter.optimisation.local import LocalOptimum, trust_region
+from inerter.optimisation.optimise import Optimum, check_free, optimise
+from inerter.optimisation.threads import one_blas_thread
+from inerter.trade_off.front import Front
+from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import running_on
+
+Array = NDArray[np.float64]
+_NO_CONFLICT = 1e-6  # relative size of a trade-off up to which there is none
+_SHIFT = 3.0  # added to normalised criteria, so that they have logarithms
+_SAME = 1e-4  # normalised distance up to which two points are one
+_SLACK = 1e-6  # of a normalised criterion that is better than asked for
+_LEXICOGRAPHIC, _FLAT = 1e-8, 1e-3  # relative: what an end may give up, and what must be gained for it
+_STARTS = 3  # from the sample for each point
+
+
+def pareto(
+    vehicle: Vehicle,
+    indices: Sequence[Asked],
+    method: Method,
+    *,
+    points: int = 25,
+    subject_to: Sequence[Limit] = (),
+    seed: int = 0,
+    executor: Executor | None = None,
+) -> Front:
+    """The trade-off between two or three indices: designs of which none is better than another in all of them.
+
+    The ends are the single optima. Between them `points` are spread evenly in the criteria, normalised by the ends;
+    each is searched from a sample of all designs and from its neighbours, and taken again where another came upon
+    something better. `subject_to` is as that of `optimise`. A method that simulates starts from the front of a quick
+    one. The same seed gives the same front. An `executor` shares random roads, as that of `optimise` does.
+
+    Raises `PerformanceIndexError` unless there are two or three indices that differ, `DesignError` if `points` is not
+    a whole number from 3 on (6 for three indices), and what `optimise` raises.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(it.free(100, 1e5, "c")) - it.Inerter(it.free(1, 2000, "b"))
+    >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    >>> road = it.Road(roughness=5e-7, speed=25)
+    >>> front = it.pareto(car, [it.RideComfort(road), it.TyreLoad(road)], it.Norm(), points=5)
+    >>> front.values.round(3)[[0, -1]]
+    array([[  2.428, 503.131],
+           [  2.437, 501.205]])
+    """
+    criteria = _checked(vehicle, indices, method, points)
+    limits = check_limits(subject_to)
+    free = check_free(vehicle)
+    if not isinstance(seed, Integral) or seed < 0:
+        raise DesignError(f"The seed is a whole number from 0 on, got {seed!r}.")
+    with one_blas_thread(), running_on(executor):
+        ends = []
+        for one in criteria:
+            end = optimise(vehicle, one, method, subject_to=limits, seed=int(seed))
+            if not np.isfinite(end.value) or end.status.kind is StatusKind.INFEASIBLE:
+                return _empty(criteria, int(seed), end.status)
+            ends.append(end)
+        trade = _trade(vehicle, criteria, method, limits, free, ends, int(seed))
+        found = trade.front(int(points))
+        return _front(trade, found, int(seed))
+
+
+def _checked(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[Asked, ...]:
+    if not isinstance(indices, Sequence) or isinstance(indices, str) or len(indices) not in (2, 3):
+        raise PerformanceIndexError(f"A trade-off is between two or three indices, got {indices!r}.")
+    for one in indices:
+        check_request(vehicle, one, method)
+    if len(set(map(repr, indices))) < len(indices):
+        raise PerformanceIndexError("A trade-off is between indices that differ; one is there twice.")
+    least = 3 if len(indices) == 2 else 6
+    if not isinstance(points, Integral) or isinstance(points, bool) or points < least:
+        raise DesignError(f"A front of {len(indices)} indices has at least {least} points, got points={points!r}.")
+    return tuple(indices)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """A design on the front: its point, its criteria, and these normalised."""
+
+    point: Array
+    values: Array
+    normal: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Trade:
+    """Criteria of a vehicle as functions of its free values, normalised by the single optima."""
+
+    vehicle: Vehicle
+    indices: tuple[Asked, ...]
+    method: Method
+    objectives: tuple[Any, ...]
+    bounds: tuple[Bound, ...]
+    lower: Array
+    upper: Array
+    ends: tuple[Array, ...]  # points
+    hints: Array  # points that a quick method has found
+    seed: int
+
+    def criteria(self, points: Array) -> Array:
+        """The indices (n, criteria) at each row of `points`."""
+        return np.column_stack([objective.values(points) for objective in self.objectives])
+
+    @cached_property
+    def scale(self) -> tuple[Array, Array]:
+        """The least of each criterion, and how far the largest at an end is from it."""
+        table = self.criteria(np.array(self.ends))
+        ideal = table.min(axis=0)
+        size = table.max(axis=0) - ideal
+        return ideal, np.where(size > 0.0, size, 1.0)
+
+    def at(self, point: Array) -> _Found:
+        """What a point comes to."""
+        values = self.criteria(point[None])[0]
+        ideal, size = self.scale
+        return _Found(point, values, (values - ideal) / size)
+
+    @cached_property
+    def sample(self) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Many designs that keep the limits, with their normalised criteria, and the numbers of their neighbours."""
+        if not self._quick:
+            table = self.criteria(self.hints)
+            own = np.arange(len(self.hints), dtype=np.int64)[:, None]
+            return self.hints, (table - self.scale[0]) / self.scale[1], own
+        count = self.lower.size
+        sampler = scipy.stats.qmc.Sobol(count, rng=np.random.default_rng(self.seed))
+        unit = sampler.random_base2(min(7 + count, 12))
+        points = np.exp(np.log(self.lower) + unit * (np.log(self.upper) - np.log(self.lower)))
+        table = (self.criteria(points) - self.scale[0]) / self.scale[1]
+        over = Limited(None, self.bounds, self.lower, self.upper).excess(points)
+        table += 10.0 * np.maximum(over, 0.0)[:, None]
+        near = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * count + 1)[1], dtype=np.int64)
+        return points, table, near
+
+    @cached_property
+    def _quick(self) -> bool:
+        return all(isinstance(one, Differentiable) for one in self.objectives) and is_smooth(self.bounds)
+
+    def problem(self, aim: Array, which: Sequence[int]) -> Limited:
+        """The least of what the normalised criteria exceed their aims by."""
+        ideal, size = self.scale
+        parts = [Part(self.objectives[i], None, 1.0 / size[i], _SHIFT - ideal[i] / size[i] - aim[i]) for i in which]
+        return Limited(combined(parts, worst=True), self.bounds, self.lower, self.upper)
+
+    def starts(self, aim: Array, which: Sequence[int]) -> list[Array]:
+        """The lowest local minima of the sample."""
+        points, table, near = self.sample
+        merit = np.max(table[:, which] - aim[list(which)], axis=1)
+        merit = np.where(np.isfinite(merit), merit, np.inf)
+        order = np.argsort(merit, kind="stable")
+        lowest = [i for i in order[: 64 * _STARTS] if np.isfinite(merit[i]) and merit[i] <= merit[near[i]].min()]
+        return [points[i] for i in lowest[:_STARTS]]
+
+    def solve(self, aim: Array, known: Sequence[_Found], which: Sequence[int] = ()) -> _Found | None:
+        """The point of the front that comes closest to an aim, from the sample and from what is known."""
+        which = which or range(len(self.objectives))
+        close = sorted(known, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
+        first = [one.point for one in close[:2]] + self.starts(aim, which)
+        problem = self.problem(aim, which)
+        found = searches(problem, first) if self._quick else [_costly(problem, first)]
+        kept = [one for one in found if one.excess <= 1e-6 and np.isfinite(one.value)]
+        if not kept:
+            return None
+        best = self.at(min(kept, key=lambda one: one.value).point)
+        over = best.normal[list(which)] - aim[list(which)]
+        if len(which) < len(self.objectives) or over.max() - over.min() > _SLACK:
+            return self.strict(best)
+        return best
+
+    def strict(self, found: _Found) -> _Found:
+        """A design that is no worse in any criterion, and cannot be better in one alone."""
+        ideal, size = self.scale
+        parts = [Part(one, None, 1.0 / s, -i / s + 1.0) for one, i, s in zip(self.objectives, ideal, size, strict=True)]
+        no_worse = tuple(
+            Bound(Limit(index, Sense.AT_MOST, float(value)), objective)
+            for index, value, objective in zip(self.indices, found.values, self.objectives, strict=True)
+        )
+        problem = Limited(combined(parts, worst=False), (*self.bounds, *no_worse), self.lower, self.upper)
+        if not self._quick:
+            return found
+        start = problem.at(found.point, 0)
+        better = self.at(polished(problem, start).point)
+        gained = found.normal.sum() - better.normal.sum()
+        no_worse_now = np.all(better.normal <= found.normal + _SLACK) and np.all(
+            Limited(None, self.bounds, self.lower, self.upper).excess(better.point[None]) <= 1e-6
+        )
+        return better if gained > _SLACK and no_worse_now else found
+
+    def front(self, count: int) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
+        """Points of the front, and the pairs between which it jumps."""
+        ends = [self.at(point) for point in self.ends]
+        table = np.array([one.values for one in ends])
+        if np.all(np.ptp(table, axis=0) <= _NO_CONFLICT * self.scale[0]):
+            return ends[:1], set()
+        if len(self.objectives) == 2:
+            return self.between(ends, count)
+        return self.over_triangle(ends, count), set()
+
+    def between(
+        self, ends: Sequence[_Found], count: int, which: Sequence[int] = (0, 1)
+    ) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
+        """The front of two criteria from one end to the other."""
+        a, z = (one.normal for one in ends)
+        aims = [a + (z - a) * share for share in np.linspace(0.0, 1.0, count)[1:-1]]
+        found: list[_Found] = list(ends)
+        for aim in aims:
+            one = self.solve(aim, found, which)
+            found += [] if one is None else [one]
+        for aim in reversed(aims):  # again where another search came upon something better
+            problem, best = self.problem(aim, which), self.reached(aim, found, which)
+            again = polished(problem, problem.at(best.point, 0)) if self._quick else None
+            if again is not None and again.excess <= 1e-6:
+                found.append(self.at(again.point))
+        return self.filled(_undominated(found, which), count, which)
+
+    def reached(self, aim: Array, found: Sequence[_Found], which: Sequence[int]) -> _Found:
+        """What comes closest to an aim of all that was found."""
+        return min(found, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
+
+    def filled(
+        self, found: list[_Found], count: int, which: Sequence[int]
+    ) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
+        """So many points, in whose widest gaps others were put; and the gaps in which there is nothing."""
+        found, jumps = _thinned(found, count, which), set()
+        for _ in range(3 * count):
+            gaps = [
+                (float(np.linalg.norm(b.normal[list(which)] - a.normal[list(which)])), i)
+                for i, (a, b) in enumerate(pairwise(found))
+                if (a.point.tobytes(), b.point.tobytes()) not in jumps
+            ]
+            if not gaps:
+                break
+            widest, i = max(gaps)
+            typical = float(np.median([gap for gap, _ in gaps]))
+            if len(found) >= count and widest <= 1.6 * typical:
+                break
+            a, b = found[i], found[i + 1]
+            one = self.solve(0.5 * (a.normal + b.normal), [a, b], which)
+            apart = 0.0 if one is None else min(np.linalg.norm((one.normal - o.normal)[list(which)]) for o in (a, b))
+            if one is None or apart < 0.02 * widest:
+                jumps.add((a.point.tobytes(), b.point.tobytes()))
+                continue
+            found = _thinned(_undominated([*found, one], which), max(count, 3), which, keep=one)
+        return found, jumps
+
+    def over_triangle(self, ends: Sequence[_Found], count: int) -> list[_Found]:
+        """The front of three criteria: the fronts of each two, and points between them."""
+        steps = int(np.ceil(0.5 * (np.sqrt(8.0 * count + 1.0) - 3.0)))
+        found = list(ends)
+        for i, j in combinations(range(3), 2):
+            found += self.between([ends[i], ends[j]], steps + 1, (i, j))[0]
+        found = [self.strict(one) for one in found]
+        corners = np.array([one.normal for one in ends])
+        for a in range(1, steps):
+            for b in range(1, steps - a):
+                one = self.solve(np.array([a, b, steps - a - b]) / steps @ corners, found)
+                found += [] if one is None else [one]
+        found = _undominated(found, (0, 1, 2))
+        rng = scipy.stats.qmc.Sobol(3, rng=np.random.default_rng(self.seed))
+        shares = -np.log(np.maximum(rng.random(32), 1e-9))
+        for share in shares / shares.sum(axis=1, keepdims=True):
+            if len(found) >= count:
+                break
+            one = self.solve(share @ corners, found)
+            found = found if one is None else _undominated([*found, one], (0, 1, 2))
+        return _sparse(found, count, ends)
+
+
+def _costly(problem: Limited, first: Sequence[Array]) -> LocalOptimum:
+    start = first[int(np.argmin(problem.values(np.array(first))))]
+    if problem.bounds:
+        return trust_region_within(problem, start)
+    assert problem.objective is not None
+    return trust_region(problem.objective, start, problem.lower, problem.upper)
+
+
+def _undominated(found: Sequence[_Found], which: Sequence[int]) -> list[_Found]:
+    """Those that no other one is better than, each once, in order of the first criterion."""
+    table = np.array([one.normal for one in found])[:, list(which)]
+    kept: list[int] = []
+    for i in np.lexsort(table.T[::-1]):
+        better = np.all(table <= table[i] + 1e-12, axis=1) & np.any(table < table[i] - 1e-9, axis=1)
+        twin = any(np.abs(table[i] - table[j]).max() < _SAME for j in kept)
+        if not better.any() and not twin:
+            kept.append(int(i))
+    return [found[i] for i in kept]
+
+
+def _thinned(found: list[_Found], count: int, which: Sequence[int], keep: _Found | None = None) -> list[_Found]:
+    """At most so many, without those that lie closest to their neighbours; the ends stay."""
+    found = list(found)
+    while len(found) > count:
+        table = np.array([one.normal for one in found])[:, list(which)]
+        width = np.linalg.norm(table[2:] - table[:-2], axis=1)
+        if keep is not None:
+            width = np.where([one is keep for one in found[1:-1]], np.inf, width)
+        del found[1 + int(np.argmin(width))]
+    return found
+
+
+def _sparse(found: list[_Found], count: int, ends: Sequence[_Found]) -> list[_Found]:
+    """At most so many of three criteria, without those that lie closest together; the ends stay."""
+    found = list(found)
+    while len(found) > count:
+        table = np.array([one.normal for one in found])
+        far = np.linalg.norm(table[:, None] - table[None], axis=2) + 1e9 * np.eye(len(found))
+        fixed = [any(np.abs(row - end.normal).max() < _SAME for end in ends) for row in table]
+        del found[int(np.argmin(np.where(fixed, np.inf, np.sort(far, axis=1)[:, :2].sum(axis=1))))]
+    return found
+
+
+def _trade(
+    vehicle: Vehicle,
+    indices: tuple[Asked, ...],
+    method: Method,
+    limits: tuple[Limit, ...],
+    free: dict[str, Free],
+    ends: Sequence[Optimum],
+    seed: int,
+) -> _Trade:
+    found = [np.array(list(end.parameters.values())) for end in ends]
+    return _Trade(
+        vehicle=vehicle,
+        indices=indices,
+        method=method,
+        objectives=tuple(objective_of(vehicle, one, method) for one in indices),
+        bounds=bounds_of(vehicle, limits, method),
+        lower=np.array([value.lower for value in free.values()]),
+        upper=np.array([value.upper for value in free.values()]),
+        ends=tuple(found),
+        hints=np.array([*found, *_hints(vehicle, indices, method, limits, seed)]),
+        seed=seed,
+    )
+
+
+def _hints(
+    vehicle: Vehicle, indices: tuple[Asked, ...], method: Method, limits: tuple[Limit, ...], seed: int
+) -> list[Array]:
+    """Points of the front of a quick method, for one that gives no gradients."""
+    if isinstance(objective_of(vehicle, indices[0], method), Differentiable):
+        return []
+    conventions = getattr(method, "conventions", "exact")
+    for quick in (StatisticalLinearisation(conventions), Norm(conventions)):
+        try:
+            front = pareto(vehicle, indices, quick, points=3 * len(indices), subject_to=limits, seed=seed)
+        except InerterError:
+            continue
+        return [np.array(list(values.values())) for values in front.parameters]
+    return []
+
+
+def _empty(indices: tuple[Asked, ...], seed: int, status: Status) -> Front:
+    return Front(indices, np.zeros((0, len(indices))), (), (), (), (), (), seed, status)
+
+
+def _front(trade: _Trade, found: tuple[list[_Found], set[tuple[bytes, bytes]]], seed: int) -> Front:
+    several, jumps = found
+    names = tuple(trade.vehicle.free_values())
+    parameters = tuple(dict(zip(names, one.point.tolist(), strict=True)) for one in several)
+    designs = tuple(trade.vehicle.with_values(values) for values in parameters)
+    estimates = [[estimate_of(design, one, trade.method) for one in trade.indices] for design in designs]
+    statuses = tuple(next((e.status for e in row if not e.status.ok), row[0].status) for row in estimates)
+    problem = Limited(None, trade.bounds, trade.lower, trade.upper)
+    held = tuple(
+        held_at(problem, design, trade.method, one.point, known=False)
+        for design, one in zip(designs, several, strict=True)
+    )
+    keys = [one.point.tobytes() for one in several]
+    pairs = tuple((i, i + 1) for i in range(len(keys) - 1) if (keys[i], keys[i + 1]) in jumps)
+    values = np.array([[estimate.value for estimate in row] for row in estimates])
+    return Front(trade.indices, values, parameters, designs, statuses, pairs, held, seed)

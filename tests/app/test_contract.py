@@ -1,0 +1,271 @@
+"""What the interface promises: every request is described, answers, and says in a sentence what is wrong with it."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from app.conftest import DOCUMENT, EXAMPLES, changed
+from hypothesis import given
+from hypothesis import strategies as st
+from starlette.testclient import TestClient
+
+import inerter as it
+from inerter.app.kinds import KINDS
+from inerter.app.panels import PANELS
+from inerter.app.requests import ENDPOINTS
+from inerter.networks.elements.registry import ELEMENTS
+from inerter.networks.parser import network, parsed
+
+CSV = b"time [s],displacement [mm],force [N]\n" + b"".join(
+    b"%g,%g,%g\n" % (i * 1e-3, i % 7, i % 11) for i in range(500)
+)
+
+
+def test_all_requests_are_described_and_told() -> None:
+    text = (Path(__file__).parents[2] / "docs" / "workbench.md").read_text(encoding="utf-8")
+    for endpoint in ENDPOINTS:
+        path = endpoint.path.replace(":path", "").replace("/panel/{name}", "/panel/NAME")
+        assert f"`{endpoint.verb} {path}" in text, path
+    for name in (*PANELS, *KINDS):
+        assert f"| `{name}` |" in text
+
+
+def test_the_description_has_every_request(client: TestClient) -> None:
+    told = client.get("/api/openapi.json").json()
+    assert told["openapi"].startswith("3.1")
+    described = {(verb.upper(), path) for path, verbs in told["paths"].items() for verb in verbs}
+    assert described == {(e.verb, e.path.replace(":path", "")) for e in ENDPOINTS}
+    references = re.findall(r'"#/components/schemas/(\w+)"', json.dumps(told))
+    assert set(references) <= set(told["components"]["schemas"])
+
+
+def test_about_tells_the_rows(client: TestClient) -> None:
+    told = client.get("/api/about").json()
+    assert [row["key"] for row in told["elements"]] == list(ELEMENTS)
+    assert [row["symbol"] for row in told["indices"]] == list(it.INDICES)
+    assert [row["name"] for row in told["methods"]] == list(it.METHODS)
+    assert [row["key"] for row in told["vehicles"]] == list(it.VEHICLES)
+    assert [row["key"] for row in told["panels"]] == list(PANELS)
+    assert [row["key"] for row in told["work"]] == list(KINDS)
+    assert set(told["kernels"]) == {"ready", "title", "number", "total"}
+
+
+def test_examples_are_studies(client: TestClient) -> None:
+    names = [row["name"] for row in client.get("/api/examples").json()["examples"]]
+    assert {"quarter-car", "half-car", "ball_screw", "stiffness-sweep"} <= set(names)
+    told = client.get("/api/examples/quarter-car").json()
+    assert told["text"] == (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8")
+    assert told["problems"] == []
+    assert client.get("/api/examples/rig_fit").status_code == 404
+    assert client.get("/api/examples/..%2fquarter-car").status_code == 404
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_file_becomes_a_document_and_a_file_again(client: TestClient, path: Path) -> None:
+    first = client.post("/api/study/read", json={"text": path.read_text(encoding="utf-8")}).json()
+    text = client.post("/api/study/write", json={"study": first["study"]}).json()["text"]
+    again = client.post("/api/study/read", json={"text": text}).json()
+    assert again == first
+    assert client.post("/api/study/read", json={"study": first["study"]}).json() == first
+
+
+@pytest.mark.parametrize(
+    ("tables", "place", "words"),
+    [
+        ({"elements": {"k": "20 kN"}}, ["layouts", "S1"], None),
+        ({"elements": {"k": "20"}}, ["elements", "k"], "unit"),
+        ({"elements": {"c": {"from": "3 kg", "to": "1 kg"}}}, ["elements", "c"], "Swap"),
+        ({"layouts": {"S9": "k | zz"}}, ["layouts", "S9"], "zz"),
+        ({"layouts": {"S9": "k | | c"}}, ["layouts", "S9"], "column 5"),
+        ({"study": {"indices": ["J9"]}}, ["study", "indices"], "J9"),
+        ({"study": {"colour": 1}}, ["study", "colour"], "unknown key"),
+        ({"road": {"speed": "25 m"}}, ["road", "speed"], "m/s"),
+    ],
+)
+def test_a_problem_has_its_place(client: TestClient, tables: Any, place: list[str], words: str | None) -> None:
+    found = client.post("/api/study/read", json={"study": changed(**tables)}).json()["problems"]
+    if words is None:  # a spring that became a friction is no mistake of the file
+        assert found == []
+        return
+    assert [problem["place"][: len(place)] for problem in found] == [place]
+    assert words in found[0]["sentence"]
+    assert client.post("/api/study/check", json={"study": changed(**tables)}).json()["problems"] == found
+    refused = client.post("/api/panel/indices", json={"study": changed(**tables)})
+    assert refused.status_code == 400
+    assert refused.json()["problems"] == found
+
+
+@given(text=st.text(max_size=60) | st.text("kcbf |-()1_", max_size=40))
+def test_any_text_is_a_network_or_has_a_sentence(client: TestClient, text: str) -> None:
+    told = client.post(
+        "/api/network/parse", json={"text": text.encode("utf-8", "replace").decode(), "elements": ["k", "c"]}
+    )
+    assert told.status_code == 200
+    answer = told.json()
+    if "sentence" in answer:
+        begin, end = answer["at"]
+        assert 0 <= begin < max(end, 1) <= max(len(text), begin + 1)
+    else:
+        assert set(answer["names"]) <= {"k", "c"}
+
+
+_NETWORKS = st.recursive(
+    st.sampled_from("abc"),
+    lambda inner: st.lists(inner, min_size=2, max_size=3).flatmap(
+        lambda parts: st.sampled_from([" | ", " - "]).map(lambda sign: "(" + sign.join(parts) + ")")
+    ),
+    max_leaves=8,
+)
+
+
+@given(text=_NETWORKS)
+def test_parts_are_where_they_say(text: str) -> None:
+    """The text of each part, parsed by itself, is that part."""
+    elements = {"a": it.Spring(1.0), "b": it.Damper(1.0), "c": it.Inerter(1.0)}
+
+    def check(part: Any) -> None:
+        own = text[part.begin : part.end]
+        if part.name:
+            assert own == part.name
+            return
+        once = network(own, **elements)
+        by_hand = [
+            network(text[p.begin : p.end] if p.name else f"({text[p.begin : p.end]})", **elements) for p in part.parts
+        ]
+        joined = by_hand[0]
+        for other in by_hand[1:]:
+            joined = joined | other if part.sign == "|" else joined - other
+        assert once == joined
+        for p in part.parts:
+            check(p)
+
+    check(parsed(text))
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"),
+    [
+        ({"text": "120 N/mm"}, {"value": 120e3, "unit": "N/m", "key": "spring", "text": "120 kN/m"}),
+        ({"text": "1 lbf", "unit": "N"}, {"value": 4.4482216152605, "unit": "N"}),
+        ({"value": 7544.2, "unit": "N s/m"}, {"text": "7.544 kN s/m"}),
+    ],
+)
+def test_quantities(client: TestClient, asked: Any, expected: Any) -> None:
+    told = client.post("/api/quantity", json=asked).json()
+    assert told["value"] == pytest.approx(expected.pop("value", told["value"]), rel=1e-15)
+    assert {key: told[key] for key in expected} == expected
+    assert client.post("/api/quantities", json={"items": [asked, {"text": "1 m/s/s/s"}]}).json()["items"][0] == told
+
+
+@pytest.mark.parametrize(
+    "asked", [{}, {"text": "x", "value": 1.0}, {"text": "3 kg", "unit": "N/m"}, {"text": "3 blurbs"}]
+)
+def test_no_quantity_has_a_sentence(client: TestClient, asked: Any) -> None:
+    assert client.post("/api/quantity", json=asked).json()["sentence"].endswith(".")
+
+
+BAD: list[tuple[str, Any]] = [
+    ("/api/panel/indices", {}),
+    ("/api/panel/indices", {"study": []}),
+    ("/api/panel/indices", {"study": {}, "colour": 1}),
+    ("/api/panel/indices", {"study": DOCUMENT, "designs": [{"layout": "S9"}]}),
+    ("/api/panel/indices", {"study": DOCUMENT, "designs": [{"layout": "S1", "values": {"c": -1.0}}]}),
+    ("/api/panel/indices", {"study": DOCUMENT, "designs": [{"layout": "S1", "values": {"c": 0.0}}]}),
+    ("/api/panel/indices", {"study": DOCUMENT, "designs": [{"layout": "S1", "values": {"c": "3 kg"}}]}),
+    ("/api/panel/indices", {"study": DOCUMENT, "designs": [{"layout": "S1", "values": {"zz": 1.0}}]}),
+    ("/api/panel/indices", {"study": DOCUMENT, "indices": ["J9"]}),
+    ("/api/panel/indices", {"study": DOCUMENT, "methods": ["magic"]}),
+    ("/api/panel/indices", {"study": DOCUMENT, "sequence": "one"}),
+    ("/api/panel/history", {"study": DOCUMENT, "duration": 1e6}),
+    ("/api/panel/history", {"study": DOCUMENT, "outputs": ["nothing"], "duration": 0.1}),
+    ("/api/panel/budget", {"study": DOCUMENT, "layout": "S3"}),
+    ("/api/panel/budget", {"study": DOCUMENT, "layout": "S3", "index": "J1", "parameter": "zz"}),
+    ("/api/panel/optimise", {"study": DOCUMENT, "layouts": ["S9"]}),
+    ("/api/panel/optimise", {"study": DOCUMENT, "method": "magic"}),
+    ("/api/work", {"kind": "magic", "study": DOCUMENT}),
+    ("/api/work", {"study": DOCUMENT}),
+    ("/api/study/read", {}),
+    ("/api/study/read", {"text": "x = 1", "study": {}}),
+    ("/api/figure", {"kind": "magic", "study": DOCUMENT}),
+    ("/api/figure", {"kind": "networks", "study": DOCUMENT, "format": "exe"}),
+    ("/api/export/csv", {"panel": "mechanism", "request": {"study": DOCUMENT}}),
+]
+
+
+@pytest.mark.parametrize(("path", "body"), BAD)
+def test_a_wrong_request_gets_a_sentence(client: TestClient, path: str, body: Any) -> None:
+    told = client.post(path, json=body)
+    assert told.status_code == 400, told.text
+    sentence = told.json()["sentence"]
+    assert sentence.strip()
+    assert sentence.strip().endswith((".", "?"))
+    assert "Traceback" not in told.text
+
+
+@pytest.mark.parametrize(
+    "path", ["/api/nothing", "/api/panel/magic", "/api/work/0", "/api/work/0/result", "/nothing.js", "/api"]
+)
+def test_what_there_is_not(client: TestClient, path: str) -> None:
+    told = client.get(path) if "panel" not in path else client.post(path, json={"study": DOCUMENT})
+    assert told.status_code == 404
+    assert told.json()["sentence"].endswith((".", "afresh."))
+
+
+@pytest.mark.parametrize("body", [b"", b"{", b"nan", b'{"study": NaN}', b"[" * 5000, b"\xff\xfe", b"12"])
+def test_a_body_that_is_no_json(client: TestClient, body: bytes) -> None:
+    told = client.post("/api/panel/indices", content=body)
+    assert told.status_code == 400
+    assert told.json()["sentence"].endswith(".")
+
+
+@given(data=st.data())
+def test_a_document_with_one_entry_spoilt(client: TestClient, data: st.DataObject) -> None:
+    """Whatever stands in the place of an entry, the document is a study or each problem has a place in it."""
+    document = copy.deepcopy(DOCUMENT)
+    table = document[data.draw(st.sampled_from(["vehicle", "road", "elements", "layouts", "study"]))]
+    key = data.draw(st.sampled_from(sorted(table)))
+    scalars = (
+        st.none()
+        | st.booleans()
+        | st.integers(-9, 9)
+        | st.floats(allow_nan=False, allow_infinity=False)
+        | st.text(max_size=5)
+    )
+    table[key] = data.draw(
+        st.recursive(
+            scalars,
+            lambda i: st.lists(i, max_size=2) | st.dictionaries(st.text(max_size=3), i, max_size=2),
+            max_leaves=4,
+        )
+    )
+    told = client.post("/api/study/check", json={"study": document})
+    assert told.status_code == 200
+    for problem in told.json()["problems"]:
+        assert problem["sentence"]
+        assert problem["place"] == [] or problem["place"][0] in document
+
+
+def test_a_record_is_read_and_forgotten(client: TestClient) -> None:
+    told = client.post("/api/records", params={"name": "bench.csv"}, content=CSV)
+    assert told.status_code == 201
+    found = told.json()
+    assert (found["name"], found["samples"], found["size"]) == ("bench.csv", 500, len(CSV))
+    assert [channel["name"] for channel in found["channels"]] == ["displacement", "force"]
+    assert client.delete(f"/api/records/{found['id']}").status_code == 200
+    assert client.delete(f"/api/records/{found['id']}").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("name", "body"), [("x.csv", b"nonsense"), ("x.exe", CSV), ("", CSV), ("x.tdms", CSV), ("x.mat", b"")]
+)
+def test_a_file_that_is_no_record_is_not_kept(client: TestClient, server: Any, name: str, body: bytes) -> None:
+    told = client.post("/api/records", params={"name": name}, content=body)
+    assert told.status_code == 400
+    assert told.json()["sentence"].strip().endswith((".", "?"))
+    assert server.records.known == {}
+    assert list(server.records.root.iterdir()) == []

@@ -1,0 +1,96 @@
+// Where the page begins: the token of its first link, what it knew before, the server's answers from then on.
+
+import { render } from "preact";
+import "uplot/dist/uPlot.min.css";
+import "./page.css";
+import { Lost, Refusal, createApi } from "./api.js";
+import { keepAsking } from "./asking.js";
+import { Page } from "./page.js";
+import { html } from "./parts/html.js";
+import { fromAddress, keepRemembering, remembered, unpacked } from "./remembering.js";
+import { createStore } from "./state/store.js";
+import { beginAtBest, findWork } from "./working.js";
+
+const TOKEN = "inerter.token";
+const BEGUN = "inerter.begun";
+const AGAIN = 1000; // [ms]
+
+const store = createStore();
+const api = createApi(() => sessionStorage.getItem(TOKEN) ?? "");
+const windows = new BroadcastChannel("inerter");
+const address = fromAddress(location.hash);
+
+if (address.token) sessionStorage.setItem(TOKEN, address.token);
+history.replaceState(null, "", location.pathname);
+windows.onmessage = ({ data }) => {
+  const token = sessionStorage.getItem(TOKEN);
+  if (data.ask && token) windows.postMessage({ token });
+  if (data.token && !token) enter(data.token);
+};
+
+/** Goes on with a token that was pasted, or that another window of this page gave. @param {string} text */
+function enter(text) {
+  sessionStorage.setItem(TOKEN, fromAddress(text.split("#")[1] ?? "").token ?? text.trim());
+  void connect();
+}
+
+/** The document to begin with: that of the link, that of before a reload, that of the command line.
+ * @returns {Promise<import("./state/document.js").Document | {study: any} | null>} */
+async function firstDocument() {
+  const linked = address.state === null ? null : await unpacked(address.state);
+  if (linked) return linked;
+  if (address.state !== null) store.dispatch({ type: "said", message: "The link holds no state that this page can read." });
+  const { study } = await api.get("start");
+  const begun = JSON.stringify(study);
+  const before = remembered();
+  if (before && (sessionStorage.getItem(BEGUN) === begun || !address.token)) return before;
+  sessionStorage.setItem(BEGUN, begun);
+  return study && Object.keys(study).length > 0 ? { study } : before;
+}
+
+let begun = false;
+
+async function connect() {
+  try {
+    const about = await api.get("about");
+    store.dispatch({ type: "told", about });
+    const fresh = begun ? false : await begin();
+    if (!about.kernels.ready) await compiled();
+    if (fresh) await beginAtBest(store, api);
+    if (fresh && store.get().history.past.length <= 1) store.dispatch({ type: "began" });
+    begun = true;
+    store.dispatch({ type: "connected", connection: "ready" });
+    await findWork(store, api);
+  } catch (error) {
+    if (error instanceof Refusal && error.status === 401) {
+      windows.postMessage({ ask: true });
+      store.dispatch({ type: "connected", connection: "refused" });
+    } else if (error instanceof Lost) {
+      store.dispatch({ type: "connected", connection: "connecting" });
+      setTimeout(connect, AGAIN);
+    } else throw error;
+  }
+}
+
+/** Brings the first document, where undoing ends; returns whether its free values are still to be chosen. */
+async function begin() {
+  const document = await firstDocument();
+  if (document === null) return false;
+  const known = "layout" in document;
+  store.change(known ? { type: "restored", document } : { type: "opened", study: document.study });
+  store.dispatch({ type: "began" });
+  return !known;
+}
+
+/** Waits until the kernels are compiled, and tells which one is under way. */
+async function compiled() {
+  store.dispatch({ type: "connected", connection: "compiling" });
+  await api.events("ready", (event, data) => {
+    if (event === "kernels") store.dispatch({ type: "told", about: { ...store.get().about, kernels: { ...data, ready: false } } });
+  });
+}
+
+render(html`<${Page} store=${store} api=${api} enter=${enter} />`, /** @type {HTMLElement} */ (document.getElementById("page")));
+keepAsking(store, api, crypto.randomUUID?.() ?? String(Math.random()));
+keepRemembering(store);
+void connect();

@@ -1,0 +1,169 @@
+// The algebra of networks as they are written: `|` is parallel, `-` is series and binds tighter, brackets group.
+//
+// A tree is a frozen value: {kind: "element", name}, or {kind: "series" | "parallel", parts} with two parts or more,
+// none of them of its own kind. Each function that changes a tree gives another one.
+
+/** @typedef {{kind: "element", name: string}} Leaf */
+/** @typedef {{kind: "series" | "parallel", parts: Tree[]}} Group */
+/** @typedef {Leaf | Group} Tree */
+/** @typedef {number[]} Path  where a part is: the place among the parts of the whole, then among the parts of that... */
+/** @typedef {"series" | "parallel"} Joint */
+
+const TOKEN = /\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()-]))/y;
+const DEEPEST = 100;
+
+/** @param {string} name @returns {Leaf} */
+export const element = (name) => ({ kind: "element", name });
+
+/** Some trees joined, with what is of the same kind taken in. @param {Joint} kind @param {Tree[]} parts @returns {Tree} */
+export function join(kind, parts) {
+  const flat = parts.flatMap((part) => (part.kind === kind ? part.parts : [part]));
+  return flat.length === 1 ? flat[0] : { kind, parts: flat };
+}
+
+/** The tree that a text describes, or null where it is none. @param {string} text @returns {Tree | null} */
+export function parse(text) {
+  const tokens = tokensOf(text);
+  if (tokens === null) return null;
+  let at = 0;
+  let depth = 0;
+
+  /** @returns {Tree | null} */
+  function atom() {
+    const token = tokens?.[at++];
+    if (token === undefined) return null;
+    if (token !== "(") return /^[A-Za-z]/.test(token) ? element(token) : null;
+    if (++depth > DEEPEST) return null;
+    const inside = joined("parallel");
+    depth -= 1;
+    return tokens?.[at++] === ")" ? inside : null;
+  }
+
+  /** @param {Joint} kind @returns {Tree | null} */
+  function joined(kind) {
+    const [sign, next] = kind === "parallel" ? ["|", () => joined("series")] : ["-", atom];
+    const parts = [];
+    do {
+      const part = next();
+      if (part === null) return null;
+      parts.push(part);
+    } while (tokens?.[at] === sign && ++at);
+    return join(kind, parts);
+  }
+
+  const tree = joined("parallel");
+  return at === tokens.length ? tree : null;
+}
+
+/** @param {string} text @returns {string[] | null} */
+function tokensOf(text) {
+  const tokens = [];
+  const end = text.trimEnd().length;
+  TOKEN.lastIndex = 0;
+  while (TOKEN.lastIndex < end) {
+    const match = TOKEN.exec(text);
+    if (match === null) return null;
+    tokens.push(match[1] ?? match[2]);
+  }
+  return tokens.length ? tokens : null;
+}
+
+/** A tree as text, with the brackets that it needs. @param {Tree} tree @param {"" | "|" | "-"} inside @returns {string} */
+export function written(tree, inside = "") {
+  if (tree.kind === "element") return tree.name;
+  const sign = tree.kind === "parallel" ? "|" : "-";
+  const text = tree.parts.map((part) => written(part, sign)).join(` ${sign} `);
+  const bare = inside === "" || (tree.kind === "series" && inside === "|");
+  return bare ? text : `(${text})`;
+}
+
+/** The names in a tree, each once, in the order in which they are written. @param {Tree} tree @returns {string[]} */
+export function names(tree) {
+  return [...new Set(leaves(tree).map(({ name }) => name))];
+}
+
+/** All elements with their places. @param {Tree} tree @param {Path} path @returns {{name: string, path: Path}[]} */
+export function leaves(tree, path = []) {
+  if (tree.kind === "element") return [{ name: tree.name, path }];
+  return tree.parts.flatMap((part, i) => leaves(part, [...path, i]));
+}
+
+/** The part at a place, or null. @param {Tree} tree @param {Path} path @returns {Tree | null} */
+export function partAt(tree, path) {
+  /** @type {Tree | undefined} */
+  let part = tree;
+  for (const i of path) part = part?.kind === "element" ? undefined : part?.parts[i];
+  return part ?? null;
+}
+
+/** The tree with another part at a place. @param {Tree} tree @param {Path} path @param {Tree} part @returns {Tree} */
+export function replaceAt(tree, path, part) {
+  if (path.length === 0 || tree.kind === "element") return part;
+  const [i, ...rest] = path;
+  return join(tree.kind, tree.parts.with(i, replaceAt(tree.parts[i], rest, part)));
+}
+
+/** The tree without the part at a place; null where nothing is left. @param {Tree} tree @param {Path} path @returns {Tree | null} */
+export function removeAt(tree, path) {
+  if (path.length === 0 || tree.kind === "element") return null;
+  const [i, ...rest] = path;
+  const left = removeAt(tree.parts[i], rest);
+  return join(tree.kind, left === null ? tree.parts.toSpliced(i, 1) : tree.parts.with(i, left));
+}
+
+/**
+ * The tree with `added` joined to the part at a place, after it (below it in series, right of it in parallel) or before it.
+ * @param {Tree} tree @param {Path} path @param {Joint} kind @param {Tree} added @param {boolean} before @returns {Tree}
+ */
+export function joinAt(tree, path, kind, added, before = false) {
+  const part = partAt(tree, path);
+  if (part === null) return tree;
+  return replaceAt(tree, path, join(kind, before ? [added, part] : [part, added]));
+}
+
+/**
+ * The tree with the part at one place joined to the part at another; the tree itself where one lies in the other.
+ * @param {Tree} tree @param {Path} from @param {Path} to @param {Joint} kind @param {boolean} before @returns {Tree}
+ */
+export function moveTo(tree, from, to, kind, before = false) {
+  const moved = partAt(tree, from);
+  if (moved === null || partAt(tree, to) === null || within(to, from) || within(from, to)) return tree;
+  const marked = replaceLeafwise(tree, from);
+  const joined = joinAt(marked, to, kind, moved, before);
+  const mark = markIn(joined);
+  return (mark && removeAt(joined, mark)) ?? tree;
+}
+
+const MARK = "\u0000"; // no name: what stands where the moved part was, until it is taken away
+
+/** @param {Tree} tree @param {Path} path */
+const replaceLeafwise = (tree, path) => replaceAt(tree, path, element(MARK));
+
+/** @param {Tree} tree */
+const markIn = (tree) => leaves(tree).find(({ name }) => name === MARK)?.path ?? null;
+
+/** Whether a place is inside another, or the same. @param {Path} path @param {Path} whole */
+const within = (path, whole) => whole.every((i, level) => path[level] === i);
+
+/** The tree with the part at a place changed for its neighbour before (-1) or after (+1) it. @param {Tree} tree @param {Path} path @param {-1 | 1} step @returns {Tree} */
+export function shiftAt(tree, path, step) {
+  const above = path.slice(0, -1);
+  const group = partAt(tree, above);
+  const i = path[path.length - 1];
+  if (group === null || group.kind === "element" || group.parts[i + step] === undefined) return tree;
+  const parts = group.parts.with(i, group.parts[i + step]).with(i + step, group.parts[i]);
+  return replaceAt(tree, above, { kind: group.kind, parts });
+}
+
+/** A text in which a name is another one; also where the text is no network (yet). @param {string} text @param {string} old @param {string} name */
+export function renamed(text, old, name) {
+  return text.replace(/[A-Za-z][A-Za-z0-9_]*/g, (word) => (word === old ? name : word));
+}
+
+/** A name with this beginning that is not taken. @param {string} symbol @param {Iterable<string>} taken */
+export function freshName(symbol, taken) {
+  const known = new Set(taken);
+  let name = symbol;
+  for (let number = 2; known.has(name); number += 1) name = `${symbol}${number}`;
+  return name;
+}

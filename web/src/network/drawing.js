@@ -1,0 +1,98 @@
+// Where everything in the drawing of a network is: the upper end at the top, parallel parts side by side between bars,
+// series parts in a column, as in the figures of reports. Lengths in points, y downwards.
+
+/** @typedef {import("./algebra.js").Tree} Tree */
+/** @typedef {import("./algebra.js").Path} Path */
+/** @typedef {[number, number]} Point */
+/** @typedef {{name: string, path: Path, x: number, y: number}} Placed  an element with the middle of its symbol */
+/** @typedef {{path: Path, left: number, right: number, top: number, bottom: number}} Box  what a part covers */
+/** @typedef {{left: number, right: number, height: number, placed: Placed[], boxes: Box[], lines: Point[][]}} Drawing */
+
+export const HALF_WIDTH = 8;
+export const HALF_HEIGHT = 20;
+const TO_LABEL = 4;
+const LETTER = 5.2;
+const STUB = 7;
+const OVERHANG = 4;
+const BETWEEN = 12;
+const LONGEST_LABEL = 12;
+
+/** A name as short as a drawing shows it. @param {string} name */
+export const shortLabel = (name) => (name.length > LONGEST_LABEL ? `${name.slice(0, LONGEST_LABEL - 1)}…` : name);
+
+/** The drawing of a tree with its upper end at (0, 0). @param {Tree} tree @param {Path} path @returns {Drawing} */
+export function drawing(tree, path = []) {
+  if (tree.kind === "element") return symbol(tree.name, path);
+  const parts = tree.parts.map((part, i) => drawing(part, [...path, i]));
+  const whole = tree.kind === "parallel" ? sideBySide(parts) : inAColumn(parts);
+  const box = { path, left: -whole.left, right: whole.right, top: 0, bottom: whole.height };
+  return { ...whole, boxes: [box, ...whole.boxes] };
+}
+
+/** @param {string} name @param {Path} path @returns {Drawing} */
+function symbol(name, path) {
+  const right = HALF_WIDTH + TO_LABEL + LETTER * shortLabel(name).length;
+  const box = { path, left: -HALF_WIDTH, right, top: 0, bottom: 2 * HALF_HEIGHT };
+  const placed = [{ name, path, x: 0, y: HALF_HEIGHT }];
+  return { left: HALF_WIDTH, right, height: 2 * HALF_HEIGHT, placed, boxes: [box], lines: [] };
+}
+
+/** @param {Drawing[]} parts @returns {Drawing} */
+function sideBySide(parts) {
+  const xs = [0];
+  for (let i = 1; i < parts.length; i += 1) xs.push(xs[i - 1] + parts[i - 1].right + BETWEEN + parts[i].left);
+  const n = xs.length;
+  const middle = (xs[Math.floor((n - 1) / 2)] + xs[Math.floor(n / 2)]) / 2;
+  const at = xs.map((x) => x - middle);
+  const inside = Math.max(...parts.map((part) => part.height));
+  const [top, bottom] = [STUB, STUB + inside];
+  /** @type {Point[][]} */
+  const lines = [
+    [[0, 0], [0, top]],
+    [[0, bottom], [0, bottom + STUB]],
+    ...[top, bottom].map((y) => /** @type {Point[]} */ ([[at[0] - OVERHANG, y], [at[n - 1] + OVERHANG, y]])),
+  ];
+  const places = parts.map((part, i) => {
+    const lead = (inside - part.height) / 2;
+    if (lead > 0) lines.push([[at[i], top], [at[i], top + lead]], [[at[i], bottom - lead], [at[i], bottom]]);
+    return /** @type {Point} */ ([at[i], top + lead]);
+  });
+  const size = { left: parts[0].left - at[0], right: parts[n - 1].right + at[n - 1], height: inside + 2 * STUB };
+  return together(parts, places, size, lines);
+}
+
+/** @param {Drawing[]} parts @returns {Drawing} */
+function inAColumn(parts) {
+  let y = 0;
+  const places = parts.map((part) => {
+    const place = /** @type {Point} */ ([0, y]);
+    y += part.height;
+    return place;
+  });
+  const size = {
+    left: Math.max(...parts.map((part) => part.left)),
+    right: Math.max(...parts.map((part) => part.right)),
+    height: y,
+  };
+  return together(parts, places, size, []);
+}
+
+/** @param {Drawing[]} parts @param {Point[]} places @param {{left: number, right: number, height: number}} size @param {Point[][]} lines @returns {Drawing} */
+function together(parts, places, size, lines) {
+  /** @type {Drawing} */
+  const whole = { ...size, placed: [], boxes: [], lines: [...lines] };
+  parts.forEach((part, i) => {
+    const [x, y] = places[i];
+    whole.placed.push(...part.placed.map((one) => ({ ...one, x: one.x + x, y: one.y + y })));
+    whole.boxes.push(...part.boxes.map((box) => ({ ...box, left: box.left + x, right: box.right + x, top: box.top + y, bottom: box.bottom + y })));
+    whole.lines.push(...part.lines.map((line) => line.map(([a, b]) => /** @type {Point} */ ([a + x, b + y]))));
+  });
+  return whole;
+}
+
+/** Lines as the text of an SVG path. @param {readonly (readonly Point[])[]} lines @param {number} sign of y */
+export const pathOf = (lines, sign = 1) =>
+  lines.map((line) => `M${line.map(([x, y]) => `${round(x)} ${round(sign * y)}`).join("L")}`).join("");
+
+/** @param {number} x */
+const round = (x) => Math.round(100 * x) / 100;

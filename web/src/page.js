@@ -1,0 +1,172 @@
+// The page: its parts, what the keyboard does everywhere, and what is dropped on it.
+
+import { AnswersPanel } from "./panels/answers.js";
+import { ComparePanel } from "./panels/compare.js";
+import { HistoryPanel } from "./panels/history.js";
+import { Menu } from "./panels/memory.js";
+import { NetworkPanel } from "./panels/network.js";
+import { ResponsePanel } from "./panels/response.js";
+import { RigPanel } from "./panels/rig.js";
+import { ValuesPanel } from "./panels/values.js";
+import { WorkPanel } from "./panels/work.js";
+import { html, useEffect, useState } from "./parts/html.js";
+import { open } from "./remembering.js";
+import { openStudy } from "./working.js";
+
+/** @typedef {import("./state/store.js").Store} Store */
+/** @typedef {import("./api.js").Api} Api */
+
+/** What is below the strut and its answers: a tab a row. */
+const TABS = [
+  { key: "response", title: "Frequency response", Panel: ResponsePanel },
+  { key: "history", title: "On the road", Panel: HistoryPanel },
+  { key: "compare", title: "Compare", Panel: ComparePanel },
+  { key: "work", title: "Work", Panel: WorkPanel },
+  { key: "rig", title: "Rig", Panel: RigPanel },
+];
+
+/** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
+export function Page({ store, api, enter }) {
+  const [, setState] = useState(store.get());
+  useEffect(() => store.subscribe(inFrames(() => setState(store.get()))), [store]);
+  useEffect(() => listen(store, api), [store, api]);
+  const state = store.get();
+  const { study } = state.history.present;
+  const blank = Object.keys(study).length === 0;
+  return html`<a class="skip" href="#answers-title">To the answers</a>
+    <header>
+      <h1><span class="product">inerter</span> <${Title} store=${store} /></h1>
+      <${Menu} store=${store} api=${api} />
+      <${Theme} store=${store} />
+    </header>
+    <${Bar} store=${store} enter=${enter} />
+    ${blank
+      ? html`<main class="blank"><h2>No study is open</h2><p>Open an example or a study file above, drop one anywhere on this page, or start a quarter car:</p>
+          <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button></main>`
+      : html`<main>
+          <div class="columns">
+            <${NetworkPanel} store=${store} />
+            <${ValuesPanel} store=${store} />
+            <${AnswersPanel} store=${store} api=${api} />
+          </div>
+          <${Tabs} store=${store} api=${api} />
+        </main>`}`;
+}
+
+/** At most one call a frame, so that sixty steps of a slider draw what a screen can show. @param {() => void} told */
+function inFrames(told) {
+  let due = false;
+  return () => {
+    if (due) return;
+    due = true;
+    requestAnimationFrame(() => {
+      due = false;
+      told();
+    });
+  };
+}
+
+/** @param {Store} store @param {Api} api */
+async function start(store, api) {
+  const { examples } = await api.get("examples");
+  const first = examples.find((/** @type {any} */ { name }) => name === "quarter-car") ?? examples[0];
+  if (first) await openStudy(store, api, (await api.get(`examples/${encodeURIComponent(first.name)}`)).study);
+}
+
+/** @param {{store: Store}} props */
+function Title({ store }) {
+  const { study } = store.get().history.present;
+  if (Object.keys(study).length === 0) return null;
+  return html`<input class="title" aria-label="Title of the study" value=${study.title ?? ""} placeholder="Untitled study"
+    onChange=${(/** @type {Event} */ event) => store.change({ type: "placed", place: ["title"], value: /** @type {HTMLInputElement} */ (event.currentTarget).value || undefined })} />`;
+}
+
+/** @type {{[connection: string]: string}} */
+const SAID = {
+  connecting: "Connecting…",
+  compiling: "The numerical kernels are compiled, once for this machine; answers come then.",
+  lost: "The server does not answer. Your work is here; the page goes on when the server is back.",
+  refused: "The server does not know this page. Paste the link that it printed, or its token:",
+};
+
+/** @param {{store: Store, enter: (token: string) => void}} props */
+function Bar({ store, enter }) {
+  const { connection, message, about } = store.get();
+  const kernels = connection === "compiling" ? about?.kernels : null;
+  return html`<div class="bar" aria-live="polite" data-connection=${connection}>
+    ${connection !== "ready" && html`<p class="notice">${SAID[connection]} ${kernels?.title ?? ""} ${kernels?.total ? `(${kernels.number} of ${kernels.total})` : ""}</p>`}
+    ${connection === "refused" &&
+    html`<form class="row" onSubmit=${(/** @type {SubmitEvent} */ event) => {
+      event.preventDefault();
+      enter(String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("token")));
+    }}><label>Link or token <input name="token" autocomplete="off" /></label> <button>Connect</button></form>`}
+    ${message && html`<p class="notice">${message} <button type="button" class="link" aria-label="Close the message" onClick=${() => store.dispatch({ type: "said", message: null })}>✕</button></p>`}
+  </div>`;
+}
+
+/** @param {{store: Store, api: Api}} props */
+function Tabs({ store, api }) {
+  const { view } = store.get();
+  const shown = TABS.find(({ key }) => key === view.tab) ?? TABS[0];
+  /** @param {KeyboardEvent} event */
+  function turn(event) {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (step === undefined) return;
+    const next = TABS[(TABS.indexOf(shown) + step + TABS.length) % TABS.length];
+    store.dispatch({ type: "viewed", view: { tab: next.key } });
+    document.getElementById(`tab-${next.key}`)?.focus();
+  }
+  return html`<section class="panel tabs">
+    <div role="tablist" aria-label="More answers" onKeyDown=${turn}>
+      ${TABS.map(({ key, title }) => html`<button type="button" role="tab" id=${`tab-${key}`} key=${key} aria-selected=${key === shown.key} aria-controls="tab-panel" tabindex=${key === shown.key ? 0 : -1} onClick=${() => store.dispatch({ type: "viewed", view: { tab: key } })}>${title}</button>`)}
+    </div>
+    <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}><${shown.Panel} store=${store} api=${api} /></div>
+  </section>`;
+}
+
+const THEMES = /** @type {const} */ (["auto", "light", "dark"]);
+
+/** @param {{store: Store}} props */
+function Theme({ store }) {
+  const { theme } = store.get().view;
+  useEffect(() => {
+    document.documentElement.dataset.theme = theme;
+  }, [theme]);
+  return html`<label class="theme">Colours <select value=${theme} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { theme: /** @type {any} */ (event.currentTarget).value } })}>${THEMES.map((each) => html`<option key=${each}>${each}</option>`)}</select></label>`;
+}
+
+/** What the whole page listens to. @param {Store} store @param {Api} api */
+function listen(store, api) {
+  const off = new AbortController();
+  const { signal } = off;
+  addEventListener("keydown", (event) => {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || !["z", "y"].includes(key)) return;
+    event.preventDefault();
+    store.dispatch({ type: key === "y" || event.shiftKey ? "redone" : "undone" });
+  }, { signal });
+  addEventListener("dragover", (event) => event.dataTransfer?.types.includes("Files") && event.preventDefault(), { signal });
+  addEventListener("drop", (event) => {
+    if (!event.dataTransfer?.types.includes("Files")) return;
+    event.preventDefault();
+    void filesOf(event.dataTransfer).then((files) => open(store, api, files));
+  }, { signal });
+  addEventListener("click", (event) => {
+    for (const menu of document.querySelectorAll("details.menu[open], details.bounds[open]")) if (!menu.contains(/** @type {Node} */ (event.target))) menu.removeAttribute("open");
+  }, { signal });
+  return () => off.abort();
+}
+
+/** The files that were dropped, and of a folder the files in it. @param {DataTransfer} transfer @returns {Promise<File[]>} */
+async function filesOf(transfer) {
+  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null && entry !== undefined);
+  const found = await Promise.all(entries.map(filesIn));
+  return found.length ? found.flat() : [...transfer.files];
+}
+
+/** @param {any} entry @returns {Promise<File[]>} */
+async function filesIn(entry) {
+  if (entry.isFile) return [await new Promise((resolve, reject) => entry.file(resolve, reject))];
+  const inside = await new Promise((resolve, reject) => entry.createReader().readEntries(resolve, reject));
+  return Promise.all(inside.filter((/** @type {any} */ each) => each.isFile).map((/** @type {any} */ each) => new Promise((resolve, reject) => each.file(resolve, reject))));
+}

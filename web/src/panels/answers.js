@@ -1,0 +1,131 @@
+// The indices of the strut beside the baseline, and what may be done about them at once.
+
+import { baselineOf } from "../questions.js";
+import { shown } from "../state/scale.js";
+import { html, useState } from "../parts/html.js";
+import { useShown } from "../parts/shown.js";
+import { optimise } from "../working.js";
+
+/** @typedef {import("../state/store.js").Store} Store */
+/** @typedef {import("../state/store.js").State} State */
+
+/** @param {{store: Store, api: import("../api.js").Api}} props */
+export function AnswersPanel({ store, api }) {
+  const state = store.get();
+  const { value, sentence, waiting } = state.answers.indices ?? {};
+  const document = state.history.present;
+  const baseline = baselineOf(document).layout;
+  const methods = state.about?.methods ?? [];
+  const problems = state.answers.check?.value?.problems ?? [];
+  useShown("indices", state);
+  return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${waiting === true}>
+    <h2 id="answers-title">Answers</h2>
+    <div class="row">
+      <label>Judged <select value=${state.view.method} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
+        ${methods.map((/** @type {any} */ method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
+      </select></label>
+    </div>
+    ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
+    ${sentence && value && html`<p class="quiet">The values below are those of before.</p>`}
+    ${value && html`<${Indices} value=${value} layout=${document.layout} baseline=${baseline} stale=${Boolean(sentence)} />`}
+    <${Limits} value=${value} />
+    <${Optimise} store=${store} api=${api} indices=${indicesOf(state)} />
+    <${OtherProblems} state=${state} />
+  </section>`;
+}
+
+/** @param {{name: string, words?: string, sees: string}} method */
+export function methodTitle({ name, sees }) {
+  const words = { neither: "without friction and gaps", friction: "with friction", both: "with friction and gaps" }[sees] ?? "";
+  return `${words || name} (${name.replaceAll("-", " ")})`;
+}
+
+/** The indices that the study asks for. @param {State} state @returns {{symbol: string, title: string}[]} */
+export function indicesOf(state) {
+  const asked = state.history.present.study.study?.indices ?? [];
+  const known = state.about?.indices ?? [];
+  return asked.map((/** @type {string} */ symbol) => known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
+}
+
+/** @param {{value: any, layout: string, baseline: string, stale: boolean}} props */
+function Indices({ value, layout, baseline, stale }) {
+  const design = value.designs?.find((/** @type {any} */ each) => each.layout === layout) ?? value.designs?.[0];
+  const other = value.designs?.find((/** @type {any} */ each) => each.layout === baseline);
+  if (!design) return null;
+  const alone = layout === baseline;
+  return html`<div class="scroll" tabindex="0" role="region" aria-label="Indices"><table class=${stale ? "stale" : ""} data-sequence=${value.sequence}>
+    <thead><tr><th scope="col">index</th><th scope="col" title=${layout}>${layout}</th>${!alone && html`<th scope="col" title=${`${baseline}, the baseline`}>${baseline} ★</th><th scope="col">better by</th>`}</tr></thead>
+    <tbody>${design.results.map((/** @type {any} */ result) => {
+      const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
+      return html`<tr key=${result.index}>
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span></th>
+        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}<${Notes} result=${result} /></td>
+        ${!alone && html`<td class="number">${reference ? number(reference) : "–"}</td><td class=${`number ${better(result.improvement_percent)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}</td>`}
+      </tr>`;
+    })}</tbody>
+  </table></div>`;
+}
+
+/** A value with its standard error. @param {{value: any, standard_error?: any}} result */
+export function number({ value, standard_error }) {
+  const text = typeof value === "string" ? value.replace("inf", "∞") : shown(value);
+  return typeof standard_error === "number" && standard_error > 0 ? `${text} ± ${shown(standard_error, 2)}` : text;
+}
+
+/** @param {number | null | undefined} value @param {number | null} [error] */
+export function percent(value, error) {
+  if (value === null || value === undefined) return "–";
+  const size = Math.abs(value);
+  const text = `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
+  return error ? `${text} ± ${shown(error, 2)}` : text;
+}
+
+/** @param {number | null | undefined} value */
+const better = (value) => (typeof value !== "number" || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
+
+/** @param {{result: any}} props */
+function Notes({ result }) {
+  const texts = [result.status !== "ok" && result.message, ...(result.notes ?? [])].filter(Boolean);
+  return texts.length === 0 ? null : html`<details class="notes"><summary aria-label="Notes">ⓘ</summary><ul>${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
+}
+
+/** Which limits are kept. @param {{value: any}} props */
+function Limits({ value }) {
+  const limits = value?.designs?.[0]?.limits ?? [];
+  return limits.length === 0
+    ? null
+    : html`<h3>Limits</h3><ul class="limits">${limits.map((/** @type {any} */ limit) => html`<li class=${limit.kept ? "good" : "bad"}>${limit.kept ? "kept: " : "broken: "}${limit.title ?? limit.name}: ${shown(limit.value)} ${limit.unit ?? ""}</li>`)}</ul>`;
+}
+
+/** @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
+function Optimise({ store, api, indices }) {
+  const state = store.get();
+  const { study, layout } = state.history.present;
+  const [index, setIndex] = useState("");
+  const [told, setTold] = useState("");
+  const searching = (state.about?.methods ?? []).filter((/** @type {any} */ method) => method.searches);
+  const chosen = indices.some(({ symbol }) => symbol === index) ? index : indices[0]?.symbol;
+  const method = searching.some((/** @type {any} */ { name }) => name === state.view.method) ? state.view.method : "norm";
+  if (!chosen) return null;
+  return html`<form class="row optimise" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
+    event.preventDefault();
+    const all = /** @type {SubmitEvent} */ (event).submitter?.getAttribute("value") === "all";
+    setTold("Searching…");
+    setTold(await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method }));
+  }}>
+    <label>Best values for <select name="index" value=${chosen} onChange=${(/** @type {Event} */ event) => setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
+      ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
+    </select></label>
+    <button class="main" value="one">Optimise</button> <button value="all">All layouts</button>
+    <p class="quiet" role="status">${told}</p>
+  </form>`;
+}
+
+/** What is wrong with the study at places that have no field on the page. @param {{state: State}} props */
+function OtherProblems({ state }) {
+  const fields = new Set(["elements", "vehicle", "road"]);
+  const problems = (state.answers.check?.value?.problems ?? []).filter((/** @type {any} */ { place }) => !(fields.has(place[0]) && place.length > 1));
+  return problems.length === 0
+    ? null
+    : html`<div class="problems" role="alert"><h3>In the study</h3><ul>${problems.map((/** @type {any} */ problem) => html`<li class="problem"><code>${problem.place.join(".")}</code> ${problem.sentence}</li>`)}</ul></div>`;
+}

@@ -1,0 +1,96 @@
+// Opening, undoing, sharing and downloading.
+
+import { designOf } from "../questions.js";
+import { html, useState } from "../parts/html.js";
+import { download, linkTo, open } from "../remembering.js";
+import { begin, openStudy } from "../working.js";
+
+/** @typedef {import("../state/store.js").Store} Store */
+/** @typedef {import("../api.js").Api} Api */
+
+/** @param {{store: Store, api: Api}} props */
+export function Menu({ store, api }) {
+  const state = store.get();
+  const { history } = state;
+  const { study } = history.present;
+  const name = fileName(study.title);
+  /** @param {() => Promise<void>} work */
+  const attempt = (work) => async () => {
+    try {
+      await work();
+    } catch (error) {
+      store.dispatch({ type: "said", message: /** @type {Error} */ (error).message });
+    }
+  };
+  const theStudy = attempt(async () => download(new Blob([(await api.post("study/write", { study })).text], { type: "application/toml" }), `${name}.toml`));
+  const theDesign = attempt(async () => download(new Blob([(await api.post("study/write", fixedDesign(store))).text], { type: "application/toml" }), `${name}-${fileName(history.present.layout)}.toml`));
+  const csv = attempt(async () => {
+    const asked = JSON.parse(state.answers.indices?.key || "{}");
+    download(await api.blob("export/csv", { panel: "indices", request: asked }), `${name}.csv`);
+  });
+  /** @param {"svg" | "png"} format @param {"networks" | "responses"} kind */
+  const figure = (format, kind) => attempt(async () => download(await api.blob("figure", { kind, format, study, designs: [designOf(history.present)] }), `${name}-${kind}.${format}`));
+  const report = attempt(async () => {
+    await begin(store, api, { kind: "run", title: `Report: ${study.title ?? "study"}`, study });
+    store.dispatch({ type: "viewed", view: { tab: "work" } });
+  });
+  return html`<div class="row" role="group" aria-label="Memory">
+    <button type="button" title="Undo (Ctrl+Z)" disabled=${history.past.length === 0} onClick=${() => store.dispatch({ type: "undone" })}>Undo</button>
+    <button type="button" title="Redo (Ctrl+Shift+Z)" disabled=${history.future.length === 0} onClick=${() => store.dispatch({ type: "redone" })}>Redo</button>
+    <${Open} store=${store} api=${api} />
+    <details class="menu"><summary>Save</summary><div class="menu-body">
+      <button type="button" onClick=${theStudy}>Study file (TOML)</button>
+      <button type="button" onClick=${theDesign}>This design, values fixed (TOML)</button>
+      <button type="button" onClick=${csv}>Indices (CSV)</button>
+      <button type="button" onClick=${figure("svg", "networks")}>Network (SVG)</button>
+      <button type="button" onClick=${figure("png", "networks")}>Network (PNG)</button>
+      <button type="button" onClick=${figure("svg", "responses")}>Responses (SVG)</button>
+      <button type="button" onClick=${figure("png", "responses")}>Responses (PNG)</button>
+      <button type="button" onClick=${report}>Report: run the study</button>
+    </div></details>
+    <${Share} store=${store} />
+  </div>`;
+}
+
+/** What is asked for the study of the present layout alone, fixed at the values of the page. @param {Store} store */
+function fixedDesign(store) {
+  const document = store.get().history.present;
+  return { study: document.study, designs: [designOf(document)] };
+}
+
+/** @param {string | undefined} title */
+const fileName = (title) => (title ?? "study").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 60) || "study";
+
+/** @param {{store: Store, api: Api}} props */
+function Open({ store, api }) {
+  const [examples, setExamples] = useState(/** @type {{name: string, title: string}[]} */ ([]));
+  const close = (/** @type {Event} */ event) => /** @type {HTMLElement} */ (event.currentTarget).closest("details")?.removeAttribute("open");
+  return html`<details class="menu" onToggle=${async (/** @type {Event} */ event) => {
+    if (/** @type {HTMLDetailsElement} */ (event.currentTarget).open && examples.length === 0) setExamples((await api.get("examples").catch(() => ({ examples: [] }))).examples);
+  }}><summary>Open</summary><div class="menu-body">
+    <label class="file">A study file or record… <input type="file" multiple onChange=${(/** @type {Event} */ event) => {
+      const input = /** @type {HTMLInputElement} */ (event.currentTarget);
+      void open(store, api, [...(input.files ?? [])]);
+      input.value = "";
+      close(event);
+    }} /></label>
+    ${examples.map(({ name, title }) => html`<button type="button" key=${name} onClick=${async (/** @type {Event} */ event) => {
+      close(event);
+      const { study } = await api.get(`examples/${encodeURIComponent(name)}`);
+      await openStudy(store, api, study);
+    }}>${title || name}</button>`)}
+  </div></details>`;
+}
+
+/** @param {{store: Store}} props */
+function Share({ store }) {
+  const [link, setLink] = useState("");
+  const make = async () => {
+    const made = await linkTo(store.get().history.present);
+    setLink(made);
+    await navigator.clipboard?.writeText(made).then(() => store.dispatch({ type: "said", message: "The link is on the clipboard. It holds the whole state, and no token." }), () => {});
+  };
+  return html`<details class="menu" onToggle=${(/** @type {Event} */ event) => /** @type {HTMLDetailsElement} */ (event.currentTarget).open && make()}><summary>Link</summary><div class="menu-body">
+    <label>A link that holds the whole state (and no token) <input id="shared-link" readonly value=${link} onFocus=${(/** @type {Event} */ event) => /** @type {HTMLInputElement} */ (event.currentTarget).select()} /></label>
+  </div></details>`;
+}

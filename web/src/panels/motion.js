@@ -1,0 +1,213 @@
+// The car in motion, drawn from its mechanism: bodies, struts as networks, tyres, the road that passes below.
+
+import { drawing } from "../network/drawing.js";
+import { kindOf } from "../kinds.js";
+import { html, useEffect, useRef } from "../parts/html.js";
+
+/** @typedef {import("../state/store.js").Store} Store */
+/** @typedef {{time: number[], coordinates: {[name: string]: number[]}, roads: {[name: string]: number[]}}} Motions */
+/** @typedef {{[name: string]: number}} Pose  of coordinates and roads, at one time */
+
+const HEIGHT = 320;
+const BODY = 40; // [px] from the top at rest
+const WHEEL = 235;
+const GROUND = 285;
+const RADIUS = 24;
+const METRE = 130; // [px] along the car
+const SPEEDS = [1, 0.5, 0.25, 0.1];
+
+/** @param {{store: Store, motion: Motions, mechanism: any}} props */
+export function Motion({ store, motion, mechanism }) {
+  const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
+  const clock = useRef({ at: 0, frames: 0 });
+  const scene = useRef(/** @type {Scene | null} */ (null));
+  const { view, history } = store.get();
+  const speed = speedOf(history.present.study.road?.speed);
+  scene.current = { motion, mechanism, store, travel: speed, stretch: stretchOf(motion) };
+
+  useEffect(() => {
+    let last = performance.now();
+    let frame = 0;
+    /** @param {number} now */
+    function show(now) {
+      const { view: present } = store.get();
+      const shown = /** @type {Scene} */ (scene.current);
+      const end = shown.motion.time[shown.motion.time.length - 1];
+      if (present.playing) clock.current.at = (clock.current.at + (Math.min(now - last, 100) / 1000) * present.speed) % end;
+      last = now;
+      if (canvas.current) paint(canvas.current, shown, Math.min(clock.current.at, end));
+      clock.current.frames += 1;
+      if (canvas.current) canvas.current.dataset.frames = String(clock.current.frames);
+      if (present.playing) frame = requestAnimationFrame(show);
+    }
+    frame = requestAnimationFrame(show);
+    return () => cancelAnimationFrame(frame);
+  }, [view.playing, motion, mechanism, view.theme]);
+
+  /** @param {any} more */
+  const set = (more) => store.dispatch({ type: "viewed", view: more });
+  return html`<figure class="motion">
+    <canvas ref=${canvas} role="img" aria-label="The car on its road, drawn" style=${{ width: "100%", height: `${HEIGHT}px` }}></canvas>
+    <figcaption class="row">
+      <button type="button" aria-pressed=${view.playing} onClick=${() => set({ playing: !view.playing })}>${view.playing ? "Pause" : "Play"}</button>
+      <label>at <select value=${String(view.speed)} onChange=${(/** @type {Event} */ event) => set({ speed: Number(/** @type {HTMLSelectElement} */ (event.currentTarget).value) })}>
+        ${SPEEDS.map((each) => html`<option key=${each} value=${String(each)}>${each === 1 ? "the true speed" : `1/${Math.round(1 / each)} of the speed`}</option>`)}
+      </select></label>
+      <span class="quiet">Motions drawn ${Math.round(scene.current.stretch / METRE)} times as large.</span>
+    </figcaption>
+  </figure>`;
+}
+
+/** @typedef {{motion: Motions, mechanism: any, store: Store, travel: number, stretch: number}} Scene */
+
+/** The speed in m/s as far as it is written so; it only moves the road along. @param {unknown} text */
+function speedOf(text) {
+  const match = /^\s*([\d.eE+-]+)\s*(m\/s|km\/h)\s*$/.exec(String(text ?? ""));
+  return match ? Number(match[1]) / (match[2] === "km/h" ? 3.6 : 1) : 20;
+}
+
+/** Pixels of a metre up and down, so that the largest motion is well seen. @param {Motions} motion */
+function stretchOf({ coordinates, roads }) {
+  const heights = Object.entries({ ...coordinates, ...roads }).flatMap(([, values]) => values);
+  const largest = heights.reduce((most, value) => Math.max(most, Math.abs(value)), 1e-6);
+  return 34 / largest;
+}
+
+/** @param {Motions} motion @param {number} at @returns {Pose} */
+function poseAt({ time, coordinates, roads }, at) {
+  const place = at / (time[1] - time[0]);
+  const i = Math.min(Math.floor(place), time.length - 2);
+  const share = Math.min(1, place - i);
+  const all = Object.entries({ ...coordinates, ...roads });
+  return Object.fromEntries(all.map(([name, values]) => [name, values[i] + share * (values[i + 1] - values[i])]));
+}
+
+/** The height of a port. @param {{[name: string]: number}} port @param {Pose} pose */
+const heightOf = (port, pose) => Object.entries(port).reduce((sum, [name, lever]) => sum + lever * (pose[name] ?? 0), 0);
+
+/** @param {HTMLCanvasElement} canvas @param {Scene} scene @param {number} at */
+function paint(canvas, scene, at) {
+  const ratio = globalThis.devicePixelRatio || 1;
+  const width = canvas.clientWidth;
+  if (width === 0) return;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== HEIGHT * ratio) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = HEIGHT * ratio;
+  }
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const style = getComputedStyle(canvas);
+  const ink = style.color;
+  const paper = style.getPropertyValue("--raised") || "#fff";
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, width, HEIGHT);
+  pen.lineWidth = 1.4;
+  pen.lineJoin = "round";
+  pen.strokeStyle = ink;
+  pen.fillStyle = paper;
+  const pose = poseAt(scene.motion, at);
+  /** @type {number[]} */
+  const ends = scene.mechanism.tyres.map((/** @type {any} */ tyre) => placeOf(scene, tyre));
+  const mean = ends.reduce((sum, x) => sum + x, 0) / Math.max(1, ends.length);
+  const middle = width / 2;
+  /** @param {number} x */
+  const across = (x) => middle + (x - mean) * METRE;
+  drawRoad(pen, scene, at, width, across, ends);
+  for (const [i, tyre] of scene.mechanism.tyres.entries()) drawWheel(pen, across(ends[i]), WHEEL - scene.stretch * heightOf(tyre.port, pose), GROUND - scene.stretch * (pose[tyre.road] ?? 0));
+  for (const strut of scene.mechanism.struts) {
+    const x = across(strutPlace(scene, strut));
+    drawStrut(pen, scene.store, strut.network, x, levelOf(scene, strut.upper.port, pose), levelOf(scene, strut.lower.port, pose));
+  }
+  drawBody(pen, scene, pose, across);
+}
+
+/** Where a tyre is along the car: where the strut above it is, else by the distance of its road. @param {Scene} scene @param {any} tyre */
+function placeOf({ mechanism }, tyre) {
+  const above = mechanism.struts.find((/** @type {any} */ strut) => Object.keys(strut.lower.port).some((name) => name in tyre.port));
+  const road = mechanism.roads.find((/** @type {any} */ each) => each.name === tyre.road);
+  const levers = above ? above.upper.x : 0;
+  return levers !== 0 ? levers : -(road?.distance ?? 0);
+}
+
+/** @param {Scene} scene @param {any} strut */
+function strutPlace(scene, strut) {
+  const below = scene.mechanism.tyres.find((/** @type {any} */ tyre) => Object.keys(tyre.port).some((name) => name in strut.lower.port));
+  return below ? placeOf(scene, below) : strut.upper.x;
+}
+
+/** Where a port is drawn: on a wheel, on the ground, or on a body. @param {Scene} scene @param {{[name: string]: number}} port @param {Pose} pose */
+function levelOf(scene, port, pose) {
+  const wheel = scene.mechanism.tyres.some((/** @type {any} */ tyre) => Object.keys(tyre.port).some((name) => name in port));
+  const rest = Object.keys(port).length === 0 ? GROUND : wheel ? WHEEL - RADIUS : BODY + 26;
+  return rest - scene.stretch * heightOf(port, pose);
+}
+
+/** @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {number} at @param {number} width @param {(x: number) => number} across @param {number[]} ends */
+function drawRoad(pen, { motion, travel, stretch, mechanism }, at, width, across, ends) {
+  const first = mechanism.roads[0];
+  if (!first) return;
+  const heights = motion.roads[first.name];
+  const place = ends[mechanism.tyres.findIndex((/** @type {any} */ tyre) => tyre.road === first.name)] ?? 0;
+  const step = motion.time[1] - motion.time[0];
+  pen.beginPath();
+  for (let x = 0; x <= width; x += 2) {
+    const time = at + (x - across(place)) / METRE / travel;
+    const i = Math.min(heights.length - 1, Math.max(0, time / step));
+    const [below, share] = [Math.floor(i), i - Math.floor(i)];
+    const height = heights[below] + share * ((heights[below + 1] ?? heights[below]) - heights[below]);
+    pen.lineTo(x, GROUND - stretch * height);
+  }
+  pen.stroke();
+}
+
+/** @param {CanvasRenderingContext2D} pen @param {number} x @param {number} y @param {number} ground */
+function drawWheel(pen, x, y, ground) {
+  const squeezed = Math.max(8, (ground - y) / 2);
+  pen.beginPath();
+  pen.ellipse(x, (y + ground) / 2, RADIUS, squeezed, 0, 0, 2 * Math.PI);
+  pen.fill();
+  pen.stroke();
+  pen.beginPath();
+  pen.arc(x, y, 6, 0, 2 * Math.PI);
+  pen.fill();
+  pen.stroke();
+  pen.beginPath();
+  pen.moveTo(x, y - 6);
+  pen.lineTo(x, y - RADIUS);
+  pen.stroke();
+}
+
+/** A strut as its network, stretched between its ends. @param {CanvasRenderingContext2D} pen @param {Store} store @param {any} tree @param {number} x @param {number} top @param {number} bottom */
+function drawStrut(pen, store, tree, x, top, bottom) {
+  const state = store.get();
+  const plan = drawing(tree);
+  const tall = (bottom - top) / plan.height;
+  const wide = Math.min(1, 150 / (plan.left + plan.right));
+  /** @param {readonly (readonly [number, number])[]} line @param {number} dx @param {number} dy @param {number} sign */
+  const trace = (line, dx, dy, sign) => line.forEach(([a, b], i) => (i ? pen.lineTo(x + wide * (a + dx), top + tall * (sign * b + dy)) : pen.moveTo(x + wide * (a + dx), top + tall * (sign * b + dy))));
+  pen.beginPath();
+  for (const line of plan.lines) trace(line, 0, 0, 1);
+  for (const one of plan.placed) {
+    const kind = kindOf(state, one.name);
+    for (const line of kind?.drawing ?? []) trace(line, one.x, one.y, -1);
+  }
+  pen.stroke();
+}
+
+/** What is carried: a box over each place where a strut's upper end is, joined to one body where it pitches. @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {Pose} pose @param {(x: number) => number} across */
+function drawBody(pen, scene, pose, across) {
+  const mounts = scene.mechanism.struts.map((/** @type {any} */ strut) => [across(strutPlace(scene, strut)), levelOf(scene, strut.upper.port, pose)]);
+  if (mounts.length === 0) return;
+  mounts.sort((/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] - b[0]);
+  const [first, last] = [mounts[0], mounts[mounts.length - 1]];
+  const slope = last[0] === first[0] ? 0 : (last[1] - first[1]) / (last[0] - first[0]);
+  const [left, right] = [first[0] - 60, last[0] + 60];
+  const [y1, y2] = [first[1] - 60 * slope, last[1] + 60 * slope];
+  pen.beginPath();
+  pen.moveTo(left, y1);
+  pen.lineTo(left, y1 - 26);
+  pen.lineTo(right, y2 - 26);
+  pen.lineTo(right, y2);
+  pen.closePath();
+  pen.fill();
+  pen.stroke();
+}

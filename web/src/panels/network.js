@@ -1,0 +1,410 @@
+// The strut as a drawn network, and as text; both are the same value, and either can be edited.
+
+import { freshName, joinAt, leaves, moveTo, names, parse, partAt, removeAt, replaceAt, element as leaf, shiftAt, written } from "../network/algebra.js";
+import { drawing, pathOf, shortLabel } from "../network/drawing.js";
+import { isRange, nextLayout, strutsOf, textOf } from "../state/document.js";
+import { kindOf } from "../kinds.js";
+import { mountsOf } from "../questions.js";
+import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
+
+/** @typedef {import("../state/store.js").Store} Store */
+/** @typedef {import("../state/store.js").State} State */
+/** @typedef {import("../network/algebra.js").Tree} Tree */
+/** @typedef {import("../network/algebra.js").Path} Path */
+/** @typedef {import("../network/algebra.js").Joint} Joint */
+
+const MARGIN = 14;
+const TERMINAL = 1.6;
+const FAR = 6; // [px] from where a press is a drag
+
+/** @param {{store: Store}} props */
+export function NetworkPanel({ store }) {
+  const state = store.get();
+  const document = state.history.present;
+  const mounts = mountsOf(state.about, document);
+  const parted = strutsOf(document.study.layouts?.[document.layout]);
+  return html`<section class="panel network" aria-labelledby="network-title">
+    <h2 id="network-title">Strut</h2>
+    <${Layouts} store=${store} />
+    ${mounts.length > 0 &&
+    html`<div class="row struts" role="group" aria-label="Struts">
+      ${parted.map(
+        (strut) => html`<button type="button" class="chip" aria-pressed=${strut === document.strut} onClick=${() => store.change({ type: "selected", layout: document.layout, strut })}>${strut}</button>`,
+      )}
+      ${parted.length === 0
+        ? html`<span class="quiet">The same strut everywhere.</span> <button type="button" onClick=${() => store.change({ type: "strutsParted", struts: mounts })}>One for each</button>`
+        : html`<button type="button" onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}
+    </div>`}
+    <${Editor} store=${store} />
+  </section>`;
+}
+
+/** @param {{store: Store}} props */
+function Layouts({ store }) {
+  const { history } = store.get();
+  const document = history.present;
+  const baseline = document.study.study?.baseline ?? Object.keys(document.study.layouts ?? {})[0];
+  const [renaming, setRenaming] = useState(false);
+  return html`<div class="row layouts" role="group" aria-label="Layouts">
+    ${Object.keys(document.study.layouts ?? {}).map(
+      (layout) => html`<button type="button" key=${layout} class="chip" aria-pressed=${layout === document.layout} title=${layout === baseline ? `${layout}, the baseline` : layout} onClick=${() => store.change({ type: "selected", layout })}>${layout}${layout === baseline ? html`<span class="mark" aria-label="baseline"> ★</span>` : null}</button>`,
+    )}
+    <button type="button" title="A new layout like this one" onClick=${() => store.change({ type: "layoutAdded", name: nextLayout(document) })}>+ layout</button>
+    ${document.layout &&
+    html`<details class="menu">
+      <summary>${"This layout"}</summary>
+      <div class="menu-body">
+        <button type="button" onClick=${() => setRenaming(!renaming)}>Rename…</button>
+        ${renaming &&
+        html`<form onSubmit=${(/** @type {SubmitEvent} */ event) => {
+          event.preventDefault();
+          const name = String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("name")).trim();
+          if (name && !(name in (document.study.layouts ?? {}))) store.change({ type: "layoutRenamed", name });
+          setRenaming(false);
+        }}>
+          <label>New name <input name="name" value=${document.layout} autocomplete="off" /></label> <button>Rename</button>
+        </form>`}
+        <button type="button" disabled=${document.layout === baseline} onClick=${() => store.change({ type: "placed", place: ["study", "baseline"], value: document.layout })}>Make it the baseline</button>
+        <button type="button" disabled=${Object.keys(document.study.layouts ?? {}).length < 2} onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
+      </div>
+    </details>`}
+  </div>`;
+}
+
+/** @param {{store: Store}} props */
+function Editor({ store }) {
+  const state = store.get();
+  const document = state.history.present;
+  const text = textOf(document);
+  const tree = useMemo(() => parse(text), [text]);
+  const [last, setLast] = useState(/** @type {Tree | null} */ (tree));
+  const [how, setHow] = useState(/** @type {Joint} */ ("series"));
+  useEffect(() => {
+    if (tree !== null) setLast(tree);
+  }, [tree]);
+  const shownTree = tree ?? last;
+  const path = shownTree !== null && partAt(shownTree, state.view.path) !== null ? state.view.path : [];
+  const selected = shownTree && partAt(shownTree, path);
+  const editing = { store, tree, path, how };
+  return html`<${Toolbar} editing=${editing} selected=${selected} setHow=${setHow} />
+    ${shownTree === null
+      ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
+      : html`<${Schematic} editing=${editing} tree=${shownTree} stale=${tree === null} />`}
+    ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
+    <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
+    <${Text} store=${store} text=${text} />`;
+}
+
+/** What is selected, and the groups that it is in: each can be selected. @param {{store: Store, tree: Tree, path: Path}} props */
+function Trail({ store, tree, path }) {
+  return html`<div class="row trail" role="group" aria-label="Selected part">
+    <span class="quiet">Selected:</span>
+    ${[...path.keys(), path.length].map((depth) => {
+      const part = partAt(tree, path.slice(0, depth));
+      const text = depth === 0 ? "the whole" : part ? written(part) : "";
+      return html`<button type="button" class="link" key=${depth} aria-pressed=${depth === path.length} onClick=${() => store.dispatch({ type: "viewed", view: { path: path.slice(0, depth) } })}>${text.length > 24 ? `${text.slice(0, 23)}…` : text}</button>`;
+    })}
+  </div>`;
+}
+
+/** @param {Tree} part */
+const described = (part) => (part.kind === "element" ? `${part.name} is selected` : `${part.parts.length} parts in ${part.kind} are selected: ${written(part)}`);
+
+/** @typedef {{store: Store, tree: Tree | null, path: Path, how: Joint}} Editing */
+
+/** Puts another tree in the place of the present one, and selects a part of it. @param {Store} store @param {Tree} tree @param {Path} path @param {{[name: string]: string}} [added] */
+function draw(store, tree, path, added) {
+  store.change({ type: "drawn", text: written(tree), added });
+  store.dispatch({ type: "viewed", view: { path } });
+}
+
+/** Where an element of this name stands; the last one if there are more. @param {Tree} tree @param {string} name @returns {Path} */
+const placeOf = (tree, name) => leaves(tree).findLast((one) => one.name === name)?.path ?? [];
+
+/** A part of this name joined to what is selected. @param {Editing} editing @param {string} name @param {{[name: string]: string}} [added] @param {"join" | "replace"} [by] */
+function add({ store, tree, path, how }, name, added, by = "join") {
+  if (tree === null) {
+    if (textOf(store.get().history.present).trim() === "") draw(store, leaf(name), [], added);
+    return;
+  }
+  const next = by === "replace" ? replaceAt(tree, path, leaf(name)) : joinAt(tree, path, how, leaf(name));
+  draw(store, next, placeOf(next, name), added);
+}
+
+/** A new element of a kind, with the value of its example. @param {Editing} editing @param {{symbol: string, example: string, key: string, quantity: string}} kind @param {"join" | "replace"} [by] */
+function addKind(editing, kind, by) {
+  const { study } = editing.store.get().history.present;
+  const name = freshName(kind.symbol, Object.keys(study.elements ?? {}));
+  add(editing, name, { [name]: kind.example }, by);
+}
+
+/** @param {Editing} editing */
+function remove({ store, tree, path }) {
+  if (tree === null) return;
+  const left = removeAt(tree, path);
+  if (left === null) store.change({ type: "drawn", text: "" });
+  else draw(store, left, path.slice(0, -1));
+}
+
+/** @param {Editing} editing @param {-1 | 1} step */
+function shift({ store, tree, path }, step) {
+  if (tree === null || path.length === 0) return;
+  const next = shiftAt(tree, path, step);
+  if (next !== tree) draw(store, next, [...path.slice(0, -1), path[path.length - 1] + step]);
+}
+
+/** @param {{editing: Editing, selected: Tree | null, setHow: (how: Joint) => void}} props */
+function Toolbar({ editing, selected, setHow }) {
+  const { store, how } = editing;
+  const state = store.get();
+  const kinds = state.about?.elements ?? [];
+  const known = Object.keys(state.history.present.study.elements ?? {});
+  const off = editing.tree === null && textOf(state.history.present).trim() !== "";
+  return html`<div class="toolbar" role="toolbar" aria-label="Edit the network">
+    <div class="row" role="group" aria-label="How a part is joined to what is selected">
+      ${/** @type {Joint[]} */ (["series", "parallel"]).map(
+        (kind) => html`<button type="button" class="chip" aria-pressed=${how === kind} onClick=${() => setHow(kind)}>in ${kind}</button>`,
+      )}
+    </div>
+    <div class="row palette" role="group" aria-label="Add a part">
+      ${kinds.map(
+        (/** @type {any} */ kind) => html`<button type="button" key=${kind.key} class="part" disabled=${off} title=${`Add a ${kind.key} ${how === "series" ? "in series with" : "in parallel to"} what is selected; drag it to a place`} aria-label=${`Add a ${kind.key}`} draggable=${!off}
+          onDragStart=${(/** @type {DragEvent} */ event) => event.dataTransfer?.setData("text/x-element", kind.key)} onClick=${() => addKind(editing, kind)}>
+          <svg viewBox="-12 -22 24 44" width="18" height="33" aria-hidden="true"><path d=${symbolPath(kind)} /></svg>
+          <span>${kind.key}</span>
+        </button>`,
+      )}
+    </div>
+    <div class="row">
+      <label>Add <select value="" disabled=${off || known.length === 0} onChange=${(/** @type {Event} */ event) => {
+        const target = /** @type {HTMLSelectElement} */ (event.currentTarget);
+        add(editing, target.value);
+        target.value = "";
+      }}>
+        <option value="">again…</option>
+        ${known.map((name) => html`<option key=${name} value=${name}>${name}</option>`)}
+      </select></label>
+      <label>Replace by <select value="" disabled=${off || selected === null} onChange=${(/** @type {Event} */ event) => {
+        const target = /** @type {HTMLSelectElement} */ (event.currentTarget);
+        const kind = kinds.find((/** @type {any} */ each) => `new ${each.key}` === target.value);
+        if (kind) addKind(editing, kind, "replace");
+        else add(editing, target.value, undefined, "replace");
+        target.value = "";
+      }}>
+        <option value="">…</option>
+        ${kinds.map((/** @type {any} */ kind) => html`<option key=${kind.key} value=${`new ${kind.key}`}>a new ${kind.key}</option>`)}
+        ${known.map((name) => html`<option key=${`old ${name}`} value=${name}>${name}</option>`)}
+      </select></label>
+      <button type="button" disabled=${off || selected === null} onClick=${() => remove(editing)}>Delete</button>
+      <${Rename} store=${store} selected=${selected} />
+    </div>
+  </div>`;
+}
+
+/** @param {{store: Store, selected: Tree | null}} props */
+function Rename({ store, selected }) {
+  const [told, setTold] = useState("");
+  if (selected?.kind !== "element") return null;
+  const old = selected.name;
+  return html`<form class="row" key=${old} onSubmit=${(/** @type {SubmitEvent} */ event) => {
+    event.preventDefault();
+    const name = String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("name")).trim();
+    const taken = name in (store.get().history.present.study.elements ?? {});
+    if (name === old) setTold("");
+    else if (!/^[A-Za-z][A-Za-z0-9_]*$/.test(name)) setTold("A name begins with a letter and has letters, digits and underscores.");
+    else if (taken) setTold(`There is an element named ${name} already.`);
+    else {
+      setTold("");
+      store.change({ type: "elementRenamed", old, name });
+    }
+  }}>
+    <label>Name <input id="element-name" class="name" name="name" defaultValue=${old} value=${old} autocomplete="off" spellcheck=${false} /></label>
+    <button>Rename</button>${told && html`<span class="problem" role="alert">${told}</span>`}
+  </form>`;
+}
+
+/** @param {{editing: Editing, tree: Tree, stale: boolean}} props */
+function Schematic({ editing, tree, stale }) {
+  const { store, path } = editing;
+  const state = store.get();
+  const plan = useMemo(() => drawing(tree), [tree]);
+  const figure = useRef(/** @type {SVGSVGElement | null} */ (null));
+  const [over, setOver] = useState(/** @type {{path: Path, kind: Joint, before: boolean} | null} */ (null));
+  const drag = useDrag(editing, tree, setOver);
+  useEffect(() => {
+    const active = globalThis.document.activeElement;
+    if (active && figure.current?.contains(active)) focusOn(figure.current, path);
+  }, [path, plan]);
+
+  const width = plan.left + plan.right + 2 * MARGIN;
+  const height = plan.height + 2 * MARGIN;
+  const box = plan.boxes.find((each) => same(each.path, path));
+  const target = over && plan.boxes.find((each) => same(each.path, over.path));
+  const group = box && partAt(tree, path)?.kind !== "element" ? box : null;
+  return html`<div class=${`drawing ${stale ? "stale" : ""}`}>
+    <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`} style=${{ width: `${Math.min(1.7, Math.max(0.9, 300 / width)) * width}px` }} role="group" aria-label=${`Network ${written(tree)}`}
+      onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, editing, tree)}
+      onDragOver=${(/** @type {DragEvent} */ event) => {
+        event.preventDefault();
+        setOver(targetAt(event.clientX, event.clientY));
+      }}
+      onDragLeave=${() => setOver(null)}
+      onDrop=${(/** @type {DragEvent} */ event) => dropKind(event, editing, tree, setOver)}>
+      ${group && html`<rect class="chosen" x=${group.left - 3} y=${group.top - 3} width=${group.right - group.left + 6} height=${group.bottom - group.top + 6} rx="4" />`}
+      <path class="wire" d=${pathOf(plan.lines)} />
+      <circle class="terminal" cx="0" cy=${-TERMINAL} r=${TERMINAL} /><circle class="terminal" cx="0" cy=${plan.height + TERMINAL} r=${TERMINAL} />
+      ${plan.placed.map((one) => html`<${Symbol} key=${one.path.join()} one=${one} state=${state} chosen=${same(one.path, path)} editing=${editing} drag=${drag} />`)}
+      ${target && over && html`<path class="landing" d=${landing(target, over)} />`}
+    </svg>
+  </div>`;
+}
+
+/** @param {{one: import("../network/drawing.js").Placed, state: State, chosen: boolean, editing: Editing, drag: (event: PointerEvent, path: Path) => void}} props */
+function Symbol({ one, state, chosen, editing, drag }) {
+  const kind = kindOf(state, one.name);
+  const value = valueOf(state, one.name);
+  const label = [one.name, kind?.key ?? "unknown element", value].filter(Boolean).join(", ");
+  const select = () => chosen || editing.store.dispatch({ type: "viewed", view: { path: one.path } });
+  return html`<g class=${`element ${chosen ? "chosen" : ""} ${kind ? "" : "unknown"}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${isEntrance(one.path, editing.path) ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
+    onClick=${select} onFocus=${select}
+    onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
+    <title>${label}</title>
+    <rect class="touch" x="-11" y="-20" width=${24 + 5.2 * shortLabel(one.name).length} height="40" rx="3" />
+    <path class="symbol" d=${kind ? symbolPath(kind) : "M0 -20V-9M-8 -9H8V9H-8ZM0 9V20"} />
+    <text x="12" y="3">${shortLabel(one.name)}</text>
+  </g>`;
+}
+
+/** Whether the keyboard enters the drawing at this element: what is selected, or the first of it. @param {Path} leafPath @param {Path} path */
+const isEntrance = (leafPath, path) => leafPath.every((i, level) => i === (path[level] ?? 0));
+
+/** @param {{drawing: any[]}} kind */
+const symbolPath = (kind) => pathOf(kind.drawing, -1);
+
+/** The value of an element as it is written. @param {State} state @param {string} name */
+function valueOf(state, name) {
+  const { study, values, layout } = state.history.present;
+  const entry = study.elements?.[name];
+  return isRange(entry) ? (values[layout]?.[name] ?? "free") : typeof entry === "string" ? entry : "";
+}
+
+/** @param {Path} a @param {Path} b */
+const same = (a, b) => a.length === b.length && a.every((i, level) => i === b[level]);
+
+/** @param {SVGSVGElement} figure @param {Path} path */
+function focusOn(figure, path) {
+  const there = /** @type {SVGElement | null} */ (figure.querySelector(`[data-path="${path.join(".")}"]`));
+  there?.focus();
+}
+
+/** @param {KeyboardEvent} event @param {Editing} editing @param {Tree} tree */
+function onKey(event, editing, tree) {
+  const { store, path } = editing;
+  /** @param {Path} to */
+  const select = (to) => store.dispatch({ type: "viewed", view: { path: to } });
+  const all = leaves(tree).map((one) => one.path);
+  const at = all.findIndex((each) => path.every((i, level) => each[level] === i));
+  /** @type {{[key: string]: () => void}} */
+  const keys = {
+    ArrowRight: () => (event.altKey ? shift(editing, 1) : select(all[(at + 1) % all.length])),
+    ArrowDown: () => (event.altKey ? shift(editing, 1) : select(all[(at + 1) % all.length])),
+    ArrowLeft: () => (event.altKey ? shift(editing, -1) : select(all[(at - 1 + all.length) % all.length])),
+    ArrowUp: () => (event.altKey ? shift(editing, -1) : select(all[(at - 1 + all.length) % all.length])),
+    Home: () => select(all[0]),
+    End: () => select(all[all.length - 1]),
+    Escape: () => select(path.slice(0, -1)),
+    Delete: () => remove(editing),
+    Backspace: () => remove(editing),
+    F2: () => globalThis.document.getElementById("element-name")?.focus(),
+  };
+  if (event.ctrlKey || event.metaKey) return;
+  const joint = event.key === event.key.toUpperCase() ? "parallel" : "series";
+  const kind = store.get().about?.elements.find((/** @type {any} */ { symbol }) => symbol[0] === event.key.toLowerCase());
+  if (keys[event.key]) keys[event.key]();
+  else if (kind) addKind({ ...editing, how: joint }, kind);
+  else return;
+  event.preventDefault();
+}
+
+/** Where a part would be joined if it were let go here. @param {number} x @param {number} y */
+function targetAt(x, y) {
+  const found = globalThis.document.elementFromPoint(x, y)?.closest("[data-path]");
+  if (!found) return null;
+  const path = (found.getAttribute("data-path") ?? "").split(".").filter(Boolean).map(Number);
+  const box = (found.querySelector(".symbol") ?? found).getBoundingClientRect();
+  const [dx, dy] = [(x - box.x - box.width / 2) / box.width, (y - box.y - box.height / 2) / box.height];
+  const kind = /** @type {Joint} */ (Math.abs(dy) > 0.25 ? "series" : "parallel");
+  return { path, kind, before: kind === "series" ? dy < 0 : dx < 0 };
+}
+
+/** A line where a part would come to lie. @param {import("../network/drawing.js").Box} box @param {{kind: Joint, before: boolean}} over */
+function landing(box, { kind, before }) {
+  const y = before ? box.top : box.bottom;
+  const x = before ? box.left - 4 : box.right + 2;
+  return kind === "series" ? `M${box.left - 4} ${y}H${box.right}` : `M${x} ${box.top}V${box.bottom}`;
+}
+
+/** @param {DragEvent} event @param {Editing} editing @param {Tree} tree @param {(over: null) => void} setOver */
+function dropKind(event, editing, tree, setOver) {
+  event.preventDefault();
+  setOver(null);
+  const key = event.dataTransfer?.getData("text/x-element");
+  const state = editing.store.get();
+  const kind = state.about?.elements.find((/** @type {any} */ each) => each.key === key);
+  const target = targetAt(event.clientX, event.clientY);
+  if (!kind || !target) return;
+  event.stopPropagation();
+  const name = freshName(kind.symbol, Object.keys(state.history.present.study.elements ?? {}));
+  const next = joinAt(tree, target.path, target.kind, leaf(name), target.before);
+  draw(editing.store, next, placeOf(next, name), { [name]: kind.example });
+}
+
+/** Dragging a symbol to another place of the network. @param {Editing} editing @param {Tree} tree @param {(over: any) => void} setOver */
+function useDrag(editing, tree, setOver) {
+  return (/** @type {PointerEvent} */ down, /** @type {Path} */ from) => {
+    if (down.button !== 0 || editing.tree === null) return;
+    let moved = false;
+    /** @param {PointerEvent} event */
+    const move = (event) => {
+      moved ||= Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > FAR;
+      if (moved) setOver(targetAt(event.clientX, event.clientY));
+    };
+    /** @param {PointerEvent} event */
+    const up = (event) => {
+      globalThis.removeEventListener("pointermove", move);
+      setOver(null);
+      const target = moved && event.type === "pointerup" ? targetAt(event.clientX, event.clientY) : null;
+      if (!target) return;
+      const name = /** @type {any} */ (partAt(tree, from)).name;
+      const next = moveTo(tree, from, target.path, target.kind, target.before);
+      if (next !== tree) draw(editing.store, next, placeOf(next, name));
+    };
+    globalThis.addEventListener("pointermove", move);
+    globalThis.addEventListener("pointerup", up, { once: true });
+    globalThis.addEventListener("pointercancel", up, { once: true });
+  };
+}
+
+/** The text of the network, with what is wrong underlined. @param {{store: Store, text: string}} props */
+function Text({ store, text }) {
+  const state = store.get();
+  const { value } = state.answers.network ?? {};
+  const asked = JSON.parse(state.answers.network?.of ?? "{}").text;
+  const wrong = value && "sentence" in value && asked === text ? value : null;
+  const missing = parse(text) === null ? [] : names(/** @type {Tree} */ (parse(text))).filter((name) => !(name in (state.history.present.study.elements ?? {})));
+  const kinds = state.about?.elements ?? [];
+  return html`<div class="text">
+    <label for="network-text">As text <span class="quiet">| parallel, - series, brackets group</span></label>
+    <div class="underlined">
+      <input id="network-text" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off" aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
+        onInput=${(/** @type {Event} */ event) => store.dispatch({ type: "changed", change: { type: "drawn", text: /** @type {HTMLInputElement} */ (event.currentTarget).value }, gesture: "text" })}
+        onBlur=${() => store.dispatch({ type: "rested" })} />
+      ${wrong && html`<div class="marks" aria-hidden="true">${text.slice(0, wrong.at[0])}<u>${text.slice(...wrong.at) || " "}</u></div>`}
+    </div>
+    ${wrong && html`<p id="network-problem" class="problem" role="alert">${wrong.sentence}</p>`}
+    ${missing.map(
+      (name) => html`<p class="row" key=${name}>Add ${name} as
+        ${kinds.map((/** @type {any} */ kind) => html` <button type="button" key=${kind.key} onClick=${() => store.change({ type: "placed", place: ["elements", name], value: kind.example })}>${kind.key}</button>`)}</p>`,
+    )}
+  </div>`;
+}

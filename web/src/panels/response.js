@@ -1,0 +1,30 @@
+// Frequency responses of the strut (solid) and of the baseline (dashed).
+import { Plot } from "../plot.js";
+import { html, useMemo, useState } from "../parts/html.js";
+import { useShown } from "../parts/shown.js";
+
+/** @param {{store: import("../state/store.js").Store}} props */
+export function ResponsePanel({ store }) {
+  const state = store.get();
+  const faulty = (state.answers.check?.value?.problems ?? []).length > 0;
+  const { value, sentence } = state.answers.response ?? {};
+  const indices = [...new Set((value?.curves ?? []).map((/** @type {any} */ { index }) => index))];
+  const [picked, setPicked] = useState("");
+  const index = indices.includes(picked) ? picked : indices[0];
+  const { layout } = state.history.present;
+  const curves = useMemo(
+    () =>
+      (value?.curves ?? [])
+        .filter((/** @type {any} */ curve) => curve.index === index)
+        .map((/** @type {any} */ curve) => ({ label: curve.name, values: curve.gain, dash: curve.layout !== layout, colour: curve.layout !== layout ? 1 : 0 })),
+    [value, index, layout],
+  );
+  const first = value?.curves.find((/** @type {any} */ curve) => curve.index === index);
+  useShown("response", state);
+  return html`<div>
+    ${sentence && html`<p class="problem">${faulty ? "These curves are those of before: see what is wrong with the study." : sentence}</p>`}
+    <div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(String(each))}>${each}</button>`)}</div>
+    ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]" yLabel=${`gain [${first.unit ?? ""}]`} log=${true} logY=${true} title=${`Frequency response of ${index}`} theme=${state.view.theme} />
+      <p class="quiet">${first.title}: solid ${layout}, dashed the baseline.</p>`}
+  </div>`;
+}

@@ -1,0 +1,84 @@
+// A rig corner: measured records, what was found in them, what the device is made of, and the device into the editor.
+
+import { names, parse } from "../network/algebra.js";
+import { nextLayout } from "../state/document.js";
+import { open } from "../remembering.js";
+import { html, useState } from "../parts/html.js";
+import { shown } from "../state/scale.js";
+import { begin, stop } from "../working.js";
+
+/** @typedef {import("../state/store.js").Store} Store */
+/** @typedef {import("../api.js").Api} Api */
+
+/** @param {{store: Store, api: Api}} props */
+export function RigPanel({ store, api }) {
+  const state = store.get();
+  const [told, setTold] = useState("");
+  const fits = Object.values(state.work).filter(({ kind }) => kind === "identify").toReversed();
+  const models = (state.about?.models ?? []).map((/** @type {any} */ model) => model.name ?? model.key ?? model);
+  return html`<div>
+    <p class="quiet">Drop a measured record anywhere on the page (CSV, TDMS, MDF4, MATLAB), or</p>
+    <label class="file">choose one <input type="file" accept=".csv,.tsv,.txt,.tdms,.mf4,.mdf,.mat" multiple onChange=${(/** @type {Event} */ event) => open(store, api, /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label>
+    <ul class="records">${state.records.map((record) => html`<${RecordRow} key=${record.id} record=${record} />`)}</ul>
+    ${state.records.length > 0 &&
+    html`<form class="row" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
+      event.preventDefault();
+      const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
+      try {
+        const body = { records: state.records.map(({ id }) => id), model: form.get("model") };
+        await begin(store, api, { kind: "identify", title: `Identify ${state.records.map(({ name }) => name).join(", ")}`, study: {}, ...body });
+        setTold("");
+      } catch (error) {
+        setTold(/** @type {Error} */ (error).message);
+      }
+    }}>
+      <label>Model <select name="model">${models.map((/** @type {string} */ name) => html`<option key=${name}>${name}</option>`)}</select></label>
+      <button class="main">Identify</button>
+    </form>`}
+    ${told && html`<p class="problem" role="alert">${told}</p>`}
+    ${fits.map((job) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} />`)}
+  </div>`;
+}
+
+/** @param {{record: any}} props */
+function RecordRow({ record }) {
+  const channels = (record.channels ?? []).map((/** @type {any} */ channel) => (typeof channel === "string" ? channel : [channel.name, channel.unit && `[${channel.unit}]`].filter(Boolean).join(" ")));
+  return html`<li><b>${record.name}</b>: ${channels.join(", ")}; ${shown(record.samples)} samples, ${shown(record.duration)} s.
+    <ul>${(record.findings ?? []).map((/** @type {string} */ finding) => html`<li>${finding}</li>`)}</ul></li>`;
+}
+
+/** @param {{store: Store, api: Api, job: import("../state/store.js").Job}} props */
+function Fit({ store, api, job }) {
+  const running = job.state === "waiting" || job.state === "running";
+  const { result } = job;
+  return html`<section class="fit" data-state=${job.state}>
+    <div class="row"><b>${job.title}</b> <span class="state">${job.state}</span> <button type="button" onClick=${() => stop(store, api, job.id)}>${running ? "Stop" : "Forget"}</button></div>
+    ${running && html`<progress max="1" value=${job.share ?? undefined} aria-label=${job.title} />`}
+    ${job.sentence && html`<p class=${job.state === "failed" ? "problem" : "quiet"}>${job.sentence}</p>`}
+    ${result &&
+    html`<div class="scroll" tabindex="0" role="region" aria-label="Identified values"><table>
+        <thead><tr><th scope="col"></th><th scope="col">value</th><th scope="col">95 % interval</th><th scope="col"></th></tr></thead>
+        <tbody>${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">${shown(each.value)} <span class="unit">${each.unit}</span></td><td class="number">${(each.interval ?? []).map((/** @type {any} */ end) => (typeof end === "number" ? shown(end) : String(end))).join(" to ")}</td><td>${each.identified ? "" : each.sentence}</td></tr>`)}</tbody>
+      </table></div>
+      ${(result.notes ?? []).map((/** @type {any} */ note) => html`<p class="quiet">${typeof note === "string" ? note : (note.sentence ?? "")}</p>`)}
+      <button type="button" class="main" onClick=${() => takeDevice(store, result)}>Take the device into the editor</button>`}
+  </section>`;
+}
+
+/** The device joins the strut that is edited, in a layout of its own beside its spring. @param {Store} store @param {any} result */
+function takeDevice(store, result) {
+  const document = store.get().history.present;
+  const device = result.device ?? {};
+  const elements = device.elements ?? {};
+  const text = String(Object.values(device.layouts ?? {})[0] ?? result.layout ?? "");
+  const tree = parse(text);
+  if (tree === null) return;
+  const name = nextLayout(document);
+  store.change({ type: "layoutAdded", name });
+  const needed = Object.fromEntries(names(tree).filter((each) => each in elements).map((each) => [each, elements[each]]));
+  const before = store.get().history.present;
+  const there = before.study.layouts?.[name];
+  const present = typeof there === "string" && there ? `${there} | ` : "";
+  store.change({ type: "drawn", text: present + text, added: needed });
+  store.dispatch({ type: "said", message: `The device is in the new layout ${name}, with the values that were identified.` });
+}

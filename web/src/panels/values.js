@@ -1,0 +1,164 @@
+// Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, fixed or free.
+
+import { isRange, namesIn } from "../state/document.js";
+import { numbersOf, unitKey, valueAtPlace } from "../questions.js";
+import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
+import { html, useState } from "../parts/html.js";
+import { kindOf } from "../kinds.js";
+
+/** @typedef {import("../state/store.js").Store} Store */
+/** @typedef {import("../state/store.js").State} State */
+
+const DECADE = 10;
+
+/** A number of the document. `unit` is null where the unit itself tells what it is; `set` gives the change to another text.
+ * @typedef {{place: string[], label: string, sentence: string, unit: string | null, text: string, range: {from: string, to: string}, free: boolean, set: (text: string) => import("../state/document.js").Change}} Amount */
+
+/** @param {{store: Store}} props */
+export function ValuesPanel({ store }) {
+  const state = store.get();
+  const { study, layout } = state.history.present;
+  const here = new Set(namesIn(study, layout));
+  const elements = Object.keys(study.elements ?? {});
+  const used = elements.filter((name) => here.has(name));
+  const other = elements.filter((name) => !here.has(name));
+  const rest = numbersOf(state.about, state.history.present);
+  return html`<section class="panel values" aria-labelledby="values-title">
+    <h2 id="values-title">Values</h2>
+    ${used.map((name) => html`<${ElementRow} key=${name} store=${store} name=${name} />`)}
+    ${other.length > 0 &&
+    html`<details><summary>${`Elements of other layouts (${other.length})`}</summary>
+      ${other.map((name) => html`<${ElementRow} key=${name} store=${store} name=${name} />`)}
+    </details>`}
+    ${["vehicle", "road"].map((section) => {
+      const rows = rest.filter(({ place }) => place[0] === section);
+      return rows.length > 0 && html`<h3 key=${section}>${section === "vehicle" ? `Vehicle: ${String(study.vehicle?.model ?? "").replace("-", " ")}` : "Road"}</h3>
+        ${rows.map((row) => html`<${AmountRow} key=${row.place.join(".")} store=${store} amount=${numberAmount(state, row)} />`)}`;
+    })}
+  </section>`;
+}
+
+/** @param {State} state @param {{place: string[], unit: string, sentence: string}} row @returns {Amount} */
+function numberAmount(state, { place, unit, sentence }) {
+  const { study, ranges } = state.history.present;
+  const text = String(valueAtPlace(study, place));
+  const label = place[place.length - 1].replaceAll("_", " ");
+  return { place, label, sentence, unit, text, range: ranges[place.join(".")] ?? decade(text), free: false, set: (value) => ({ type: "placed", place, value }) };
+}
+
+/** @param {{store: Store, name: string}} props */
+function ElementRow({ store, name }) {
+  const state = store.get();
+  const { study, layout, values, ranges } = state.history.present;
+  const entry = study.elements?.[name];
+  const kind = kindOf(state, name);
+  const sentence = kind ? `${kind.key}: ${kind.sentence}` : "";
+  if (isRange(entry)) {
+    const text = values[layout]?.[name] ?? middle(state, entry);
+    /** @type {Amount} */
+    const amount = { place: ["elements", name], label: name, sentence, unit: null, text, range: entry, free: true, set: (value) => ({ type: "valued", layout, values: { [name]: value } }) };
+    return html`<${AmountRow} store=${store} amount=${amount} />`;
+  }
+  const place = typeof entry === "object" && kind ? ["elements", name, kind.quantity] : ["elements", name];
+  const text = String(valueAtPlace(study, place) ?? "");
+  /** @type {Amount} */
+  const amount = { place, label: name, sentence, unit: null, text, range: ranges[place.join(".")] ?? decade(text), free: false, set: (value) => ({ type: "placed", place, value }) };
+  return html`<${AmountRow} store=${store} amount=${amount} removable=${!Object.keys(study.layouts ?? {}).some((each) => namesIn(study, each).includes(name))} />`;
+}
+
+/** The size of a text in SI, or null where it is not known. @param {State} state @param {string} text @param {string | null} unit */
+export function sizeOf(state, text, unit) {
+  const apart = takenApart(text);
+  const size = apart && state.quantities[unitKey(apart.unit, unit)];
+  return size?.value === undefined || apart === null ? null : apart.number * size.value;
+}
+
+/** The geometric mean of the bounds, in the unit of the lower one. @param {State} state @param {{from: string, to: string}} range */
+function middle(state, { from, to }) {
+  const [lower, upper] = [sizeOf(state, from, null), sizeOf(state, to, null)];
+  return lower === null || upper === null ? "" : inUnitOf(state, from, null, Math.sqrt(lower * upper));
+}
+
+/** A size as text in the unit of another. @param {State} state @param {string} like @param {string | null} unit @param {number} size */
+function inUnitOf(state, like, unit, size) {
+  const apart = takenApart(like);
+  const one = apart && state.quantities[unitKey(apart.unit, unit)]?.value;
+  return apart && one ? quantity(size / one, apart.unit) : like;
+}
+
+/** A decade to either side. @param {string} text */
+function decade(text) {
+  const apart = takenApart(text);
+  if (apart === null || apart.number <= 0) return { from: text, to: text };
+  return { from: quantity(apart.number / DECADE, apart.unit), to: quantity(apart.number * DECADE, apart.unit) };
+}
+
+/** @param {{store: Store, amount: Amount, removable?: boolean}} props */
+function AmountRow({ store, amount, removable = false }) {
+  const state = store.get();
+  const { place, label, sentence, unit, text, range, free, set } = amount;
+  const id = place.join(".");
+  const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
+  const usable = size !== null && lower !== null && upper !== null && lower > 0 && upper > lower;
+  const problems = problemsAt(state, place);
+  const gesture = `slide ${id}`;
+  /** @param {Event} event */
+  function slide(event) {
+    if (!usable) return;
+    const position = Number(/** @type {HTMLInputElement} */ (event.currentTarget).value);
+    if (!free && !(id in state.history.present.ranges)) store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
+    store.change(set(inUnitOf(state, text, unit, valueAt(position, /** @type {number} */ (lower), /** @type {number} */ (upper)))), gesture);
+  }
+  return html`<div class=${`amount ${problems.length ? "wrong" : ""}`} data-place=${id} title=${sentence}>
+    <label for=${`slider ${id}`}>${label}</label>
+    <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} value=${usable ? positionOf(/** @type {number} */ (size), /** @type {number} */ (lower), /** @type {number} */ (upper)) : 0} disabled=${!usable} aria-valuetext=${text} onInput=${slide} onChange=${() => store.dispatch({ type: "rested" })} />
+    <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0} done=${(/** @type {string} */ value) => store.change(set(value))} />
+    <${Bounds} store=${store} amount=${amount} removable=${removable} />
+    ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
+  </div>`;
+}
+
+/** @param {{store: Store, amount: Amount, removable: boolean}} props */
+function Bounds({ store, amount, removable }) {
+  const { place, label, text, range, free } = amount;
+  const name = place[1];
+  const isElement = place[0] === "elements" && place.length === 2;
+  /** @param {{from: string, to: string}} next */
+  const setRange = (next) => (free ? store.change({ type: "placed", place, value: next }) : store.change({ type: "ranged", place: place.join("."), ...next }));
+  return html`<details class="bounds">
+    <summary aria-label=${`${label}: ${free ? "free" : "fixed"}, bounds`}>${free ? "free" : "fixed"}</summary>
+    <div class="menu-body">
+      ${isElement &&
+      html`<div class="row" role="group" aria-label=${`${label} is`}>
+        <button type="button" class="chip" aria-pressed=${!free} onClick=${() => free && store.change({ type: "fixed", name, text })}>fixed</button>
+        <button type="button" class="chip" aria-pressed=${free} onClick=${() => !free && store.change({ type: "freed", name, ...range })}>free</button>
+      </div>`}
+      <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from} done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
+      <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to} done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>
+      ${removable && html`<button type="button" onClick=${() => store.change({ type: "elementRemoved", name })}>Delete ${name}</button>`}
+    </div>
+  </details>`;
+}
+
+/** A text that is taken over with Enter or on leaving; while nobody is in it, it shows no more digits than fit. @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void}} props */
+export function Entry({ id, label, text, wrong = false, done }) {
+  const [typed, setTyped] = useState(/** @type {string | null} */ (null));
+  const [inside, setInside] = useState(false);
+  const finish = () => {
+    if (typed !== null && typed.trim() !== text) done(typed.trim());
+    setTyped(null);
+  };
+  return html`<input class="entry" id=${id} aria-label=${label} title=${text} value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
+    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onFocus=${() => setInside(true)}
+    onBlur=${() => {
+      finish();
+      setInside(false);
+    }}
+    onKeyDown=${(/** @type {KeyboardEvent} */ event) => (event.key === "Enter" ? finish() : event.key === "Escape" && setTyped(null))} />`;
+}
+
+/** The problems of the study at a place, or below it. @param {State} state @param {string[]} place @returns {import("../api.js").Problem[]} */
+export function problemsAt(state, place) {
+  const problems = state.answers.check?.value?.problems ?? [];
+  return problems.filter((/** @type {any} */ problem) => place.every((key, level) => problem.place[level] === key));
+}

@@ -1,0 +1,120 @@
+// Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
+
+import { isRange, strutsOf, textOf } from "./state/document.js";
+import { takenApart } from "./state/scale.js";
+
+/** @typedef {import("./state/store.js").State} State */
+/** @typedef {import("./state/document.js").Document} Document */
+/** @typedef {{panel: string, path: string, body: any, learnt?: (value: any) => import("./state/store.js").Action}} Question  `learnt` is what else an answer tells */
+
+/** The design that is edited. @param {Document} document */
+export const designOf = ({ layout, values }) => ({ layout, values: values[layout] ?? {}, name: layout });
+
+/** The design that it is compared with. @param {Document} document */
+export function baselineOf({ study, values }) {
+  const layout = study.study?.baseline ?? Object.keys(study.layouts ?? {})[0] ?? "";
+  return { layout, values: values[layout] ?? {}, name: layout };
+}
+
+/** What stands in the comparison: a layout of the study, or a design that was kept. @param {Document} document @param {string} key */
+export function comparedDesign(document, key) {
+  const kept = document.designs.find(({ name }) => `kept ${name}` === key);
+  if (kept) return { key, name: kept.name, study: kept.study, design: { ...designOf({ ...document, ...kept }), name: kept.name }, values: kept.values };
+  const layout = key.replace(/^layout /, "");
+  return { key, name: layout, study: document.study, design: designOf({ ...document, layout }), values: document.values };
+}
+
+/** @type {((state: State, document: Document) => Question[])[]} */
+const ROWS = [
+  (_, document) => [{ panel: "network", path: "network/parse", body: { text: textOf(document), elements: document.study.elements ?? {} } }],
+  (_, { study }) => [{ panel: "check", path: "study/check", body: { study } }],
+  (state, document) => [{ panel: "indices", path: "panel/indices", body: { ...about(document), methods: [state.view.method] } }],
+  (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", body: about(document) }] : []),
+  (state, document) => (state.view.tab === "history" ? [historyOf(state, document)] : []),
+  (state, document) => (state.view.tab === "history" ? [{ panel: "mechanism", path: "panel/mechanism", body: { study: document.study, design: designOf(document) } }] : []),
+  (state, document) => (state.view.tab === "compare" ? comparisons(state, document) : []),
+  (state, document) => unitsOf(state, document),
+];
+
+/** All questions that the state asks. @param {State} state @returns {Question[]} */
+export function questions(state) {
+  const document = state.history.present;
+  if (Object.keys(document.study).length === 0) return [];
+  return ROWS.flatMap((row) => row(state, document));
+}
+
+/** @param {Document} document */
+function about(document) {
+  const [design, baseline] = [designOf(document), baselineOf(document)];
+  return { study: document.study, designs: design.layout === baseline.layout ? [design] : [design, baseline], baseline };
+}
+
+/** @param {State} state @param {Document} document @returns {Question} */
+function historyOf({ view }, document) {
+  const body = { study: document.study, design: designOf(document), duration: view.seconds, seed: view.seed };
+  return { panel: "history", path: "panel/history", body };
+}
+
+/** @param {State} state @param {Document} document @returns {Question[]} */
+function comparisons({ view }, document) {
+  return view.compared.map((key, i) => {
+    const { study, design } = comparedDesign(document, key);
+    return { panel: `compare.${i}`, path: "panel/indices", body: { study, designs: [design], methods: [view.method] } };
+  });
+}
+
+/** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Question[]} */
+function unitsOf(state, document) {
+  const asked = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
+  if (asked.length === 0) return [];
+  const items = asked.map(({ text, unit }) => (unit === null ? { text } : { text, unit }));
+  /** @param {{items: any[]}} value @returns {import("./state/store.js").Action} */
+  const learnt = (value) => ({ type: "measured", quantities: Object.fromEntries(asked.map(({ key }, i) => [key, value.items[i]])) });
+  return [{ panel: "units", path: "quantities", body: { items }, learnt }];
+}
+
+/** The key by which the size of a unit is kept. @param {string} written @param {string | null} unit */
+export const unitKey = (written, unit) => `${written} in ${unit ?? "its element's unit"}`;
+
+/** @param {State} state @param {Document} document @returns {{key: string, text: string, unit: string | null}[]} */
+export function unitsIn({ about }, document) {
+  /** @type {Map<string, {key: string, text: string, unit: string | null}>} */
+  const found = new Map();
+  /** @param {unknown} text @param {string | null} unit */
+  const add = (text, unit) => {
+    const apart = takenApart(text);
+    if (apart === null) return;
+    const key = unitKey(apart.unit, unit);
+    found.set(key, { key, text: `1 ${apart.unit}`.trim(), unit });
+  };
+  for (const { place, unit } of numbersOf(about, document)) add(valueAtPlace(document.study, place), unit);
+  for (const entry of Object.values(document.study.elements ?? {})) {
+    for (const text of isRange(entry) ? [entry.from, entry.to] : typeof entry === "string" ? [entry] : Object.values(entry ?? {})) add(text, null);
+  }
+  for (const of of Object.values(document.values)) for (const text of Object.values(of)) add(text, null);
+  for (const [place, range] of Object.entries(document.ranges)) {
+    const unit = numbersOf(about, document).find((number) => number.place.join(".") === place)?.unit ?? null;
+    for (const text of Object.values(range)) add(text, unit);
+  }
+  return [...found.values()];
+}
+
+/** The numbers of vehicle and road, with unit and sentence. @param {any} about @param {Document} document @returns {{place: string[], unit: string, sentence: string, example: string}[]} */
+export function numbersOf(about, { study }) {
+  const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
+  const rows = [
+    ...(model?.fields ?? []).map((/** @type {any} */ field) => ({ ...field, place: ["vehicle", field.key] })),
+    ...(about?.road ?? []).map((/** @type {any} */ field) => ({ ...field, place: ["road", field.key] })),
+  ];
+  return rows.filter(({ place, unit }) => unit && valueAtPlace(study, place) !== undefined);
+}
+
+/** @param {any} table @param {string[]} place @returns {any} */
+export const valueAtPlace = (table, place) => place.reduce((inside, key) => inside?.[key], table);
+
+/** Whether a vehicle's struts can have networks of their own. @param {any} about @param {Document} document @returns {string[]} */
+export function mountsOf(about, { study, layout }) {
+  const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
+  const mounts = (model?.mounts ?? []).map((/** @type {any} */ mount) => mount.key ?? mount);
+  return mounts.length > 1 ? mounts : strutsOf(study.layouts?.[layout]);
+}

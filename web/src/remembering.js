@@ -1,0 +1,128 @@
+// What outlives a moment: the link that holds the state, the tab's own memory, files that are opened and downloaded.
+
+import { empty } from "./state/document.js";
+import { openStudy as beginWith } from "./working.js";
+
+/** @typedef {import("./state/store.js").Store} Store */
+/** @typedef {import("./state/document.js").Document} Document */
+/** @typedef {import("./api.js").Api} Api */
+
+const KEPT = "inerter.document";
+const LINK = "state";
+
+/** The document and what is looked at, as text for a link. @param {Document} document */
+export async function packed(document) {
+  const bytes = new Blob([JSON.stringify(document)]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+  const buffer = new Uint8Array(await new Response(bytes).arrayBuffer());
+  return btoa(Array.from(buffer, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+/** The document that a text holds, or null. @param {string} text @returns {Promise<Document | null>} */
+export async function unpacked(text) {
+  try {
+    const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+    return documentFrom(JSON.parse(await new Response(stream).text()));
+  } catch {
+    return null;
+  }
+}
+
+/** A document of what was read, as far as it is one. @param {any} read @returns {Document | null} */
+export function documentFrom(read) {
+  if (read === null || typeof read !== "object" || typeof read.study !== "object" || read.study === null) return null;
+  const { study, layout, strut, values, ranges, designs } = { ...empty(), ...read };
+  return { study, layout: String(layout), strut: strut === null ? null : String(strut), values: values ?? {}, ranges: ranges ?? {}, designs: Array.isArray(designs) ? designs : [] };
+}
+
+/** A link to the document as it is; never with the token. @param {Document} document */
+export const linkTo = async (document) => `${location.origin}${location.pathname}#${LINK}=${await packed(document)}`;
+
+/** What the address of the page says. @param {string} hash */
+export function fromAddress(hash) {
+  const said = new URLSearchParams(hash.replace(/^#/, ""));
+  return { token: said.get("token"), state: said.get(LINK) };
+}
+
+/** Keeps the document in the tab's memory, so that a reload loses nothing. @param {Store} store */
+export function keepRemembering(store) {
+  /** @type {Document | null} */
+  let last = null;
+  let due = 0;
+  store.subscribe(() => {
+    const { present } = store.get().history;
+    if (present === last) return;
+    last = present;
+    clearTimeout(due);
+    due = setTimeout(() => sessionStorage.setItem(KEPT, JSON.stringify(present)), 200);
+  });
+  addEventListener("pagehide", () => sessionStorage.setItem(KEPT, JSON.stringify(store.get().history.present)));
+}
+
+/** The document of before a reload, or null. @returns {Document | null} */
+export function remembered() {
+  try {
+    return documentFrom(JSON.parse(sessionStorage.getItem(KEPT) ?? "null"));
+  } catch {
+    return null;
+  }
+}
+
+/** Hands a file to the person. @param {Blob} blob @param {string} name */
+export function download(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+const RECORDS = /\.(csv|tsv|txt|tdms|mf4|mdf|mat)$/i;
+
+/** Opens what was dropped or chosen: study files, and measured records. @param {Store} store @param {Api} api @param {Iterable<File>} files */
+export async function open(store, api, files) {
+  for (const file of await studiesFirst(files)) {
+    try {
+      if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
+      else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
+      else say(store, `${file.name} is no file that this page knows: it takes study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat).`);
+    } catch (error) {
+      say(store, `${file.name}: ${/** @type {Error} */ (error).message}`);
+    }
+  }
+}
+
+/** Of a result folder the study it was made of, else the files themselves. @param {Iterable<File>} files */
+async function studiesFirst(files) {
+  const all = [...files];
+  const resolved = all.find(({ name }) => name === "study.resolved.toml");
+  return resolved ? [resolved] : all;
+}
+
+/** Whether a table is one of results, not a record. @param {File} file */
+const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test(await file.slice(0, 100).text());
+
+/** @param {Store} store @param {string} message */
+const say = (store, message) => store.dispatch({ type: "said", message });
+
+/** @param {Store} store @param {Api} api @param {File} file */
+async function openStudyFile(store, api, file) {
+  const { study, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
+  const other = problems?.[0]?.sentence;
+  const isStudy = study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
+  if (!isStudy) {
+    say(store, `${file.name} is no study file, and nothing was changed. ${other ?? ""}`.trim());
+    return;
+  }
+  await beginWith(store, api, study);
+  say(store, problems.length ? `${file.name} is open; ${problems.length === 1 ? "one entry needs" : `${problems.length} entries need`} another value.` : `${file.name} is open.`);
+}
+
+/** @param {Store} store @param {Api} api @param {File} file */
+async function openRecord(store, api, file) {
+  store.dispatch({ type: "viewed", view: { tab: "rig" } });
+  say(store, `Reading ${file.name}…`);
+  const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
+  store.dispatch({ type: "recorded", record });
+  say(store, `${file.name} was read.`);
+}

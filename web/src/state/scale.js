@@ -1,0 +1,51 @@
+// Sliders on a logarithmic scale, and quantities as they are written: a number and a unit.
+
+export const STEPS = 400;
+const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$/;
+
+/** @typedef {{number: number, unit: string}} Written */
+
+/** A quantity's number and unit as they stand, or null. @param {unknown} text @returns {Written | null} */
+export function takenApart(text) {
+  const match = typeof text === "string" ? NUMBER.exec(text) : null;
+  return match && { number: Number(match[1]), unit: match[2] };
+}
+
+/** @param {number} number @param {string} unit */
+export const quantity = (number, unit) => `${shortest(number)} ${unit}`.trim();
+
+/** A quantity of many digits with five of them, any other as it was written. @param {string} text */
+export function brief(text) {
+  const apart = takenApart(text);
+  const long = apart !== null && /\d[\d.]{7,}/.test(text);
+  return long ? `${Number(apart.number.toPrecision(5))} ${apart.unit}`.trim() : text;
+}
+
+/** A number with four digits or fewer, as a person writes it. @param {number} number */
+export const shortest = (number) => String(Number(number.toPrecision(4)));
+
+/** @param {number} value @param {number} lower @param {number} upper */
+export function positionOf(value, lower, upper) {
+  const share = Math.log(value / lower) / Math.log(upper / lower);
+  return Number.isFinite(share) ? Math.round(STEPS * Math.min(1, Math.max(0, share))) : 0;
+}
+
+/** @param {number} position @param {number} lower @param {number} upper */
+export const valueAt = (position, lower, upper) => lower * (upper / lower) ** (position / STEPS);
+
+/** A number as answers show it. @param {number | null | undefined} number @param {number} digits */
+export function shown(number, digits = 5) {
+  if (number === null || number === undefined || Number.isNaN(number)) return "–";
+  const size = Math.abs(number);
+  if (size !== 0 && (size >= 1e6 || size < 1e-3)) {
+    const [mantissa, power] = number.toExponential(digits - 1).split("e");
+    return `${minus(Number(mantissa))}·10${superscript(Number(power))}`;
+  }
+  return minus(Number(number.toPrecision(digits)));
+}
+
+/** @param {number} number */
+const minus = (number) => String(number).replace("-", "−");
+
+/** @param {number} power */
+const superscript = (power) => [...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("");

@@ -1,0 +1,117 @@
+// Long work: begun, watched, stopped, and found again after a reload of the page.
+
+import { Lost } from "./api.js";
+import { kindOf } from "./kinds.js";
+import { isRange } from "./state/document.js";
+
+/** @typedef {import("./state/store.js").Store} Store */
+/** @typedef {import("./api.js").Api} Api */
+
+/** The best values of a layout, taken into the document; returns what to tell. @param {Store} store @param {Api} api @param {{study: any, layouts: string[], index: string, method: string}} asked */
+export async function optimise(store, api, asked) {
+  const { study, layouts, index, method } = asked;
+  const body = { study, layouts, indices: [index], method, methods: [method] };
+  try {
+    if (!sees(store.get(), method, "neither")) {
+      await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")}: best ${index}`, ...body });
+      store.dispatch({ type: "viewed", view: { tab: "work" } });
+      return "Under way: see Work.";
+    }
+    const { designs } = await api.post("panel/optimise", { ...body, client: "page.optimise", sequence: Date.now() });
+    return takeOptima(store, designs);
+  } catch (error) {
+    return /** @type {Error} */ (error).message;
+  }
+}
+
+/** @param {import("./state/store.js").State} state @param {string} method @param {string} what */
+const sees = (state, method, what) => state.about.methods.find((/** @type {any} */ { name }) => name === method)?.sees === what;
+
+/** The values of optima become the present values of their layouts, in one step. @param {Store} store @param {any[]} designs @param {string | null} gesture */
+export function takeOptima(store, designs, gesture = null) {
+  const found = designs.map((best) => ({ best, values: best.texts ?? textsOf(store.get(), best.parameters ?? {}) }));
+  const taken = found.filter(({ values }) => Object.keys(values).length > 0);
+  if (taken.length === 0) return designs.find(({ message }) => message)?.message ?? "No value is free: nothing to choose. Make one free by its button.";
+  store.change({ type: "valuedAll", values: Object.fromEntries(taken.map(({ best, values }) => [best.layout, values])) }, gesture);
+  return `The best ${taken[0].best.index} of ${taken.map(({ best }) => best.layout + atBounds(best)).join(", ")}.`;
+}
+
+/** @param {any} best */
+function atBounds({ active_bounds: bounds }) {
+  const names = Array.isArray(bounds) ? bounds : Object.keys(bounds ?? {});
+  return names.length ? ` (at a bound: ${names.map((/** @type {any} */ each) => each.name ?? each).join(", ")})` : "";
+}
+
+/** Opens a study, with free values at their best for its first index by norms: a fair beginning. @param {Store} store @param {Api} api @param {any} study */
+export async function openStudy(store, api, study) {
+  const gesture = `open ${Date.now()}`;
+  store.change({ type: "opened", study }, gesture);
+  await beginAtBest(store, api, gesture);
+}
+
+/** @param {Store} store @param {Api} api @param {string | null} gesture */
+export async function beginAtBest(store, api, gesture = null) {
+  const { study } = store.get().history.present;
+  const index = study.study?.indices?.[0];
+  const free = Object.values(study.elements ?? {}).some(isRange);
+  const method = store.get().about.methods.find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
+  if (!index || !free || !method) return;
+  try {
+    const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
+    if (store.get().history.present.study === study) takeOptima(store, designs, gesture);
+  } catch {
+    // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
+  }
+}
+
+/** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
+const textsOf = (state, parameters) => Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${kindOf(state, name)?.unit ?? ""}`]));
+
+/** @param {Store} store @param {Api} api @param {{kind: string, title: string, [key: string]: any}} body */
+export async function begin(store, api, body) {
+  const job = await api.post("work", body);
+  store.dispatch({ type: "worked", job: jobOf(job) });
+  void watch(store, api, job.id);
+  return job.id;
+}
+
+/** All work that the server knows, watched on. @param {Store} store @param {Api} api */
+export async function findWork(store, api) {
+  const { work } = await api.get("work");
+  for (const job of work) {
+    store.dispatch({ type: "worked", job: jobOf(job) });
+    void watch(store, api, job.id);
+  }
+}
+
+/** @param {any} job */
+const jobOf = (job) => ({ id: job.id, kind: job.kind, title: job.title, state: job.state, share: share(job), sentence: job.sentence ?? job.told ?? null });
+
+/** @param {{done?: number | null, total?: number | null}} progress */
+const share = ({ done, total }) => (total ? (done ?? 0) / total : null);
+
+/** @param {Store} store @param {Api} api @param {string} id */
+async function watch(store, api, id) {
+  /** @param {any} more */
+  const tell = (more) => store.dispatch({ type: "worked", job: { id, ...more } });
+  /** @type {{[event: string]: (data: any) => void}} */
+  const told = {
+    progress: (data) => tell({ state: "running", share: share(data), sentence: data.told ?? null }),
+    done: () => tell({ state: "done", share: 1 }),
+    failed: (data) => tell({ state: "failed", sentence: data.sentence }),
+    stopped: () => tell({ state: "stopped", sentence: "Stopped; what was computed is kept." }),
+  };
+  try {
+    await api.events(`work/${id}/events`, (event, data) => told[event]?.(data));
+    if (["done", "stopped"].includes(store.get().work[id]?.state)) tell({ result: await api.get(`work/${id}/result`) });
+  } catch (error) {
+    if (error instanceof Lost) store.dispatch({ type: "connected", connection: "lost" });
+  }
+}
+
+/** @param {Store} store @param {Api} api @param {string} id */
+export async function stop(store, api, id) {
+  const ended = ["done", "failed", "stopped"].includes(store.get().work[id]?.state);
+  await api.remove(`work/${id}`);
+  if (ended) store.dispatch({ type: "dropped", id });
+}

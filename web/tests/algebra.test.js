@@ -1,0 +1,121 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { element, freshName, join, joinAt, leaves, moveTo, names, parse, partAt, removeAt, renamed, replaceAt, shiftAt, written } from "../src/network/algebra.js";
+
+/** A generator of numbers in [0, 1) from a seed (mulberry32). */
+function random(seed) {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+function randomTree(draw, depth = 4) {
+  if (depth === 0 || draw() < 0.35) return element("kcbfg"[Math.floor(5 * draw())] + Math.floor(10 * draw()));
+  const parts = Array.from({ length: 2 + Math.floor(3 * draw()) }, () => randomTree(draw, depth - 1));
+  return join(draw() < 0.5 ? "series" : "parallel", parts);
+}
+
+function* places(tree, path = []) {
+  yield path;
+  if (tree.kind !== "element") for (const [i, part] of tree.parts.entries()) yield* places(part, [...path, i]);
+}
+
+const pick = (draw, list) => list[Math.floor(list.length * draw())];
+const sorted = (tree) => leaves(tree).map(({ name }) => name).sort();
+const canonical = (tree) => tree.kind === "element" || (tree.parts.length > 1 && tree.parts.every((part) => part.kind !== tree.kind && canonical(part)));
+
+function each(check, count = 500) {
+  for (let seed = 0; seed < count; seed += 1) {
+    const draw = random(seed);
+    check(randomTree(draw), draw, seed);
+  }
+}
+
+/** The admittance of a network at s = 1 whose elements have prime values: a number that knows the structure. */
+function admittance(tree) {
+  if (tree.kind === "element") return 1 + tree.name.codePointAt(0) * 0.37 + Number(tree.name.slice(1) || 0) * 1.3;
+  const parts = tree.parts.map(admittance);
+  const sum = (numbers) => numbers.reduce((a, b) => a + b, 0);
+  return tree.kind === "parallel" ? sum(parts) : 1 / sum(parts.map((y) => 1 / y));
+}
+
+const close = (a, b) => assert.ok(Math.abs(a - b) <= 1e-12 * Math.abs(a), `${a} is not ${b}`);
+
+test("what is written reads back as the same tree", () => {
+  each((tree) => assert.deepEqual(parse(written(tree)), tree));
+});
+
+test("series binds tighter than parallel, and brackets group", () => {
+  assert.deepEqual(parse("k | c - b"), { kind: "parallel", parts: [element("k"), { kind: "series", parts: [element("c"), element("b")] }] });
+  assert.deepEqual(parse("(k | c) - b"), { kind: "series", parts: [{ kind: "parallel", parts: [element("k"), element("c")] }, element("b")] });
+  assert.deepEqual(parse(" ( ( k ) ) "), element("k"));
+});
+
+test("what is no network is none", () => {
+  for (const text of ["", " ", "k |", "| k", "k c", "(k", "k)", "k + c", "2k", "k || c", "()", "k - (c | )", "é", `${"(".repeat(101)}k${")".repeat(101)}`]) assert.equal(parse(text), null, text);
+});
+
+test("every change gives a tree without groups inside groups of their kind", () => {
+  each((tree, draw) => {
+    const [a, b] = [pick(draw, [...places(tree)]), pick(draw, [...places(tree)])];
+    const kind = draw() < 0.5 ? "series" : "parallel";
+    for (const changed of [joinAt(tree, a, kind, element("x"), draw() < 0.5), replaceAt(tree, a, randomTree(draw)), removeAt(tree, a), moveTo(tree, a, b, kind), shiftAt(tree, a, 1)]) {
+      assert.ok(changed === null || canonical(changed), written(tree));
+    }
+  });
+});
+
+test("joining changes the admittance of that part as the law of its joint says", () => {
+  each((tree, draw) => {
+    const path = pick(draw, [...places(tree)]);
+    const [y, x] = [admittance(partAt(tree, path)), admittance(element("x"))];
+    close(admittance(joinAt(tree, path, "parallel", element("x"))), admittanceWith(tree, path, y + x));
+    close(admittance(joinAt(tree, path, "series", element("x"), true)), admittanceWith(tree, path, 1 / (1 / y + 1 / x)));
+  });
+});
+
+function admittanceWith(tree, path, y) {
+  if (path.length === 0) return y;
+  const [i, ...rest] = path;
+  const parts = tree.parts.map((part, j) => (j === i ? admittanceWith(part, rest, y) : admittance(part)));
+  const sum = (numbers) => numbers.reduce((a, b) => a + b, 0);
+  return tree.kind === "parallel" ? sum(parts) : 1 / sum(parts.map((each) => 1 / each));
+}
+
+test("what was joined and is taken away leaves the network as it was", () => {
+  each((tree, draw) => {
+    const path = pick(draw, [...places(tree)]);
+    const joined = joinAt(tree, path, draw() < 0.5 ? "series" : "parallel", element("x"), draw() < 0.5);
+    const there = leaves(joined).find(({ name }) => name === "x").path;
+    assert.deepEqual(removeAt(joined, there), tree);
+  });
+});
+
+test("moving keeps all elements, and a part is never moved into itself", () => {
+  each((tree, draw) => {
+    const all = [...places(tree)];
+    const [from, to] = [pick(draw, all), pick(draw, all)];
+    const moved = moveTo(tree, from, to, draw() < 0.5 ? "series" : "parallel", draw() < 0.5);
+    assert.deepEqual(sorted(moved), sorted(tree));
+    if (to.length <= from.length && to.every((i, level) => from[level] === i)) assert.equal(moved, tree);
+  });
+});
+
+test("a change of neighbours leaves the admittance, and changing back gives the same tree", () => {
+  each((tree, draw) => {
+    const path = pick(draw, [...places(tree)]);
+    const shifted = shiftAt(tree, path, 1);
+    close(admittance(shifted), admittance(tree));
+    if (shifted !== tree) assert.deepEqual(shiftAt(shifted, [...path.slice(0, -1), path.at(-1) + 1], -1), tree);
+  });
+});
+
+test("a name is changed wherever it stands, and only there", () => {
+  assert.equal(renamed("c | c2 - (ck | c)", "c", "d"), "d | c2 - (ck | d)");
+  assert.equal(renamed("c | ", "c", "d"), "d | ");
+  assert.deepEqual(names(parse("c | k - c")), ["c", "k"]);
+  assert.equal(freshName("b", ["b", "b2"]), "b3");
+});

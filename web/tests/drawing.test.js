@@ -1,0 +1,34 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { parse } from "../src/network/algebra.js";
+import { HALF_HEIGHT, HALF_WIDTH, drawing } from "../src/network/drawing.js";
+
+const TEXTS = ["k", "k | c", "k - c", "k | c - b", "k | c - (ks | cs) - (b | f)", "(a | b) - (c | d - (e | f))", Array.from({ length: 40 }, (_, i) => `e${i}`).join(" | ")];
+const each = (check) => TEXTS.forEach((text) => check(drawing(parse(text)), text));
+
+test("no two symbols touch, and all are inside the drawing", () => {
+  each(({ placed, left, right, height }, text) => {
+    placed.forEach((one, i) => {
+      assert.ok(one.x - HALF_WIDTH >= -left && one.x + HALF_WIDTH <= right, text);
+      assert.ok(one.y - HALF_HEIGHT >= 0 && one.y + HALF_HEIGHT <= height, text);
+      for (const other of placed.slice(i + 1)) {
+        assert.ok(Math.abs(one.x - other.x) >= 2 * HALF_WIDTH || Math.abs(one.y - other.y) >= 2 * HALF_HEIGHT, text);
+      }
+    });
+  });
+});
+
+test("every end of a line meets a symbol's lead, another line, or an end of the whole", () => {
+  const on = ([x, y], [[x1, y1], [x2, y2]]) => x >= Math.min(x1, x2) && x <= Math.max(x1, x2) && y >= Math.min(y1, y2) && y <= Math.max(y1, y2);
+  each(({ placed, lines, height }, text) => {
+    for (const line of lines.filter(([[x1], [x2]]) => x1 === x2)) {
+      for (const end of line) {
+        const [x, y] = end;
+        const meets = placed.some((one) => one.x === x && Math.abs(Math.abs(one.y - y) - HALF_HEIGHT) < 1e-9);
+        const joins = lines.some((other) => other !== line && on(end, other));
+        const closes = x === 0 && (y === 0 || y === height);
+        assert.ok(meets || joins || closes, `${text}: ${end}`);
+      }
+    }
+  });
+});

@@ -14,8 +14,8 @@ def half_of(mechanism: Mechanism) -> Mechanism:
     """What moves where both sides move alike, if both are alike: an equal mechanism of fewer coordinates; else itself.
 
     Of two coordinates that are each other's mirror image the first has the mass of both, and those that turn round lie
-    still. All mounts stay, two of them beside each other, but those that nothing moves then; a coordinate that goes is a
-    `Point` of its name. What the mirror says is not believed but tried: masses and mounts have to be the same in it.
+    still. All mounts stay, two of them beside each other, but for those that nothing moves then; a coordinate that goes
+    is a `Point` of its name. What the mirror says is not believed but tried: masses and mounts must be the same in it.
     """
     if not mechanism.mirror or not _is_its_image(mechanism):
         return mechanism

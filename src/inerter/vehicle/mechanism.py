@@ -103,7 +103,7 @@ class Measures:
 class Mechanism:
     """Any number of coordinates, struts, tyres, roads and forces.
 
-    Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`, and of points;
+    Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`, so of points;
     `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and
     `_relative_velocity` are those over the ground, which are the same unless the ground moves.
 

@@ -66,8 +66,8 @@ class RoadVelocity:
         return self.road.velocity_intensity
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same, with both sides on one track, and one half of it if both are alike."""
-        return half_of(mechanism.on_one_track())
+        """The same; where both tracks are alike with both sides on one, and one half of it if both sides are alike."""
+        return half_of(mechanism.on_one_track()) if self.road.coherence is None else mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """One at each road input; with a coherence two, from the mean of the tracks and half of their difference."""

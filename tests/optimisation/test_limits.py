@@ -157,20 +157,8 @@ def test_a_limit_over_two_tyres_holds_for_each():
 
 
 @dataclass(frozen=True)
-class WithoutGradients:
+class WithoutGradients(it.Norm):
     """Norms of which a search knows the values alone, as of what is simulated."""
-
-    name = "without-gradients"
-    words = "norms"
-    sees = it.Sees.NEITHER
-    needs_amplitude = False
-    searches = True
-
-    def estimate(self, vehicle, index):
-        return NORM.estimate(vehicle, index)
-
-    def estimate_many(self, vehicle, indices, points):
-        return NORM.estimate_many(vehicle, indices, points)
 
     def objective(self, vehicle, index):
         return SampledObjective(self.estimate, vehicle, index)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -10,10 +11,19 @@ from campaigns import sampled
 from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
 import inerter as it
+from inerter.methods.sampled import SampledObjective
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 NORM = it.Norm()
+
+
+@dataclass(frozen=True)
+class WithoutGradients(it.Norm):
+    """Norms of which a search knows the values alone, as of what is simulated."""
+
+    def objective(self, vehicle, index):
+        return SampledObjective(self.estimate, vehicle, index)
 
 
 def strut(kind):
@@ -189,6 +199,12 @@ def test_a_front_of_what_is_simulated():
     quick = it.pareto(car, [J1, J3], it.StatisticalLinearisation(), points=3)
     assert len(quick.values) == 3
     assert np.all(np.diff(quick.values[:, 1]) < 0.0)
+
+
+def test_a_front_without_gradients_is_the_same():
+    car = paper_quarter_car(strut("S3"))
+    exact, found = it.pareto(car, [J1, J5], NORM, points=3), it.pareto(car, [J1, J5], WithoutGradients(), points=3)
+    assert found.values == pytest.approx(exact.values, rel=2e-3)
 
 
 @pytest.mark.campaign

@@ -54,8 +54,11 @@ async function connect() {
   try {
     const about = await api.get("about");
     store.dispatch({ type: "told", about });
+    const fresh = begun ? false : await begin();
     if (!about.kernels.ready) await compiled();
-    if (!begun) await begin();
+    if (fresh) await beginAtBest(store, api);
+    if (fresh && store.get().history.past.length <= 1) store.dispatch({ type: "began" });
+    begun = true;
     store.dispatch({ type: "connected", connection: "ready" });
     await findWork(store, api);
   } catch (error) {
@@ -69,16 +72,14 @@ async function connect() {
   }
 }
 
-/** Brings the first document; undoing ends there. */
+/** Brings the first document, where undoing ends; returns whether its free values are still to be chosen. */
 async function begin() {
   const document = await firstDocument();
-  if (document && "layout" in document) store.change({ type: "restored", document });
-  else if (document) {
-    store.change({ type: "opened", study: document.study });
-    await beginAtBest(store, api);
-  }
+  if (document === null) return false;
+  const known = "layout" in document;
+  store.change(known ? { type: "restored", document } : { type: "opened", study: document.study });
   store.dispatch({ type: "began" });
-  begun = true;
+  return !known;
 }
 
 /** Waits until the kernels are compiled, and tells which one is under way. */

@@ -70,7 +70,7 @@ function inFrames(told) {
 async function start(store, api) {
   const { examples } = await api.get("examples");
   const first = examples.find((/** @type {any} */ { name }) => name === "quarter-car") ?? examples[0];
-  if (first) await openStudy(store, api, first.study);
+  if (first) await openStudy(store, api, (await api.get(`examples/${encodeURIComponent(first.name)}`)).study);
 }
 
 /** @param {{store: Store}} props */

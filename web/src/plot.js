@@ -1,6 +1,6 @@
 // Curves by uPlot, in the colours of the page, with bands that are shaded.
 import uPlot from "uplot";
-import { html, useEffect, useRef } from "./parts/html.js";
+import { html, useEffect, useLayoutEffect, useRef } from "./parts/html.js";
 
 /** @typedef {{label: string, values: (number | null)[], dash?: boolean, colour?: number}} Curve */
 /** @typedef {{from: number, to: number, kind: string}} Band */
@@ -33,7 +33,7 @@ export function Plot({ x, curves, xLabel, yLabel, log = false, logY = false, ban
       made.destroy();
     };
   }, [shape]);
-  useEffect(() => plot.current?.setData(dataOf(x, curves)), [x, curves, bands]);
+  useLayoutEffect(() => plot.current?.setData(dataOf(x, curves)), [x, curves, bands]);
   return html`<div class="plot" ref=${place} role="img" aria-label=${title}></div>`;
 }
 

@@ -55,7 +55,7 @@ export async function beginAtBest(store, api, gesture = null) {
   const index = study.study?.indices?.[0];
   const free = Object.values(study.elements ?? {}).some(isRange);
   const method = store.get().about.methods.find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
-  if (!index || !free || !method || store.get().connection === "compiling") return;
+  if (!index || !free || !method) return;
   try {
     const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
     if (store.get().history.present.study === study) takeOptima(store, designs, gesture);

@@ -223,7 +223,7 @@ def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, no
                     samples=samples)  # fmt: skip
 
 
-def _on_other_road(value: Any, road: Road | Mapping[str, float]) -> Any:
+def _on_other_road(value: Any, road: Road | Mapping[str, Any]) -> Any:
     """The same with another road wherever it holds one."""
     if isinstance(value, Road):
         return road if isinstance(road, Road) else dataclasses.replace(value, **road)

@@ -29,7 +29,7 @@ from inerter.networks.elements import Free
 from inerter.optimisation.constrained import Limited, polished, searches, trust_region_within
 from inerter.optimisation.held import held_at
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
-from inerter.optimisation.local import LocalOptimum
+from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
@@ -298,8 +298,11 @@ class _Trade:
 
 
 def _costly(problem: Limited, first: Sequence[Array]) -> LocalOptimum:
-    values = problem.values(np.array(first))
-    return trust_region_within(problem, first[int(np.argmin(values))])
+    start = first[int(np.argmin(problem.values(np.array(first))))]
+    if problem.bounds:
+        return trust_region_within(problem, start)
+    assert problem.objective is not None
+    return trust_region(problem.objective, start, problem.lower, problem.upper)
 
 
 def _undominated(found: Sequence[_Found], which: Sequence[int]) -> list[_Found]:

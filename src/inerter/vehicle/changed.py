@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.checks import is_number
 from inerter.errors import DesignError
-from inerter.fields import fields_of, mounts_of
+from inerter.fields import fields_of
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.mechanism import Mechanism
@@ -56,7 +56,7 @@ def _known(vehicle: Vehicle) -> list[str]:
 def mounted(vehicle: Vehicle) -> tuple[list[Element], list[Element]]:
     """The elements of the struts, and of tyres that are given as networks."""
     if isinstance(vehicle, VehicleModel):
-        struts: list[Network] = [getattr(vehicle, name) for name in mounts_of(type(vehicle))]
+        struts: list[Network] = list(vehicle.networks().values())
         tyres: list[Network] = []
     else:
         mechanism = vehicle.mechanism()
@@ -82,9 +82,7 @@ def labelled(vehicle: Vehicle, label: str) -> list[Element]:
 def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Vehicle:
     """The same vehicle with other elements in what is mounted."""
     if isinstance(vehicle, VehicleModel):
-        mounted: dict[str, Any] = {
-            name: map_elements(getattr(vehicle, name), change) for name in mounts_of(type(vehicle))
-        }
+        mounted: dict[str, Any] = {name: map_elements(network, change) for name, network in vehicle.networks().items()}
         return dataclasses.replace(vehicle, **mounted)
     mechanism = vehicle.mechanism()
     return dataclasses.replace(

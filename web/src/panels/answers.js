@@ -3,6 +3,7 @@
 import { baselineOf } from "../questions.js";
 import { shown } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
+import { useShown } from "../parts/shown.js";
 import { optimise } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -15,6 +16,8 @@ export function AnswersPanel({ store, api }) {
   const document = state.history.present;
   const baseline = baselineOf(document).layout;
   const methods = state.about?.methods ?? [];
+  const problems = state.answers.check?.value?.problems ?? [];
+  useShown("indices", state);
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${waiting === true}>
     <h2 id="answers-title">Answers</h2>
     <div class="row">
@@ -22,7 +25,8 @@ export function AnswersPanel({ store, api }) {
         ${methods.map((/** @type {any} */ method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
       </select></label>
     </div>
-    ${sentence && html`<p class="problem" role="alert">${sentence}</p>`}
+    ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
+    ${sentence && value && html`<p class="quiet">The values below are those of before.</p>`}
     ${value && html`<${Indices} value=${value} layout=${document.layout} baseline=${baseline} stale=${Boolean(sentence)} />`}
     <${Limits} value=${value} />
     <${Optimise} store=${store} api=${api} indices=${indicesOf(state)} />
@@ -50,7 +54,7 @@ function Indices({ value, layout, baseline, stale }) {
   if (!design) return null;
   const alone = layout === baseline;
   return html`<div class="scroll" tabindex="0" role="region" aria-label="Indices"><table class=${stale ? "stale" : ""} data-sequence=${value.sequence}>
-    <thead><tr><th scope="col">index</th><th scope="col">${layout}</th>${!alone && html`<th scope="col">${baseline} ★</th><th scope="col">better by</th>`}</tr></thead>
+    <thead><tr><th scope="col">index</th><th scope="col" title=${layout}>${layout}</th>${!alone && html`<th scope="col" title=${`${baseline}, the baseline`}>${baseline} ★</th><th scope="col">better by</th>`}</tr></thead>
     <tbody>${design.results.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
@@ -71,7 +75,8 @@ export function number({ value, standard_error }) {
 /** @param {number | null | undefined} value @param {number | null} [error] */
 export function percent(value, error) {
   if (value === null || value === undefined) return "–";
-  const text = `${value < 0 ? "−" : ""}${Math.abs(value).toFixed(2)} %`;
+  const size = Math.abs(value);
+  const text = `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
   return error ? `${text} ± ${shown(error, 2)}` : text;
 }
 

@@ -10,6 +10,7 @@ const SHADED = ["stick", "open"];
 /** @param {{store: import("../state/store.js").Store}} props */
 export function HistoryPanel({ store }) {
   const state = store.get();
+  const faulty = (state.answers.check?.value?.problems ?? []).length > 0;
   const { value, sentence, waiting } = state.answers.history ?? {};
   const [picked, setPicked] = useState("");
   const signals = value?.signals ?? [];
@@ -35,7 +36,7 @@ export function HistoryPanel({ store }) {
       ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
       ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
     </div>
-    ${sentence && html`<p class="problem" role="alert">${sentence}</p>`}
+    ${sentence && html`<p class="problem">${faulty ? "These curves are those of before: see what is wrong with the study." : sentence}</p>`}
     ${value?.message && value.status !== "ok" && html`<p class="problem" role="alert">${value.message}</p>`}
     ${signal &&
     html`<${Plot} x=${signal.time} curves=${curves} bands=${bands} xLabel="time [s]" yLabel=${`${signal.label} [${signal.unit}]`} title=${`${signal.label} over time`} theme=${state.view.theme} />

@@ -63,7 +63,7 @@ const fileName = (title) => (title ?? "study").toLowerCase().replace(/[^a-z0-9]+
 
 /** @param {{store: Store, api: Api}} props */
 function Open({ store, api }) {
-  const [examples, setExamples] = useState(/** @type {{name: string, study: import("../state/document.js").Study}[]} */ ([]));
+  const [examples, setExamples] = useState(/** @type {{name: string, title: string}[]} */ ([]));
   const close = (/** @type {Event} */ event) => /** @type {HTMLElement} */ (event.currentTarget).closest("details")?.removeAttribute("open");
   return html`<details class="menu" onToggle=${async (/** @type {Event} */ event) => {
     if (/** @type {HTMLDetailsElement} */ (event.currentTarget).open && examples.length === 0) setExamples((await api.get("examples").catch(() => ({ examples: [] }))).examples);
@@ -74,10 +74,11 @@ function Open({ store, api }) {
       input.value = "";
       close(event);
     }} /></label>
-    ${examples.map(({ name, study }) => html`<button type="button" key=${name} onClick=${async (/** @type {Event} */ event) => {
+    ${examples.map(({ name, title }) => html`<button type="button" key=${name} onClick=${async (/** @type {Event} */ event) => {
       close(event);
-      void openStudy(store, api, study);
-    }}>${study.title || name}</button>`)}
+      const { study } = await api.get(`examples/${encodeURIComponent(name)}`);
+      await openStudy(store, api, study);
+    }}>${title || name}</button>`)}
   </div></details>`;
 }
 

@@ -90,8 +90,21 @@ function Editor({ store }) {
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
       : html`<${Schematic} editing=${editing} tree=${shownTree} stale=${tree === null} />`}
+    ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
     <${Text} store=${store} text=${text} />`;
+}
+
+/** What is selected, and the groups that it is in: each can be selected. @param {{store: Store, tree: Tree, path: Path}} props */
+function Trail({ store, tree, path }) {
+  return html`<div class="row trail" role="group" aria-label="Selected part">
+    <span class="quiet">Selected:</span>
+    ${[...path.keys(), path.length].map((depth) => {
+      const part = partAt(tree, path.slice(0, depth));
+      const text = depth === 0 ? "the whole" : part ? written(part) : "";
+      return html`<button type="button" class="link" key=${depth} aria-pressed=${depth === path.length} onClick=${() => store.dispatch({ type: "viewed", view: { path: path.slice(0, depth) } })}>${text.length > 24 ? `${text.slice(0, 23)}…` : text}</button>`;
+    })}
+  </div>`;
 }
 
 /** @param {Tree} part */
@@ -251,8 +264,9 @@ function Symbol({ one, state, chosen, editing, drag }) {
   const kind = kindOf(state, one.name);
   const value = valueOf(state, one.name);
   const label = [one.name, kind?.key ?? "unknown element", value].filter(Boolean).join(", ");
-  return html`<g class=${`element ${chosen ? "chosen" : ""} ${kind ? "" : "unknown"}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${chosen || (editing.path.length === 0 && one.path.every((i) => i === 0)) ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
-    onClick=${() => editing.store.dispatch({ type: "viewed", view: { path: one.path } })}
+  const select = () => chosen || editing.store.dispatch({ type: "viewed", view: { path: one.path } });
+  return html`<g class=${`element ${chosen ? "chosen" : ""} ${kind ? "" : "unknown"}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${isEntrance(one.path, editing.path) ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
+    onClick=${select} onFocus=${select}
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
     <rect class="touch" x="-11" y="-20" width=${24 + 5.2 * shortLabel(one.name).length} height="40" rx="3" />
@@ -260,6 +274,9 @@ function Symbol({ one, state, chosen, editing, drag }) {
     <text x="12" y="3">${shortLabel(one.name)}</text>
   </g>`;
 }
+
+/** Whether the keyboard enters the drawing at this element: what is selected, or the first of it. @param {Path} leafPath @param {Path} path */
+const isEntrance = (leafPath, path) => leafPath.every((i, level) => i === (path[level] ?? 0));
 
 /** @param {{drawing: any[]}} kind */
 const symbolPath = (kind) => pathOf(kind.drawing, -1);
@@ -276,7 +293,7 @@ const same = (a, b) => a.length === b.length && a.every((i, level) => i === b[le
 
 /** @param {SVGSVGElement} figure @param {Path} path */
 function focusOn(figure, path) {
-  const there = /** @type {SVGElement | null} */ (figure.querySelector(`[data-path="${path.join(".")}"]`) ?? figure.querySelector("[data-path]"));
+  const there = /** @type {SVGElement | null} */ (figure.querySelector(`[data-path="${path.join(".")}"]`));
   there?.focus();
 }
 

@@ -1,10 +1,12 @@
 // Frequency responses of the strut (solid) and of the baseline (dashed).
 import { Plot } from "../plot.js";
 import { html, useMemo, useState } from "../parts/html.js";
+import { useShown } from "../parts/shown.js";
 
 /** @param {{store: import("../state/store.js").Store}} props */
 export function ResponsePanel({ store }) {
   const state = store.get();
+  const faulty = (state.answers.check?.value?.problems ?? []).length > 0;
   const { value, sentence } = state.answers.response ?? {};
   const indices = [...new Set((value?.curves ?? []).map((/** @type {any} */ { index }) => index))];
   const [picked, setPicked] = useState("");
@@ -18,8 +20,9 @@ export function ResponsePanel({ store }) {
     [value, index, layout],
   );
   const first = value?.curves.find((/** @type {any} */ curve) => curve.index === index);
+  useShown("response", state);
   return html`<div>
-    ${sentence && html`<p class="problem" role="alert">${sentence}</p>`}
+    ${sentence && html`<p class="problem">${faulty ? "These curves are those of before: see what is wrong with the study." : sentence}</p>`}
     <div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(String(each))}>${each}</button>`)}</div>
     ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]" yLabel=${`gain [${first.unit ?? ""}]`} log=${true} logY=${true} title=${`Frequency response of ${index}`} theme=${state.view.theme} />
       <p class="quiet">${first.title}: solid ${layout}, dashed the baseline.</p>`}

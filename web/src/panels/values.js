@@ -2,7 +2,7 @@
 
 import { isRange, namesIn } from "../state/document.js";
 import { numbersOf, unitKey, valueAtPlace } from "../questions.js";
-import { STEPS, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
+import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { kindOf } from "../kinds.js";
 
@@ -140,15 +140,20 @@ function Bounds({ store, amount, removable }) {
   </details>`;
 }
 
-/** A text that is taken over with Enter or on leaving. @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void}} props */
+/** A text that is taken over with Enter or on leaving; while nobody is in it, it shows no more digits than fit. @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void}} props */
 export function Entry({ id, label, text, wrong = false, done }) {
   const [typed, setTyped] = useState(/** @type {string | null} */ (null));
+  const [inside, setInside] = useState(false);
   const finish = () => {
     if (typed !== null && typed.trim() !== text) done(typed.trim());
     setTyped(null);
   };
-  return html`<input class="entry" id=${id} aria-label=${label} value=${typed ?? text} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
-    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onBlur=${finish}
+  return html`<input class="entry" id=${id} aria-label=${label} title=${text} value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
+    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onFocus=${() => setInside(true)}
+    onBlur=${() => {
+      finish();
+      setInside(false);
+    }}
     onKeyDown=${(/** @type {KeyboardEvent} */ event) => (event.key === "Enter" ? finish() : event.key === "Escape" && setTyped(null))} />`;
 }
 

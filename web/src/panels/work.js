@@ -27,7 +27,7 @@ export const KINDS = [
 export function WorkPanel({ store, api }) {
   const state = store.get();
   const jobs = Object.values(state.work).toReversed();
-  const known = new Set((state.about?.work ?? []).map((/** @type {any} */ each) => each.kind ?? each));
+  const known = new Set((state.about?.work ?? []).map((/** @type {any} */ each) => each.key));
   return html`<div class="work">
     ${KINDS.filter(({ kind }) => known.size === 0 || known.has(kind)).map((kind) => html`<${Begin} key=${kind.kind} store=${store} api=${api} kind=${kind} />`)}
     <h3>Under way and done</h3>
@@ -116,8 +116,7 @@ function Files({ api, job }) {
 function sweepable(state) {
   const { study } = state.history.present;
   const elements = Object.entries(study.elements ?? {}).filter(([, entry]) => !isRange(entry) && typeof entry === "string");
-  const places = state.about?.places === true || (state.about?.work ?? []).some((/** @type {any} */ each) => each.kind === "sweep" && each.places);
-  const rest = places ? numbersOf(state.about, state.history.present) : [];
+  const rest = state.about?.places ? numbersOf(state.about, state.history.present) : [];
   return [
     ...elements.map(([key, text]) => ({ key, text: String(text) })),
     ...rest.map(({ place }) => ({ key: place.join("."), text: String(study[place[0]]?.[place[1]]) })),

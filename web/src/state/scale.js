@@ -14,6 +14,13 @@ export function takenApart(text) {
 /** @param {number} number @param {string} unit */
 export const quantity = (number, unit) => `${shortest(number)} ${unit}`.trim();
 
+/** A quantity of many digits with five of them, any other as it was written. @param {string} text */
+export function brief(text) {
+  const apart = takenApart(text);
+  const long = apart !== null && /\d[\d.]{7,}/.test(text);
+  return long ? `${Number(apart.number.toPrecision(5))} ${apart.unit}`.trim() : text;
+}
+
 /** A number with four digits or fewer, as a person writes it. @param {number} number */
 export const shortest = (number) => String(Number(number.toPrecision(4)));
 

@@ -1,0 +1,89 @@
+"""How long the page takes: from the command to the page, from the step of a slider to its numbers, frames of the car.
+
+    python benchmarks/page_latency.py [STEPS]
+
+In a real Chromium, on a server of its own, with the quarter car. A step counts from the input event until the table shows an
+answer to that very question and the curves are drawn from theirs.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from pathlib import Path
+from statistics import median, quantiles
+from typing import Any
+
+from playwright.sync_api import sync_playwright
+
+EXAMPLE = Path(__file__).parents[1] / "examples" / "quarter-car.toml"
+TOKEN = "a-token-of-the-benchmark-of-the-page"
+
+STEP = """async ([position, panels]) => {
+  const slider = document.getElementById("slider elements.c");
+  const done = (panel) => new Promise((resolve) => addEventListener("inerter:shown", function look(event) {
+    if (event.detail.panel === panel && event.detail.newest) { removeEventListener("inerter:shown", look); resolve(performance.now()); }
+  }));
+  const all = Promise.all(panels.map(done));
+  const begun = performance.now();
+  slider.value = String(position);
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
+  return Math.max(...(await all)) - begun;
+}"""
+FRAMES = """async (seconds) => {
+  const canvas = document.querySelector(".motion canvas");
+  const before = Number(canvas.dataset.frames);
+  await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+  return (Number(canvas.dataset.frames) - before) / seconds;
+}"""
+
+
+def main() -> None:
+    steps = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        port = listener.getsockname()[1]
+    origin = f"http://127.0.0.1:{port}"
+    command = [sys.executable, "-c", "from inerter.cli.start import main; main()", "serve", str(EXAMPLE), "--port", str(port)]
+    begun = time.perf_counter()
+    server = subprocess.Popen([*command, "--no-browser"], stdout=subprocess.PIPE, env={**os.environ, "INERTER_TOKEN": TOKEN})
+    try:
+        assert server.stdout is not None
+        server.stdout.readline()
+        print(f"from the command to its link     {time.perf_counter() - begun:8.2f} s")
+        ready = urllib.request.Request(f"{origin}/api/ready", headers={"Authorization": f"Bearer {TOKEN}"})
+        urllib.request.urlopen(ready, timeout=300).read()
+        print(f"from the command to its kernels  {time.perf_counter() - begun:8.2f} s")
+        with sync_playwright() as play:
+            browser = play.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+            _measure(browser.new_page(viewport={"width": 1280, "height": 800}), f"{origin}/#token={TOKEN}", steps)
+            browser.close()
+    finally:
+        server.terminate()
+        server.wait(30)
+
+
+def _measure(page: Any, link: str, steps: int) -> None:
+    begun = time.perf_counter()
+    page.goto(link)
+    page.wait_for_selector("td[data-index]")
+    print(f"from the request to numbers      {time.perf_counter() - begun:8.2f} s")
+    page.wait_for_timeout(1000)
+    for panels in (["indices"], ["indices", "response"]):
+        page.evaluate(STEP, [10, panels])
+        times = [page.evaluate(STEP, [40 + (37 * i) % 320, panels]) for i in range(steps)]
+        print(f"a step to {' and '.join(panels):22} {median(times):8.1f} ms, 95 % under {quantiles(times, n=20)[-1]:.1f} ms ({steps} steps)")
+    page.click("#tab-history")
+    page.wait_for_selector(".motion canvas")
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_timeout(500)
+    print(f"frames of the car in motion      {page.evaluate(FRAMES, 3):8.1f} a second")
+
+
+if __name__ == "__main__":
+    main()

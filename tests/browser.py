@@ -1,0 +1,122 @@
+"""A workbench that runs, and windows of a real browser on it."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
+_TOKEN = "a-token-of-the-tests-of-the-page-00"
+_READY = 240.0  # seconds, with kernels to compile
+
+
+@dataclass
+class Served:
+    """A workbench that runs, and can be stopped and begun again on its port."""
+
+    study: Path | None
+    port: int
+    token: str = _TOKEN
+    more: tuple[str, ...] = ()
+    process: subprocess.Popen[str] | None = None
+
+    @property
+    def origin(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def link(self) -> str:
+        return f"{self.origin}/#token={self.token}"
+
+    def begin(self) -> None:
+        command = [sys.executable, "-c", "from inerter.cli.start import main; main()", "serve"]
+        command += [] if self.study is None else [str(self.study)]
+        command += ["--port", str(self.port), "--no-browser", *self.more]
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, env={**os.environ, "INERTER_TOKEN": self.token}
+        )
+        assert self.process.stdout is not None
+        assert self.process.stdout.readline().strip() == self.link
+
+    def stop(self) -> None:
+        if self.process is not None:
+            self.process.terminate()
+            self.process.wait(30)
+            assert self.process.stdout is not None
+            self.process.stdout.close()
+            self.process = None
+
+    def wait_until_ready(self) -> None:
+        request = urllib.request.Request(f"{self.origin}/api/ready", headers={"Authorization": f"Bearer {self.token}"})
+        with urllib.request.urlopen(request, timeout=_READY) as answer:
+            answer.read()
+
+
+@dataclass
+class Visitor:
+    """A window of the browser; counts what the page asks of other hosts, and keeps what goes wrong in it."""
+
+    page: Any
+    served: Served
+    elsewhere: list[str] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+
+    def visit(self, link: str = "") -> Visitor:
+        self.page.goto(link or self.served.link)
+        self.page.wait_for_selector("[data-connection=ready]", state="attached")
+        return self
+
+    def open(self, *files: Path) -> None:
+        """Open files by the menu, as a person does."""
+        self.page.get_by_text("Open", exact=True).click()
+        self.page.set_input_files(".menu input[type=file]", [str(path) for path in files])
+
+    @property
+    def text(self) -> str:
+        return str(self.page.input_value("#network-text"))
+
+    def settled(self) -> None:
+        """Wait until every question that the page asked is answered."""
+        self.page.wait_for_function(
+            "() => !document.querySelector('[aria-busy=true]') && document.querySelector('td[data-index]')"
+        )
+
+    def values(self) -> dict[str, float]:
+        """The indices that the page shows, in full."""
+        self.settled()
+        cells = self.page.eval_on_selector_all(
+            "td[data-index]", "all => all.map(td => [td.dataset.index, td.dataset.value])"
+        )
+        return {index: float(value) for index, value in cells}
+
+
+def free_port() -> int:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return int(listener.getsockname()[1])
+
+
+def guard(route: Any, window: Visitor) -> None:
+    url = route.request.url
+    if url.startswith(window.served.origin):
+        route.continue_()
+    else:
+        window.elsewhere.append(url)
+        route.abort()
+
+
+def wait_until(true: Callable[[], bool], seconds: float = 30.0) -> None:
+    """Wait for something outside the page."""
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end, "it did not come true"
+        time.sleep(0.05)

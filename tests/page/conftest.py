@@ -1,0 +1,80 @@
+"""The page in a real Chromium, on a server of its own. Where there is no browser, one line says what is skipped."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Served, Visitor, free_port, guard
+
+_CHROMIUM = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
+_NONE = "The page is not tested: there is no Chromium (as root: apt-get install chromium)."
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
+    if _CHROMIUM is None:
+        pytest.skip(_NONE)
+    with pytest.importorskip("playwright.sync_api").sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=_CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def serve(chromium: Any) -> Iterator[Callable[..., Served]]:
+    """A function that begins a workbench."""
+    begun: list[Served] = []
+
+    def begin(study: Path | None, *more: str) -> Served:
+        served = Served(study, free_port(), more=more)
+        begun.append(served)
+        served.begin()
+        served.wait_until_ready()
+        return served
+
+    yield begin
+    for served in begun:
+        served.stop()
+
+
+@pytest.fixture(scope="session")
+def served(serve: Callable[..., Served]) -> Served:
+    """The workbench with the quarter car."""
+    return serve(EXAMPLES / "quarter-car.toml")
+
+
+@pytest.fixture
+def visitors(chromium: Any) -> Iterator[Callable[..., Visitor]]:
+    """A function that opens a window, each of which must have asked nothing of any other host and met no fault."""
+    all_of_them: list[Visitor] = []
+    contexts: list[Any] = []
+
+    def visitor(served: Served, *, context: Any = None, **settings: Any) -> Visitor:
+        if context is None:
+            context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, **settings})
+            context.set_default_timeout(20_000)
+            contexts.append(context)
+        window = Visitor(context.new_page(), served)
+        window.page.on("pageerror", lambda error: window.faults.append(str(error)))
+        window.page.on(
+            "console", lambda said: window.faults.append(said.text) if "Content Security" in said.text else None
+        )
+        window.page.route("**/*", lambda route: guard(route, window))
+        all_of_them.append(window)
+        return window
+
+    yield visitor
+    for context in contexts:
+        context.close()
+    assert [window.elsewhere for window in all_of_them] == [[] for _ in all_of_them]
+    assert [window.faults for window in all_of_them] == [[] for _ in all_of_them]
+
+
+@pytest.fixture
+def visitor(served: Served, visitors: Callable[..., Visitor]) -> Visitor:
+    """A window with the quarter car."""
+    return visitors(served).visit()

@@ -1,0 +1,91 @@
+"""Drawing, typing and sliding: what the page shows is what the library computes of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import inerter as it
+
+
+def _value(study: Path | str, layout: str, index: str) -> float:
+    """What the library says of a study without free values."""
+    loaded = it.load_study(study)
+    return float(it.evaluate(loaded.design(layout), loaded.index(index), it.Norm()).value)
+
+
+def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, tmp_path: Path) -> None:
+    page = visitor.page
+    page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
+    visitor.settled()
+    text = page.evaluate(
+        """async () => {
+          const slider = document.getElementById("slider elements.c");
+          for (let step = 1; step <= 60; step += 1) {
+            slider.value = String(40 + 5 * step);
+            slider.dispatchEvent(new Event("input", { bubbles: true }));
+            await new Promise((resolve) => setTimeout(resolve, 1000 / 60));
+          }
+          slider.dispatchEvent(new Event("change", { bubbles: true }));
+          await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+          return document.getElementById("entry elements.c").title;
+        }"""
+    )
+    found = visitor.values()
+    with page.expect_download() as download:
+        page.get_by_text("Save", exact=True).click()
+        page.get_by_role("button", name="This design, values fixed").click()
+    path = tmp_path / "design.toml"
+    download.value.save_as(path)
+    assert it.load_study(path).elements["c"].value == float(text.removesuffix(" N s/m"))
+    assert found["J1"] == _value(path, "S3", "J1")
+    page.get_by_role("button", name="Undo").click()
+    assert page.evaluate("document.getElementById('entry elements.c').title") != text  # sixty steps are one
+
+
+def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tmp_path: Path) -> None:
+    page = visitor.page
+    before = visitor.text
+    page.fill("#network-text", "k | c - (ks |")
+    page.wait_for_selector("#network-problem")
+    assert "expected a name or '(' here" in page.inner_text("#network-problem")
+    assert page.get_attribute("#network-text", "aria-invalid") == "true"
+    assert page.locator("[data-path]").count() == 5  # the drawing of before
+    page.fill("#network-text", before)
+    page.wait_for_selector("#network-problem", state="detached")
+
+    page.fill("[id='entry elements.k']", "120 parrots")
+    page.keyboard.press("Enter")
+    problem = page.wait_for_selector("[data-place='elements.k'] .problem")
+    assert "parrots" in problem.inner_text()
+    page.fill("[id='entry elements.k']", "120 N/mm")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("[data-place='elements.k'] .problem", state="detached")
+
+    other = tmp_path / "settings.toml"
+    other.write_text('[tool.other]\nname = "no study"\n')
+    visitor.open(other)
+    page.wait_for_selector(".notice")
+    assert "no study file, and nothing was changed" in page.inner_text(".notice")
+    assert visitor.text == before
+
+
+@pytest.mark.campaign
+def test_names_with_markup_are_text(visitor: Any, tmp_path: Path) -> None:
+    page = visitor.page
+    name = "<img src=x onerror=alert(1)>"
+    page.fill("input.title", name)
+    page.keyboard.press("Tab")
+    page.get_by_text("This layout").click()
+    page.get_by_role("button", name="Rename…").click()
+    page.fill(".layouts input[name=name]", name)
+    page.keyboard.press("Enter")
+    visitor.settled()
+    page.click("#tab-compare")
+    page.get_by_label("Keep this design as").fill(f"{name}<script>alert(2)</script>")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".kept")
+    assert page.locator("img").count() == 0
+    assert page.locator("#page script").count() == 0

@@ -1,0 +1,262 @@
+"""Whole journeys in the browser, as people make them."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Served, Visitor, wait_until
+
+import inerter as it
+from inerter.files.study.loading import load_study
+
+NEWCOMER = """title = "A newcomer's car"
+[vehicle]
+model = "quarter-car"
+sprung_mass = "181.75 kg"
+unsprung_mass = "25 kg"
+tyre_stiffness = "120 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "120 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+[layouts]
+S1 = "k | c"
+[study]
+indices = ["J1", "J3", "J5"]
+optimise = "norm"
+baseline = "S1"
+"""
+
+
+def _run(study: Path, out: Path) -> list[dict[str, Any]]:
+    """The designs that the command line prints."""
+    command = [
+        sys.executable,
+        "-c",
+        "from inerter.cli.start import main; main()",
+        "run",
+        str(study),
+        "-o",
+        str(out),
+        "--json",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return list(json.loads(done.stdout)["designs"])
+
+
+def _download(visitor: Visitor, name: str, into: Path) -> Path:
+    with visitor.page.expect_download() as found:
+        visitor.page.get_by_text("Save", exact=True).click()
+        visitor.page.get_by_role("button", name=name).click()
+    visitor.page.keyboard.press("Escape")
+    visitor.page.mouse.click(640, 5)  # closes the menu
+    found.value.save_as(into / found.value.suggested_filename)
+    return into / found.value.suggested_filename
+
+
+def _by_mouse(visitor: Visitor) -> None:
+    page = visitor.page
+    page.get_by_role("button", name="+ layout").click()
+    page.locator(".element[data-name=c]").click()
+    page.get_by_role("button", name="in series").click()
+    page.get_by_role("button", name="Add a inerter").click()
+    bounds = page.locator("[data-place='elements.b'] details.bounds")
+    bounds.locator("summary").click()
+    bounds.get_by_role("button", name="free").click()
+    page.get_by_role("button", name="Optimise").click()
+
+
+def _by_keyboard(visitor: Visitor) -> None:
+    page = visitor.page
+    keys = page.keyboard
+    page.get_by_role("button", name="+ layout").focus()
+    keys.press("Enter")
+    page.locator(".element[data-name=k]").focus()
+    page.wait_for_selector(".element.chosen[data-name=k]")
+    keys.press("ArrowRight")
+    page.wait_for_selector(".element.chosen[data-name=c]")
+    keys.press("b")
+    summary = page.locator("[data-place='elements.b'] summary")
+    summary.focus()
+    keys.press("Enter")
+    page.locator("[data-place='elements.b']").get_by_role("button", name="free").focus()
+    keys.press("Enter")
+    page.get_by_role("button", name="Optimise").focus()
+    keys.press("Enter")
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("build", [_by_mouse, _by_keyboard])
+def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
+    build: Callable[[Visitor], None], visitors: Any, served: Served, tmp_path: Path
+) -> None:
+    visitor = visitors(served).visit()
+    page = visitor.page
+    study = tmp_path / "newcomer.toml"
+    study.write_text(NEWCOMER)
+    visitor.open(study)
+    page.wait_for_function("() => document.querySelector('#network-text')?.value === 'k | c'")
+    visitor.settled()
+    build(visitor)
+    page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
+    assert visitor.text == "k | c - b"
+    optimum = visitor.values()
+
+    page.click("#tab-compare")
+    for layout in ("S1", "S2"):
+        page.get_by_role("group", name="Designs to compare").get_by_role("button", name=layout).click()
+    page.wait_for_selector("td.best")
+    assert page.locator("[aria-label=Comparison] thead th").all_inner_texts() == ["", "S1", "S2"]
+
+    steps = 0
+    while page.get_by_role("button", name="Undo").is_enabled():
+        page.get_by_role("button", name="Undo").click()
+        steps += 1
+    page.wait_for_function("() => document.querySelector('#network-text').value !== 'k | c - b'")
+    assert steps >= 4
+    while page.get_by_role("button", name="Redo").is_enabled():
+        page.keyboard.press("Control+Shift+Z")
+        page.wait_for_timeout(50)
+    assert visitor.text == "k | c - b"
+    assert visitor.values() == optimum
+
+    page.get_by_text("Link", exact=True).click()
+    page.wait_for_function("() => document.querySelector('#shared-link')?.value.includes('#state=')")
+    link = page.input_value("#shared-link")
+    assert served.token not in link
+    other = visitors(served, context=page.context).visit(link)
+    other.page.wait_for_selector("#network-text")
+    assert other.text == "k | c - b"
+    assert other.values() == optimum
+    assert served.token not in other.page.url
+
+    free = _download(other, "Study file", tmp_path)
+    found = {row["layout"]: row["value"] for row in _run(free, tmp_path / "free") if row["index"] == "J1"}
+    assert found["S2"] == optimum["J1"]
+    fixed = _download(other, "This design, values fixed", tmp_path)
+    assert {row["index"]: row["value"] for row in _run(fixed, tmp_path / "fixed")} == optimum
+
+
+@pytest.mark.campaign
+def test_every_example_opens(visitors: Any, served: Served) -> None:
+    opened = 0
+    for path in sorted(EXAMPLES.glob("*.toml")):
+        visitor = visitors(served).visit()
+        page = visitor.page
+        before = visitor.text
+        visitor.open(path)
+        page.wait_for_function("() => document.querySelector('.notice')")
+        told = page.inner_text(".notice")
+        try:
+            study = load_study(path)
+        except it.InerterError:
+            assert "no study file" in told, path.name
+            assert visitor.text == before
+            continue
+        opened += 1
+        assert told.startswith(f"{path.name} is open."), path.name
+        visitor.settled()
+        shown = page.get_by_role("group", name="Layouts").locator(".chip").all_inner_texts()
+        assert [text.removesuffix(" ★") for text in shown] == list(study.layouts)
+    assert opened >= 4
+
+
+@pytest.mark.campaign
+def test_a_long_sweep_is_stopped_and_survives_a_reload(visitor: Visitor) -> None:
+    page = visitor.page
+    page.click("#tab-work")
+    page.fill("input[name=points]", "100000")
+    page.locator("form.begin", has_text="Sweep").get_by_role("button", name="Begin").click()
+    page.wait_for_selector(".job[data-state=running] progress[value]")
+    page.reload()
+    page.click("#tab-work")
+    page.wait_for_selector(".job[data-state=running]")
+    page.locator(".job").get_by_role("button", name="Stop").click()
+    page.wait_for_selector(".job[data-state=stopped]")
+    page.locator(".job").get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".job", state="detached")
+
+
+@pytest.mark.campaign
+def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: Any) -> None:
+    served = serve(EXAMPLES / "quarter-car.toml")
+    visitor = visitors(served).visit()
+    page = visitor.page
+    served.stop()
+    page.fill("#network-text", "k | c | b")
+    page.wait_for_selector("[data-connection=lost]")
+    assert page.locator("[data-path]").count() == 3  # drawn without any server
+    page.fill("[id='entry elements.k']", "100 kN/m")
+    page.keyboard.press("Enter")
+    served.begin()
+    served.wait_until_ready()
+    page.wait_for_selector("[data-connection=ready]", state="attached")
+    assert visitor.text == "k | c | b"
+    wait_until(lambda: page.input_value("[id='entry elements.k']") == "100 kN/m")
+    visitor.settled()
+    assert page.locator(".problem").count() == 0
+
+
+@pytest.mark.campaign
+def test_dragging_and_naming_by_mouse(visitor: Visitor) -> None:
+    page = visitor.page
+    page.fill("#network-text", "k | c | b")
+    page.wait_for_function("() => document.querySelectorAll('[data-path]').length === 3")
+    source, target = (page.locator(f".element[data-name={name}] .symbol").bounding_box() for name in ("b", "c"))
+    page.mouse.move(source["x"] + source["width"] / 2, source["y"] + source["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(target["x"] + target["width"] / 2, target["y"] + target["height"] * 0.9, steps=8)
+    page.mouse.up()
+    assert visitor.text == "k | c - b"
+    page.fill("#element-name", "flywheel")
+    page.keyboard.press("Enter")
+    assert visitor.text == "k | c - flywheel"
+    page.get_by_role("group", name="Layouts").get_by_role("button", name="S2", exact=True).click()
+    assert visitor.text == "k | c | flywheel"
+    page.locator(".element[data-name=flywheel]").click()
+    page.keyboard.press("Delete")
+    assert visitor.text == "k | c"
+
+
+@pytest.mark.campaign
+def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.page
+    record = tmp_path / "fit.csv"
+    command = [
+        sys.executable,
+        "-c",
+        "from inerter.cli.start import main; main()",
+        "rig",
+        str(EXAMPLES / "rig_fit.toml"),
+    ]
+    subprocess.run([*command, "-o", str(record)], check=True, capture_output=True)
+    visitor.open(record)
+    page.wait_for_selector(".records li")
+    assert "fit.csv" in page.inner_text(".records")
+    page.select_option("select[name=model]", "ball-screw")
+    page.get_by_role("button", name="Identify").click()
+    page.wait_for_selector(".fit[data-state=done] table", timeout=120_000)
+    page.get_by_role("button", name="Take the device into the editor").click()
+    page.wait_for_function("() => document.querySelector('#network-text').value.includes('| (')")
+    visitor.settled()
+    assert page.locator("#network-problem").count() == 0
+
+
+@pytest.mark.campaign
+def test_downloads_hold_what_is_shown(visitor: Visitor, tmp_path: Path) -> None:
+    shown = visitor.values()
+    table = _download(visitor, "Indices (CSV)", tmp_path)
+    with table.open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert {row["index"]: float(row["value"]) for row in rows if row["layout"] == "S3e"} == shown
+    assert _download(visitor, "Network (SVG)", tmp_path).read_text().lstrip().startswith("<?xml")
+    assert _download(visitor, "Network (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")

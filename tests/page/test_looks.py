@@ -1,0 +1,110 @@
+"""How the page looks and reads: no serious fault of accessibility, nothing wider than the screen, and pictures of it.
+
+With a folder in the environment variable INERTER_PICTURES, the pictures are written there; docs/ has those of this run:
+`INERTER_PICTURES=docs .venv/bin/pytest -m campaign tests/page/test_looks.py`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Served, Visitor
+
+AXE = pytest.importorskip("axe_playwright_python.sync_playwright")
+SERIOUS = ("serious", "critical")
+SIZES = {"wide": (1280, 800), "narrow": (420, 800), "projector": (1920, 1080)}
+DOCUMENTED = {("quarter-car", "wide", "light", "response"), ("ball_screw", "wide", "dark", "history")}
+HEAD = """[vehicle]
+model = "quarter-car"
+sprung_mass = "181.75 kg"
+unsprung_mass = "25 kg"
+tyre_stiffness = "120 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+"""
+TAIL = '[study]\nindices = ["J1", "J3", "J5"]\n'
+
+
+def _forty_elements() -> str:
+    branches = [(f"k{i}", f"c{i}", f"b{i}", f"d{i}") for i in range(10)]
+    values = {"k": "12 kN/m", "c": "300 N s/m", "b": "30 kg", "d": "200 N s/m"}
+    elements = "".join(f'{name} = "{values[name[0]]}"\n' for branch in branches for name in branch)
+    network = " | ".join(f"{k} | {c} - ({b} | {d})" for k, c, b, d in branches)
+    return f'title = "Forty elements"\n{HEAD}[elements]\n{elements}[layouts]\nS1 = "k0 | c0"\nS2 = "{network}"\n{TAIL}'
+
+
+def _long_names() -> str:
+    """The longest names that a study may have."""
+    long = "the_damper_that_the_supplier_calls_by_its_whole_catalogue_number_0123456789"
+    title = ("A title of many words, as a committee on suspension would have it, " * 4)[:200]
+    layout, other = (f"{start}-layout-with-everything-anybody-ever-wished-for"[:40] for start in ("the", "another"))
+    return (
+        f'title = "{title}"\n{HEAD}[elements]\nk = "120 kN/m"\n{long} = {{ from = "100 N s/m", to = "100 kN s/m" }}\n'
+        f'b = "300 kg"\n[layouts]\n{layout} = "k | {long}"\n{other} = "k | {long} - b"\n{TAIL}'
+    )
+
+
+STUDIES: dict[str, Callable[[], str] | None] = {
+    "quarter-car": (EXAMPLES / "quarter-car.toml").read_text,
+    "half-car": (EXAMPLES / "half-car.toml").read_text,
+    "ball_screw": (EXAMPLES / "ball_screw.toml").read_text,
+    "forty-elements": _forty_elements,
+    "long-names": _long_names,
+    "faulty": lambda: _long_names().replace("120 kN/m", "120").replace("layouts]\n", 'layouts]\n"no name" = "k - "\n'),
+    "empty": None,
+}
+
+
+def _faults(visitor: Visitor) -> list[str]:
+    """Serious faults that axe finds, each with the first element that has it."""
+    found = AXE.Axe().run(visitor.page).response["violations"]
+    return [f"{each['id']}: {each['nodes'][0]['html'][:200]}" for each in found if each["impact"] in SERIOUS]
+
+
+def _too_wide(visitor: Visitor) -> int:
+    """By how much the page is wider than its window."""
+    return int(
+        visitor.page.evaluate("() => document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    )
+
+
+def _picture(visitor: Visitor, folder: Path, what: tuple[str, ...]) -> None:
+    visitor.page.screenshot(path=folder / f"{'-'.join(what)}.png", full_page=True)
+    if what in DOCUMENTED and (wanted := os.environ.get("INERTER_PICTURES")):
+        visitor.page.screenshot(path=Path(wanted) / f"workbench-{what[-1]}.png", full_page=True)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", STUDIES)
+def test_looks(name: str, visitors: Any, serve: Callable[..., Served], served: Served, tmp_path: Path) -> None:
+    make = STUDIES[name]
+    here = served if make else serve(None)
+    faults: dict[tuple[str, ...], Any] = {}
+    for size, (width, height) in SIZES.items():
+        for theme in ("light", "dark"):
+            visitor = visitors(here, viewport={"width": width, "height": height}, color_scheme=theme).visit()
+            page = visitor.page
+            if make:
+                study = tmp_path / f"{name}.toml"
+                study.write_text(make())
+                visitor.open(study)
+                page.wait_for_selector(".notice")
+                page.get_by_role("button", name="Close the message").click()
+                visitor.settled()
+            for tab in ("response", "history", "compare", "work", "rig") if make else ("none",):
+                if make:
+                    page.click(f"#tab-{tab}")
+                    page.wait_for_timeout(200)
+                    page.wait_for_selector("#tab-panel [aria-busy=true]", state="detached")
+                    page.wait_for_timeout(300)
+                what = (name, size, theme, tab)
+                _picture(visitor, tmp_path, what)
+                if (found := (_faults(visitor), _too_wide(visitor))) != ([], 0):
+                    faults[what] = found
+            page.context.close()
+    assert faults == {}

@@ -229,7 +229,7 @@ def optimum(study: Study, body: Body) -> Answer:
         indices=tuple(dict.fromkeys([*study.indices, *wanted])),  # each design is judged by all
         optimise=body.get("method") or study.optimise or methods_that(searches)[0],
         evaluate=tuple(body.get("methods") or study.evaluate),
-        sweep=None,
+        sweeps=(),
     )
     layouts = body.get("layouts") or study.layouts
     for layout in layouts:

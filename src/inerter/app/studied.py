@@ -17,8 +17,8 @@ from inerter.app.kinds import RESULTS, Stopped, Tell
 from inerter.errors import DesignError, StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
-from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
+from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.methods.compare import compare
@@ -55,7 +55,7 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
         settings["indices"] = body["indices"]
     document["study"] = settings
     study = study_from(document)
-    if study.sweep is None:
+    if not study.sweeps:
         raise StudyError('A sweep needs `sweep`, such as {"k": {"from": "10 kN/m", "to": "300 kN/m", "points": 30}}.')
     wanted = body.get("layouts") or list(study.layouts)
     for layout in wanted:
@@ -70,9 +70,9 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
     def show(result: StudyResult, into: Path) -> None:
         tell(done[0], done[0], "figures and report")
         draw_study(result.data, into / FIGURES)
-        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets)
+        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
 
-    def told(count: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
+    def told(count: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
         done[0] = count
         tell(count, total, f"{last.layout} {last.index}" if last else "")
 

@@ -77,7 +77,7 @@ def test_a_page_that_is_loaded_again_sees_all(client: TestClient) -> None:
 
 
 def test_work_that_waits_is_stopped_at_once(client: TestClient) -> None:
-    first, second = begin(client, kind="run", study=LONG), begin(client, kind="run", study=LONG)
+    first, second = begin(client, kind="run", study=LONG), begin(client, kind="optimise", study=DOCUMENT)
     assert client.delete(f"/api/work/{second}").json()["state"] == "stopped"
     client.delete(f"/api/work/{first}")
     until(client, first, "stopped")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import isfinite, sqrt
@@ -78,12 +78,6 @@ def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]
         return None
     here = next((design for design in designs if design.layout == study.baseline), None)
     return here or design_of(study, study.baseline, (body.get("values") or {}).get(study.baseline) or {})
-
-
-def elements_of(mechanism: Mechanism) -> Iterator[str]:
-    """The labels of all elements of the struts."""
-    for strut in mechanism.struts:
-        yield from (element.label for element in strut.network.elements())
 
 
 def _number(name: str, given: str | float, unit: str) -> float:

@@ -63,8 +63,10 @@ async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dic
 
 
 async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> Response:
-    checking = Waiting((call, "inerter.app.checked:checked", body.study))
-    return as_json(await server.lanes["quick"].answer(checking))
+    settings = body.study.get("study")
+    swept = isinstance(settings, dict) and bool(settings.get("sweep"))  # then layouts are tried at many values
+    lane = server.lanes["slow" if swept else "quick"]
+    return as_json(await lane.answer(Waiting((call, "inerter.app.checked:checked", body.study))))
 
 
 async def _write(server: Server, request: Request, body: bodies.WriteStudy) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Who is refused: without the token, under another name, from another page, with too much, on paths that lead elsewhere."""
+"""Who is refused: without the token, under another name, from another page, with too much, on paths elsewhere."""
 
 from __future__ import annotations
 
@@ -36,8 +36,12 @@ def asked(client: TestClient, path: str, headers: list[tuple[str, str]], verb: s
         "state": {},
     }
 
+    bodies = [body]
+
     async def receive() -> Any:
-        return {"type": "http.request", "body": body, "more_body": False}
+        if not bodies:
+            await asyncio.Event().wait()  # nobody goes away
+        return {"type": "http.request", "body": bodies.pop(), "more_body": False}
 
     async def send(message: Any) -> None:
         sent.append(message)
@@ -55,7 +59,8 @@ BEARER = ("authorization", f"Bearer {TOKEN}")
 @pytest.mark.parametrize(
     "token",
     [[], [("authorization", "")], [("authorization", "Bearer")], [("authorization", f"Bearer {TOKEN}x")],
-     [("authorization", TOKEN)], [("authorization", "Basic " + TOKEN)], [BEARER, BEARER], [("cookie", f"token={TOKEN}")]],
+     [("authorization", TOKEN)], [("authorization", f"Basic {TOKEN}")], [BEARER, BEARER],
+     [("cookie", f"token={TOKEN}")]],
 )  # fmt: skip
 def test_nothing_is_told_without_the_token(client: TestClient, endpoint: Any, token: Any) -> None:
     status, _, text = asked(client, endpoint.path, [("host", HOST), *token], endpoint.verb, b"{}")
@@ -144,7 +149,7 @@ def test_no_path_leads_out_of_a_piece_of_work(client: TestClient, server: Any) -
     for name in ("../secret", "link", "good.txt/../../secret", str(secret), "//" + str(secret), *TRICKS):
         status, _, text = asked(client, f"/api/work/{job.id}/files/{name}", headers)
         assert status in (404, 200)
-        assert b"secret" != text
+        assert text != b"secret"
     for name in TRICKS:
         assert asked(client, f"/api/work/{name}/result", headers)[0] in (404, 405)
 
@@ -175,7 +180,7 @@ def test_a_record_goes_to_disk_as_it_comes(server: Any, client: TestClient) -> N
         for _ in range(20):
             yield b"x" * 1000
             await asyncio.sleep(0.0)
-            files = [path for path in server.records.root.rglob("*.csv")]
+            files = list(server.records.root.rglob("*.csv"))
             sizes.append(sum(path.stat().st_size for path in files))
 
     assert client.portal is not None

@@ -101,6 +101,43 @@ def test_the_mean_square_under_a_white_force(mu: float, beta: float) -> None:
         assert mean_square(mu, beta, k, step * c, 0.0) > least
 
 
+def random_ground(mu: float, beta: float) -> tuple[float, float]:
+    """Stiffness and damping for the least mean square under white ground acceleration, of the displacement over it.
+
+    Source: Marian and Giaralis (2014); Warburton (1982) without an inerter. The ground pushes masses alone.
+    """
+    m, wide = mu + beta, beta * (1.0 - mu) + (2.0 - mu) * (1.0 + mu)
+    nu = sqrt(wide / (2.0 * (1.0 + mu))) / (1.0 + m)
+    zeta = sqrt(m * (beta * (3.0 - mu) + (4.0 - mu) * (1.0 + mu)) / (8.0 * (1.0 + m) * wide))
+    return m * nu**2, 2.0 * zeta * m * nu
+
+
+@pytest.mark.parametrize(("mu", "beta"), MASSES)
+def test_the_mean_square_under_ground_acceleration(mu: float, beta: float) -> None:
+    k, c = random_ground(mu, beta)
+    on_ground = it.RandomResponse({"primary_relative_displacement": 1.0}, it.GroundAcceleration(intensity=1.0))
+    found = it.evaluate(absorber(mu, beta, k, c), on_ground, it.Norm()).value
+    least = mean_square(mu, beta, k, c, mu)  # the force on a mass is in proportion to it
+    assert found**2 == pytest.approx(least, rel=1e-8)
+    for step in (0.99, 1.01):  # it is the least
+        assert mean_square(mu, beta, step * k, c, mu) > least
+        assert mean_square(mu, beta, k, step * c, mu) > least
+    free = absorber(mu, beta, it.free(0.1 * k, 10.0 * k), it.free(0.1 * c, 10.0 * c))
+    best = it.optimise(free, on_ground, it.Norm(), seed=0)
+    assert best.value == pytest.approx(sqrt(least), rel=1e-8)
+    assert best.parameters == pytest.approx({"k": k, "c": c}, rel=1e-5)
+
+
+@pytest.mark.parametrize(("mu", "beta"), MASSES)
+def test_the_search_finds_the_least_mean_square_under_a_white_force(mu: float, beta: float) -> None:
+    least, k, c = random_force(mu + beta)
+    free = absorber(mu, beta, it.free(0.1 * k, 10.0 * k), it.free(0.1 * c, 10.0 * c))
+    pushed = it.RandomResponse({"primary_displacement": 1.0}, it.WhiteForce("primary_force", intensity=4.0))
+    best = it.optimise(free, pushed, it.Norm(), seed=0)
+    assert best.value == pytest.approx(2.0 * sqrt(least), rel=1e-8)
+    assert best.parameters == pytest.approx({"k": k, "c": c}, rel=1e-5)
+
+
 def test_support_with_a_damper() -> None:
     """Without an absorber worth the name, a damped support has the gain 1 / (2 zeta sqrt(1 - zeta^2))."""
     zeta = 0.2

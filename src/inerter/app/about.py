@@ -24,7 +24,7 @@ from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.vehicle.registry import VEHICLES
 
-_FOLDERS = ("examples", "../../examples")  # in the package, and beside its sources
+_FOLDERS = ("app/examples", "../../examples")  # in the package, and beside its sources
 
 
 def about() -> dict[str, Any]:

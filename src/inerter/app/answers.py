@@ -14,18 +14,19 @@ from inerter.app.documents import study_from
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.wire import encoded
-from inerter.errors import DesignError, Status, StatusKind
+from inerter.errors import DesignError, Status, StatusKind, StudyError
 from inerter.files.study.cases import FAILURES, Case, Outcome, run_case
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
 from inerter.files.study.study import Study
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Estimate, evaluate
-from inerter.methods.registry import methods_that, searches
+from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Element
 from inerter.networks.elements.algebra import Network, Parallel
 from inerter.optimisation.budget import budget as find_budget
 from inerter.optimisation.threads import one_blas_thread
+from inerter.scatter.tolerance import tolerance
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 
@@ -33,6 +34,7 @@ Body = Mapping[str, Any]
 Answer = dict[str, Any]
 
 
+_SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
 _FIRST = {
     "vehicle": {
         "model": "quarter-car",
@@ -207,9 +209,10 @@ def tree_of(network: Network) -> Answer:
 
 def optimum(study: Study, body: Body) -> Answer:
     """The best design of each layout for each index that is asked for, as a study finds and judges it."""
+    wanted = tuple(body.get("indices") or study.indices)
     asked = replace(
         study,
-        indices=tuple(body.get("indices") or study.indices),
+        indices=tuple(dict.fromkeys([*study.indices, *wanted])),  # each design is judged by all
         optimise=body.get("method") or study.optimise or methods_that(searches)[0],
         evaluate=tuple(body.get("methods") or study.evaluate),
         sweep=None,
@@ -219,15 +222,22 @@ def optimum(study: Study, body: Body) -> Answer:
         study.design(layout)
     for name in asked.methods:
         asked.method(name)
-    found = [run_case(asked, Case(layout, index)) for layout in layouts for index in asked.indices]
+    found = [run_case(asked, Case(layout, index)) for layout in layouts for index in wanted]
     return {"designs": [_told(study, outcome) for outcome in found]}
 
 
 def _told(study: Study, outcome: Outcome) -> Answer:
     """An outcome, with its values as texts that read back as the same."""
-    units = {name: study.elements[name].unit for name in outcome.parameters}
-    texts = {name: f"{value!r} {units[name]}" for name, value in outcome.parameters.items()}
-    return {**outcome.to_json(), "notes": ["".join(map(str, note)) for note in outcome.notes], "texts": texts}
+    return {
+        **outcome.to_json(),
+        "notes": ["".join(map(str, note)) for note in outcome.notes],
+        "texts": texts_of(study, outcome.parameters),
+    }
+
+
+def texts_of(study: Study, values: Mapping[str, float]) -> dict[str, str]:
+    """Values of elements as texts that read back as the same."""
+    return {name: f"{value!r} {study.elements[name].unit}" for name, value in values.items()}
 
 
 def budget(study: Study, body: Body) -> Answer:
@@ -239,8 +249,8 @@ def budget(study: Study, body: Body) -> Answer:
     found = find_budget(
         design.vehicle,
         baseline.vehicle,
-        study.index(body["index"]),
-        parameter=body["parameter"],
+        study.index(needed(body, "index")),
+        parameter=needed(body, "parameter"),
         method=study.method(method),
     )
     return {
@@ -257,6 +267,45 @@ def budget(study: Study, body: Body) -> Answer:
         "status": found.status.kind.value,
         "message": found.status.message,
     }
+
+
+def scatter(study: Study, body: Body) -> Answer:
+    """What an index becomes when values of a design scatter, and which of them matters most."""
+    design, index = one_design(study, body), study.index(needed(body, "index"))
+    method = body.get("method") or DEFAULT
+    found = tolerance(
+        design.vehicle,
+        index,
+        study.method(method),
+        spread=needed(body, "spread"),
+        samples=body.get("samples") or _SAMPLES,
+        seed=body.get("seed") or 0,
+    )
+    counts, edges = np.histogram(found.values[np.isfinite(found.values)], bins=40)
+    return {
+        **design.told(study),
+        "index": index.symbol,
+        "unit": index.unit,
+        "method": method,
+        "nominal": found.nominal.value,
+        "mean": found.mean,
+        "standard_deviation": found.standard_deviation,
+        "quantiles": {str(share): found.quantile(share) for share in _SHARES},
+        "worst": found.worst,
+        "worst_values": found.worst_values,
+        "main": found.main,
+        "total": found.total,
+        "histogram": {"edges": edges, "counts": counts},
+        "status": found.status.kind.value,
+        "message": found.status.message,
+    }
+
+
+def needed(body: Body, key: str) -> Any:
+    """What a request cannot do without; raises `StudyError` where it is left out."""
+    if not body.get(key):
+        raise StudyError(f"The request needs `{key}`.")
+    return body[key]
 
 
 def motion(study: Study, body: Body) -> Answer:

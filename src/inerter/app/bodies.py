@@ -98,6 +98,8 @@ class PanelRequest(OfDesigns):
     duration: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
     step: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
+    spread: Annotated[dict[Name, Number], Field(description="By what part of themselves values scatter.")] = {}
+    samples: Annotated[int, Field(ge=2, le=65536)] | None = None
     outputs: list[Name] = []
 
 
@@ -110,6 +112,7 @@ class WorkRequest(OfDesigns):
     wait: Annotated[Number, Field(ge=0.0, le=30.0, description="Seconds to wait for its end.")] = 0.0
     method: Name | None = None
     sweep: dict[str, Any] | None = None
+    points: Annotated[int, Field(ge=3, le=200)] | None = None
     records: Annotated[list[Name], Field(max_length=100)] = []
     model: Name | None = None
     config: dict[str, Any] | None = None

@@ -12,7 +12,7 @@ from inerter.files.study.study import Study
 from inerter.networks.elements import Free
 from inerter.units import parse_quantity, shown
 from inerter.vehicle.mechanism import Mechanism
-from inerter.vehicle.vehicle import VehicleModel
+from inerter.vehicle.vehicle import Vehicle
 
 Values = Mapping[str, "str | float"]
 
@@ -23,7 +23,7 @@ class Design:
 
     name: str
     layout: str
-    vehicle: VehicleModel
+    vehicle: Vehicle
     values: dict[str, float]  # of what was free, in SI units
 
     @property

@@ -33,6 +33,8 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
         raise StudyError(
             f"Got {duration:g} s; a page shows at most {_LONGEST:g} s. Longer ones are for: inerter simulate."
         )
+    if study.road is None:
+        raise StudyError("The motion is one over a road, and this study has none. Add [road].")
     road = multisine(study.road, seed=int(body.get("seed") or 0))
     run = simulate(design.vehicle, road=road, duration=duration, step=step, initial="rest")
     mechanism = design.mechanism

@@ -29,6 +29,12 @@ KINDS = {
         WorkKind("optimise", "The best values", ("layouts", "method", *_DESIGNS), f"{_STUDIED}:optimise"),
         WorkKind("run", "The whole study, with its report", (), f"{_STUDIED}:run"),
         WorkKind("sweep", "The best designs over swept values", ("sweep", "layouts", "indices"), f"{_STUDIED}:sweep"),
+        WorkKind(
+            "front",
+            "Trade-offs between two or three indices",
+            ("layouts", "indices", "method", "points"),
+            "inerter.app.fronts:front",
+        ),
         WorkKind("compare", "Two to four designs beside each other", ("designs", *_DESIGNS), f"{_STUDIED}:compared"),
         WorkKind(
             "identify",

@@ -27,6 +27,7 @@ PANELS = {
         Panel("mechanism", "The vehicle as it is joined", "inerter.app.answers:mechanism"),
         Panel("optimise", "The best values", "inerter.app.answers:optimum"),
         Panel("history", "The motion on a road", "inerter.app.answers:motion", quick=False),
+        Panel("tolerance", "What scatter makes of an index", "inerter.app.answers:scatter", quick=False),
         Panel("budget", "How much friction, play or softness it bears", "inerter.app.answers:budget", quick=False),
     )
 }

@@ -23,7 +23,6 @@ class DynamicLoadCoefficient:
 
     road: Road | Excitation
     symbol = "dynamic-load-coefficient"
-    key = "dynamic-load-coefficient"
     title = "dynamic load coefficient"
     unit = "1"
     response = "tyre force over static load per road velocity"

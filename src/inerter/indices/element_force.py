@@ -22,7 +22,6 @@ class ElementForce:
     road: Road | Excitation
     element: str = field(metadata=choice((), "Name of the element.", example="c"))
     symbol = "element-force"
-    key = "element-force"
     title = "force of an element"
     unit = "N"
     response = "force of an element per road velocity"

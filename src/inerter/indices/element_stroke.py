@@ -22,7 +22,6 @@ class ElementStroke:
     road: Road | Excitation
     element: str = field(metadata=choice((), "Name of the element.", example="c"))
     symbol = "element-stroke"
-    key = "element-stroke"
     title = "stroke of an element"
     unit = "m"
     response = "stroke of an element per road velocity"

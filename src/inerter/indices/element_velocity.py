@@ -22,7 +22,6 @@ class ElementVelocity:
     road: Road | Excitation
     element: str = field(metadata=choice((), "Name of the element.", example="c"))
     symbol = "element-velocity"
-    key = "element-velocity"
     title = "velocity across an element"
     unit = "m/s"
     response = "velocity across an element per road velocity"

@@ -7,11 +7,13 @@ the inputs of that mechanism. Methods know no more of it than that, so that a ne
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
+from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter, as_filter
@@ -63,14 +65,30 @@ class RoadVelocity:
         return self.road.velocity_intensity
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same."""
-        return mechanism
+        """The same, with both sides on one track."""
+        return mechanism.on_one_track()
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """One at each road input."""
+        """One at each road input; with a coherence two, from the mean of the tracks and half of their difference."""
         if not mechanism.roads:
             raise PerformanceIndexError("A road drives a mechanism at its tyres, and this one stands on none.")
+        if self.road.coherence is not None and any(r.track for r in mechanism.roads):
+            return tuple(self._on_tracks(mechanism, self.road.coherence))
         return tuple(Arrival(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
+
+    def _on_tracks(self, mechanism: Mechanism, coherence: Coherence) -> Iterator[Arrival]:
+        speed = self.road.speed
+        parts = {"tracks in phase": coherence.in_phase(speed), "tracks in anti-phase": coherence.in_anti_phase(speed)}
+        for road in mechanism.roads:
+            if not road.track:
+                raise PerformanceIndexError(
+                    f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Say which, "
+                    f'RoadInput(..., track="left"), or leave the coherence out.'
+                )
+            for (source, ratio), right in zip(parts.items(), (1.0, -1.0), strict=True):
+                if ratio is not None:
+                    lever = right if road.track == "right" else 1.0
+                    yield Arrival(road.name, source, road.distance / speed, lever, Filter(*ratio))
 
 
 @dataclass(frozen=True)

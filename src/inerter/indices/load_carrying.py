@@ -29,7 +29,6 @@ class LoadCarrying:
         ),
     )
     symbol = "J5"
-    key = "load-carrying"
     title = "dynamic load carrying"
     unit = "m/N"
     response = "body displacement per force on the body"

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
-from inerter.errors import RowError
+from inerter.errors import PerformanceIndexError, RowError
 from inerter.fields import Choice, Field, choices_of, fields_of
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce
@@ -72,8 +72,16 @@ def is_on_road(symbol: str) -> bool:
 
 
 def make_index(symbol: str, road: Road | None, settings: Mapping[str, Any]) -> Index:
-    """The index of that symbol, on `road` if it is asked on one, with those of the settings that are its own."""
+    """The index of that symbol, on `road` if it is asked on one, with those of the settings that are its own.
+
+    Raises `PerformanceIndexError` if one is missing that it cannot do without.
+    """
     kind: Any = INDICES[symbol]
+    for text in index_choices(symbol):
+        if text.needed and text.key not in settings:
+            raise PerformanceIndexError(
+                f'{symbol} needs its {text.key}, such as {text.key} = "{text.example}": {text.sentence}'
+            )
     own = {field.name: field.key for field in fields_of(kind)} | {text.name: text.key for text in choices_of(kind)}
     given = {name: settings[key] for name, key in own.items() if key in settings}
     index: Index = kind(**({"road": road} if is_on_road(symbol) else {}), **given)

@@ -37,7 +37,6 @@ class RideComfort:
         metadata=choice(_FELT, "Weighting of ISO 2631-1 on J1; none if left out."),
     )
     symbol = "J1"
-    key = "ride-comfort"
     title = "ride comfort"
     unit = "m/s^2"
     response = "body acceleration per road velocity"

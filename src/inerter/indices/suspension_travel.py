@@ -21,7 +21,6 @@ class SuspensionTravel:
 
     road: Road | Excitation
     symbol = "suspension-travel"
-    key = "suspension-travel"
     title = "suspension travel"
     unit = "m"
     response = "travel per road velocity"

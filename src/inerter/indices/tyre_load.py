@@ -28,7 +28,6 @@ class TyreLoad:
         metadata=quantity("rad/s", "Corner of a filter on J3; none if left out.", "1 Hz", words="high-pass filter"),
     )
     symbol = "J3"
-    key = "tyre-load"
     title = "dynamic tyre load"
     unit = "N"
     response = "tyre force per road velocity"

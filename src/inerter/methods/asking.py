@@ -7,8 +7,9 @@ them is put together here. So no method knows of either.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
@@ -17,9 +18,8 @@ from numpy.typing import NDArray
 
 from inerter.indices.question import Index
 from inerter.methods.combined import Part, combined
-from inerter.networks.elements import Tied
-from inerter.networks.transform import without_ties
-from inerter.vehicle.mechanism import Mechanism
+from inerter.networks.elements import Element, Free, Tied
+from inerter.vehicle.changed import mounted, with_elements
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def objective_of(vehicle: Vehicle, index: Asked, method: Method) -> Objective:
     """The index as a function of the free values."""
     loose = without_tied_values(vehicle)
     if loose is not None:
-        return combined([Part(objective_of(loose.mechanism, index, method), loose.follow)], worst=False)
+        return combined([Part(objective_of(loose.vehicle, index, method), loose.follow)], worst=False)
     return index.as_objective(vehicle, method) if is_composed(index) else method.objective(vehicle, index)
 
 
@@ -133,23 +133,34 @@ class Ties:
 class Loose:
     """A design whose tied values are free ones, and how those follow from its free values."""
 
-    mechanism: Mechanism
+    vehicle: Vehicle
     follow: Ties
 
 
 def without_tied_values(vehicle: Vehicle) -> Loose | None:
-    """The design with free values in the place of tied ones; None if it has none of these."""
-    mechanism = vehicle.mechanism()
-    if not any(isinstance(e.value, Tied) for mount in mechanism.mounts() for e in mount.network.elements()):
+    """The design with free values in the place of tied ones; None if it has none of these.
+
+    What they lie between is half to twice the value in the middle of what they follow from.
+    """
+    if not any(isinstance(element.value, Tied) for part in mounted(vehicle) for element in part):
         return None
-    free = mechanism.free_values()
+    free = vehicle.free_values()
     found: dict[str, Tied] = {}
     names = (name for i in count(1) if (name := f"tied{i}") not in free)
-    loose = replace(
-        mechanism,
-        struts=tuple(replace(s, network=without_ties(s.network, names, found, free)) for s in mechanism.struts),
-        tyres=tuple(replace(t, network=without_ties(t.network, names, found, free)) for t in mechanism.tyres),
-    )
+    middle = {name: (value.lower * value.upper) ** 0.5 or value.upper for name, value in free.items()}
+
+    def loosened(element: Element) -> Element:
+        if not isinstance(element.value, Tied):
+            return element
+        size = float(element.value.slopes(middle)[0])
+        name = next(names)
+        found[name] = element.value
+        like = Free(0.5 * size, 2.0 * size, name) if 0.0 < size < math.inf else Free(0.5, 2.0, name)
+        return type(element).of(
+            like, element.label, **{field.name: getattr(element, field.name) for field in element.more}
+        )
+
+    loose = with_elements(vehicle, loosened)
     inner = tuple(found.get(name, Tied((name,))) for name in loose.free_values())
     return Loose(loose, Ties(tuple(free), inner))
 
@@ -160,6 +171,6 @@ def _many_followed(loose: Loose, indices: Sequence[Asked], method: Method, point
     good = np.all((inner > 0.0) & np.isfinite(inner), axis=1)
     result = np.full((rows.shape[0], len(indices)), np.nan)
     if good.any():
-        values = dict(zip(loose.mechanism.free_values(), inner[good].T, strict=True))
-        result[good] = estimates_of(loose.mechanism, indices, method, values)
+        values = dict(zip(loose.vehicle.free_values(), inner[good].T, strict=True))
+        result[good] = estimates_of(loose.vehicle, indices, method, values)
     return result

@@ -89,7 +89,7 @@ class Conditions:
     >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
     >>> mean, worst = (it.evaluate(car, over, it.Norm()).value for over in (use.mean(comfort), use.worst(comfort)))
     >>> round(mean, 3), round(worst, 3)
-    (2.627, 2.804)
+    (2.548, 2.648)
     """
 
     conditions: tuple[Condition, ...]
@@ -223,7 +223,7 @@ def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, no
                     samples=samples)  # fmt: skip
 
 
-def _on_other_road(value: Any, road: Road | Mapping[str, float]) -> Any:
+def _on_other_road(value: Any, road: Road | Mapping[str, Any]) -> Any:
     """The same with another road wherever it holds one."""
     if isinstance(value, Road):
         return road if isinstance(road, Road) else dataclasses.replace(value, **road)

@@ -238,7 +238,7 @@ def check_request(vehicle: Vehicle, index: Asked, method: object) -> None:
     if isinstance(method, type) or not isinstance(method, Method):
         raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")
     loose = without_tied_values(vehicle)
-    for asked, one in asked_of(vehicle if loose is None else loose.mechanism, index):
+    for asked, one in asked_of(vehicle if loose is None else loose.vehicle, index):
         mechanism = asked.mechanism()
         _check_names(mechanism, one.question(mechanism))
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from inerter.errors import DesignError
@@ -68,7 +67,9 @@ def with_values(network: Network, values: Mapping[str, float]) -> Network:
         if isinstance(value, Tied):
             return element.with_value(value.fixed({name: values[name] for name in value.names if name in values}))
         if isinstance(value, Free) and value.name is not None and value.name in values:
-            return element.with_value(values[value.name])
+            label = element.label
+            fixed = element.with_value(values[value.name])
+            return fixed if fixed.label == label else _renamed(fixed, label)
         return element
 
     return map_elements(network, fix)
@@ -121,25 +122,6 @@ def _check_ties(elements: Sequence[Element], free: Mapping[str, object]) -> None
                     f"{element.label!r} is tied to {name!r}, which is no free value here (free: "
                     f"{', '.join(free) or 'none'}). Where that is a number, give this one as a number too."
                 )
-
-
-def without_ties(network: Network, names: Iterator[str], found: dict[str, Tied], bounds: Mapping[str, Free]) -> Network:
-    """The network with each tied value as a free one with the next of `names`, under which `found` gets what it was.
-
-    What that is between is the like of what it follows from: half to twice its value in the middle of theirs.
-    """
-    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in bounds.items()}
-
-    def loose(element: Element) -> Network:
-        if not isinstance(element.value, Tied):
-            return element
-        value = float(element.value.slopes(middle)[0])
-        size = value if 0.0 < value < math.inf else 1.0
-        name = next(names)
-        found[name] = element.value
-        return element.with_value(Free(0.5 * size, 2.0 * size, name))
-
-    return map_elements(network, loose)
 
 
 _LEFT_OUT = (Linear.OPEN, Linear.CLOSED)

@@ -22,6 +22,7 @@ _EPS = float(np.finfo(float).eps)
 _SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
 _DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
 _LONG = float(np.finfo(np.longdouble).eps)
+_AT_ZERO = 16.0 * _EPS  # size of a pole relative to A that may be rounding
 _SMALL = 1e-6  # relative size of the terms of a correction at first order up to which the rest is below 1e-9
 ACCURATE = 1e-9  # relative error of a mean square up to which it is believed
 
@@ -210,10 +211,16 @@ def _once(A: Matrix, right: Matrix) -> Matrix:
 
 
 class _Lyapunov:
-    """Equations with one matrix A, by one Schur form (Bartels and Stewart, 1972)."""
+    """Equations with one matrix A, by one Schur form (Bartels and Stewart, 1972).
+
+    Raises `LinAlgError` for a pole that may lie at zero: the equation then has many solutions, and which one comes out
+    is decided by rounding, though the motion may not be excited at all.
+    """
 
     def __init__(self, A: Matrix) -> None:
         self.T, self.Z = scipy.linalg.schur(A, output="real") if len(A) else (A, A)
+        if len(A) and np.diag(self.T).max() >= -_AT_ZERO * np.abs(self.T).max():
+            raise np.linalg.LinAlgError("a pole may lie at zero")
 
     def solve(self, W: Matrix, adjoint: bool = False) -> Matrix:
         """P with A P + P A' + W = 0, or of the equation with A' in place of A."""

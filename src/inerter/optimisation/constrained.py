@@ -29,6 +29,7 @@ _PEAKS = 8  # slots for peaks during the approach
 _HIDDEN = -700.0  # logarithm of a peak that is not there
 _PROMISING, _SAME_PLACE = 0.02, 0.01  # as in searches without limits
 _STANDS_OUT = 1e-9
+_EXACTLY = 1e-8  # of a logarithm beyond its limit that does not matter when two ends of one search are compared
 _TIGHT = 1e-5  # distance of a logarithm from its limit up to which it may hold the optimum back
 _TRUSTED = 1e-3  # what multipliers may leave of the gradient
 Known = tuple[Any, ...]  # of each function the peaks that are followed; None for those of the current point
@@ -150,7 +151,7 @@ def polished(problem: Limited, start: LocalOptimum) -> LocalOptimum:
 
 def _better(one: LocalOptimum, other: LocalOptimum) -> bool:
     """Whether one keeps the limits where the other does not, or is lower."""
-    if max(one.excess, other.excess) <= KEPT:
+    if max(one.excess, other.excess) <= _EXACTLY:
         return one.value < other.value
     return one.excess < other.excess
 

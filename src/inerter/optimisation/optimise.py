@@ -198,7 +198,8 @@ def _best(
 def _nearest(problem: Limited, first: list[Array]) -> LocalOptimum:
     """The design that misses the limits least."""
     missed = replace(problem, objective=None)
-    found = searches(missed, first)
+    order = np.argsort(missed.values(np.array(first)), kind="stable")[:_MOST_TRIED]
+    found = searches(missed, [first[i] for i in order])
     return min(found, key=lambda local: local.excess)
 
 

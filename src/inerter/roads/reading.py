@@ -134,7 +134,7 @@ def _from_table(
         if not (role == "distance" and interval is not None)
     }
     if interval is not None:
-        found["distance"] = interval * np.arange(found["height"].size)
+        found["distance"] = interval * np.arange(found["height"].size, dtype=float)
     return Profile(found["distance"], found["height"], found.get("right"), source)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -123,6 +123,30 @@ def multisine(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.
     low, high = band("multisine", lowest, highest)
     amplitude = np.sqrt(4.0 * road.roughness * road.speed * low) / (low * _orders_up_to(low, high))
     return _random_phases("multisine", amplitude, low, seed, road.speed)
+
+
+def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.0) -> dict[str, Harmonics]:
+    """The left and the right track of a random road with its coherence, as `simulate(..., road=...)` takes them.
+
+    Harmonics as those of `multisine`, whose mean over both tracks and half of whose difference are independent; without
+    a coherence both tracks are the multisine of `seed`.
+
+    Raises `SignalError` as `multisine` does.
+    """
+    own = multisine(road, seed, lowest, highest)
+    if road.coherence is None:
+        return {"left": own, "right": own}
+    s = 2j * math.pi * own.frequencies
+    other = multisine(road, int(np.random.SeedSequence([seed, 1]).generate_state(1, np.uint64)[0]), lowest, highest)
+    ratios = (road.coherence.in_phase(road.speed), road.coherence.in_anti_phase(road.speed))
+    mean, half = (
+        (0.0 if ratio is None else np.polyval(ratio[0], s) / np.polyval(ratio[1], s)) * part.coefficient
+        for ratio, part in zip(ratios, (own, other), strict=True)
+    )
+    return {
+        track: replace(own, coefficient=np.asarray(total), label=f"{track} track of a {own.label}")
+        for track, total in (("left", mean + half), ("right", mean - half))
+    }
 
 
 def flat_multisine(seed: int, rms: float, lowest: float, highest: float, speed: float | None = None) -> Harmonics:

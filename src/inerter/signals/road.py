@@ -8,6 +8,7 @@ from typing import Self
 
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
+from inerter.signals.coherence import Coherence
 
 _PER_N0_SQUARED = 100.0  # [m^2], where ISO 8608 states roughness at n0 = 0.1 cycle/m
 
@@ -66,20 +67,27 @@ class Road:
     """A road whose displacement has the two-sided spectrum S(f) = roughness * speed / f^2, driven at `speed`.
 
     Its velocity is then white noise. `roughness` is kappa of Wang and Su (2008); the one-sided displacement spectrum
-    of ISO 8608 at n0 = 0.1 cycle/m is Gd(n0) = 2 kappa / n0^2.
+    of ISO 8608 at n0 = 0.1 cycle/m is Gd(n0) = 2 kappa / n0^2. A vehicle whose wheels run on two tracks meets the same
+    road on both, or roads that are as alike as a `coherence` says.
 
     Raises `PerformanceIndexError` unless both are positive and finite.
     """
 
     roughness: float  # kappa [m^3/cycle]
     speed: float  # V [m/s]
+    coherence: Coherence | None = None  # of left and right track; None: they are alike
 
     def __post_init__(self) -> None:
         for name, unit in (("roughness", "m^3/cycle"), ("speed", "m/s")):
             check_positive(PerformanceIndexError, f"The {name} of a road", getattr(self, name), unit)
+        if self.coherence is not None and not isinstance(self.coherence, Coherence):
+            raise PerformanceIndexError(
+                f"The coherence of a road is a Coherence, such as Coherence.isotropic(track=1.5), got "
+                f"{self.coherence!r}."
+            )
 
     @classmethod
-    def iso8608(cls, letter: str, speed: float) -> Self:
+    def iso8608(cls, letter: str, speed: float, coherence: Coherence | None = None) -> Self:
         """A road of a class of ISO 8608, "A" to "H", with the geometric mean of its roughness.
 
         `ROAD_CLASSES` tells the limits of each class.
@@ -90,7 +98,7 @@ class Road:
         >>> road.roughness, str(road.iso8608_class)
         (1.28e-06, 'class C of ISO 8608, Gd(n0) = 256e-6 m^3 (from 128e-6 to 512e-6 m^3)')
         """
-        return cls(roughness=road_class(letter).roughness, speed=speed)
+        return cls(roughness=road_class(letter).roughness, speed=speed, coherence=coherence)
 
     @property
     def iso8608_class(self) -> RoadClass:

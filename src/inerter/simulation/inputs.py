@@ -90,6 +90,8 @@ def assign(
     moved = road if displacement is None else displacement
     if road is not None and displacement is not None:
         raise SimulationError("Give either road or displacement: both move the same ends of the mechanism.")
+    by_track = _by_track(mechanism, moved)
+    moved = by_track or moved
     by_road = _by_name("road" if displacement is None else "displacement", moved, roads)
     if len(by_road) < len(roads) and (by_road or not forces):
         missing = ", ".join(name for name in roads if name not in by_road)
@@ -101,9 +103,17 @@ def assign(
     if forces is not None and not by_force:
         raise SimulationError(f"Forces are given by name, forces={{name: signal}} (there are: {_listed(names)}).")
     signals: list[Signal | None] = [by_road.get(name) for name in roads]
-    late = [0.0 if isinstance(moved, Mapping) else r.distance for r in mechanism.roads]
+    late = [0.0 if isinstance(moved, Mapping) and not by_track else r.distance for r in mechanism.roads]
     delays = [_delay(d, s, speed, name) for d, s, name in zip(late, signals, roads, strict=True)]
     return [*signals, *(by_force.get(name) for name in names)], delays + [0.0] * len(names)
+
+
+def _by_track(mechanism: Mechanism, moved: object) -> dict[str, object]:
+    """The signal of each road, where one is given for the left and one for the right track; else nothing."""
+    tracks = {road.track for road in mechanism.roads}
+    if not isinstance(moved, Mapping) or not {*moved} or not {*moved} <= {"left", "right"} or tracks != {*moved}:
+        return {}
+    return {road.name: moved[road.track] for road in mechanism.roads}
 
 
 def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal]:

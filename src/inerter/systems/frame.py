@@ -182,7 +182,8 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
         forces=forces,
     )
     known = outputs(mechanism, graph)
-    slots = Slots.of(found, _settling(found, [known[name].velocity for name in wanted if name in known]))
+    asked = [known[name] for name in wanted if name in known]
+    slots = Slots.of(found, _settling(found, [row for one in asked for row in (one.velocity, one.displacement)]))
     return Frame(
         mechanism, graph, tuple(inputs), found, slots, known, tuple(springs), spring_rows, spring_roads, columns, forces
     )
@@ -197,5 +198,5 @@ def _forces(mechanism: Mechanism, graph: Graph, names: Sequence[str]) -> Matrix:
 
 
 def _settling(found: Coordinates, asked: Sequence[Matrix]) -> bool:
-    """Whether one of these velocities is of something that only springs hold."""
+    """Whether one of these motions is of something that only springs hold."""
     return any(np.any(found.rate(row)[3]) for row in asked if row.size)

@@ -223,9 +223,10 @@ def check_bounded(mechanism: Mechanism, driven: Mechanism, name: str) -> None:
 
 def check_element(mechanism: Mechanism, label: object, called: Callable[[str], str]) -> None:
     """Raises `PerformanceIndexError` unless there is an element of this label, and what it is `called` is known."""
-    known = outputs(mechanism, full_graph(mechanism))
-    labels = [name.removesuffix(velocity_of("")) for name in known if name.endswith(velocity_of(""))]
-    labels = [name for name in labels if force_of(name) in known]
+    graph = full_graph(mechanism)
+    known = outputs(mechanism, graph)
+    every = dict.fromkeys((*graph.groups, *(branch.label for branch in graph.branches)))
+    labels = [name for name in every if force_of(name) in known]
     if not isinstance(label, str) or label not in labels:
         raise PerformanceIndexError(f"There is no element named {label!r} (there are: {', '.join(labels) or 'none'}).")
     if called(label) not in known:

@@ -29,7 +29,7 @@ from inerter.networks.elements import Free
 from inerter.optimisation.constrained import Limited, polished, searches, trust_region_within
 from inerter.optimisation.held import held_at
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
-from inerter.optimisation.local import LocalOptimum
+from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
@@ -71,7 +71,7 @@ def pareto(
     >>> road = it.Road(roughness=5e-7, speed=25)
     >>> front = it.pareto(car, [it.RideComfort(road), it.TyreLoad(road)], it.Norm(), points=5)
     >>> front.values.round(3)[[0, -1]]
-    array([[  2.428, 503.387],
+    array([[  2.428, 503.131],
            [  2.437, 501.205]])
     """
     criteria = _checked(vehicle, indices, method, points)
@@ -80,17 +80,15 @@ def pareto(
     if not isinstance(seed, Integral) or seed < 0:
         raise DesignError(f"The seed is a whole number from 0 on, got {seed!r}.")
     with one_blas_thread(), running_on(executor):
-        ends = [optimise(vehicle, one, method, subject_to=limits, seed=int(seed)) for one in criteria]
-        failed = next((end.status for end in ends if not np.isfinite(end.value) or _is_missed(end)), None)
-        if failed is not None:
-            return _empty(criteria, int(seed), failed)
+        ends = []
+        for one in criteria:
+            end = optimise(vehicle, one, method, subject_to=limits, seed=int(seed))
+            if not np.isfinite(end.value) or end.status.kind is StatusKind.INFEASIBLE:
+                return _empty(criteria, int(seed), end.status)
+            ends.append(end)
         trade = _trade(vehicle, criteria, method, limits, free, ends, int(seed))
         found = trade.front(int(points))
         return _front(trade, found, int(seed))
-
-
-def _is_missed(end: Optimum) -> bool:
-    return end.status.kind is StatusKind.INFEASIBLE
 
 
 def _checked(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[Asked, ...]:
@@ -139,7 +137,8 @@ class _Trade:
         """The least of each criterion, and how far the largest at an end is from it."""
         table = self.criteria(np.array(self.ends))
         ideal = table.min(axis=0)
-        return ideal, table.max(axis=0) - ideal
+        size = table.max(axis=0) - ideal
+        return ideal, np.where(size > 0.0, size, 1.0)
 
     def at(self, point: Array) -> _Found:
         """What a point comes to."""
@@ -221,7 +220,8 @@ class _Trade:
     def front(self, count: int) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
         """Points of the front, and the pairs between which it jumps."""
         ends = [self.at(point) for point in self.ends]
-        if np.all(self.scale[1] <= _NO_CONFLICT * self.scale[0]):
+        table = np.array([one.values for one in ends])
+        if np.all(np.ptp(table, axis=0) <= _NO_CONFLICT * self.scale[0]):
             return ends[:1], set()
         if len(self.objectives) == 2:
             return self.between(ends, count)
@@ -298,8 +298,11 @@ class _Trade:
 
 
 def _costly(problem: Limited, first: Sequence[Array]) -> LocalOptimum:
-    values = problem.values(np.array(first))
-    return trust_region_within(problem, first[int(np.argmin(values))])
+    start = first[int(np.argmin(problem.values(np.array(first))))]
+    if problem.bounds:
+        return trust_region_within(problem, start)
+    assert problem.objective is not None
+    return trust_region(problem.objective, start, problem.lower, problem.upper)
 
 
 def _undominated(found: Sequence[_Found], which: Sequence[int]) -> list[_Found]:

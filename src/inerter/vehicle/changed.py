@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.checks import is_number
 from inerter.errors import DesignError
-from inerter.fields import fields_of, mounts_of
+from inerter.fields import fields_of
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.mechanism import Mechanism
@@ -33,9 +33,9 @@ def changed(vehicle: Vehicle, values: Mapping[str, float]) -> Vehicle:
 def _one_changed(vehicle: Vehicle, name: str, value: float) -> Vehicle:
     if isinstance(vehicle, VehicleModel) and name in {field.name for field in fields_of(type(vehicle))}:
         return dataclasses.replace(vehicle, **{name: value})
-    chosen = labelled(vehicle, name)
+    chosen = {id(element) for element in labelled(vehicle, name)}
     if chosen:
-        return with_elements(vehicle, lambda e: e.with_value(value) if e.label == name else e)
+        return with_elements(vehicle, lambda e: e.with_value(value) if id(e) in chosen else e)
     mechanism = vehicle.mechanism()
     if isinstance(vehicle, Mechanism) and name in {c.name for c in mechanism.coordinates}:
         return dataclasses.replace(
@@ -50,23 +50,27 @@ def _one_changed(vehicle: Vehicle, name: str, value: float) -> Vehicle:
 def _known(vehicle: Vehicle) -> list[str]:
     quantities = [field.name for field in fields_of(type(vehicle))] if isinstance(vehicle, VehicleModel) else []
     masses = [c.name for c in vehicle.coordinates] if isinstance(vehicle, Mechanism) else []
-    return list(dict.fromkeys([*quantities, *(e.label for e in _elements(vehicle)), *masses]))
+    return list(dict.fromkeys([*quantities, *(e.label for part in mounted(vehicle) for e in part), *masses]))
 
 
-def _networks(vehicle: Vehicle) -> list[Network]:
-    """What is mounted: of a kind of vehicle what is given as a network, of a mechanism all, tyres last."""
+def mounted(vehicle: Vehicle) -> tuple[list[Element], list[Element]]:
+    """The elements of the struts, and of tyres that are given as networks."""
     if isinstance(vehicle, VehicleModel):
-        return [getattr(vehicle, name) for name in mounts_of(type(vehicle))]
-    return [mount.network for mount in vehicle.mechanism().mounts()]
-
-
-def _elements(vehicle: Vehicle) -> list[Element]:
-    return [element for network in _networks(vehicle) for element in network.elements()]
+        struts: list[Network] = list(vehicle.networks().values())
+        tyres: list[Network] = []
+    else:
+        mechanism = vehicle.mechanism()
+        struts, tyres = [s.network for s in mechanism.struts], [t.network for t in mechanism.tyres]
+    return [e for network in struts for e in network.elements()], [e for network in tyres for e in network.elements()]
 
 
 def labelled(vehicle: Vehicle, label: str) -> list[Element]:
-    """The elements of that label; raises `DesignError` if they are of several kinds, or unnamed with several values."""
-    chosen = [element for element in _elements(vehicle) if element.label == label]
+    """The elements of that label, in struts if there are some, else in tyres.
+
+    Raises `DesignError` if they are of several kinds, or unnamed with several values.
+    """
+    of_struts, of_tyres = ([element for element in part if element.label == label] for part in mounted(vehicle))
+    chosen = of_struts or of_tyres
     if len({(e.unit, e.value) for e in chosen if e.name is None and not isinstance(e.value, Free)}) > 1:
         values = " and ".join(dict.fromkeys(str(e) for e in chosen))
         raise DesignError(f"{label!r} stands for {values}. Name the one that is meant, as in Spring(..., name=...).")
@@ -78,9 +82,7 @@ def labelled(vehicle: Vehicle, label: str) -> list[Element]:
 def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Vehicle:
     """The same vehicle with other elements in what is mounted."""
     if isinstance(vehicle, VehicleModel):
-        mounted: dict[str, Any] = {
-            name: map_elements(getattr(vehicle, name), change) for name in mounts_of(type(vehicle))
-        }
+        mounted: dict[str, Any] = {name: map_elements(network, change) for name, network in vehicle.networks().items()}
         return dataclasses.replace(vehicle, **mounted)
     mechanism = vehicle.mechanism()
     return dataclasses.replace(

@@ -136,6 +136,19 @@ class Mechanism:
         masses = {c.name: -c.inertia for c in self.coordinates if not c.angle}
         return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, masses)), ground_moves=True)
 
+    def on_one_track(self) -> Mechanism:
+        """The same mechanism with tyres that meet the road at once on one road, where it lies alike on both sides.
+
+        What both sides share is then an input less, and how the road twists between axles no state.
+        """
+        held = {name for strut in self.struts for name in (*strut.upper, *strut.lower)}
+        first: dict[float, str] = {}
+        on = {r.name: r.name if r.name in held else first.setdefault(r.distance, r.name) for r in self.roads}
+        if all(name == road for name, road in on.items()):
+            return self
+        tyres = tuple(replace(tyre, road=on[tyre.road]) for tyre in self.tyres)
+        return replace(self, tyres=tyres, roads=tuple(road for road in self.roads if road.name in on.values()))
+
     def mounts(self) -> Iterator[Strut | Tyre]:
         """Struts, then tyres."""
         yield from self.struts

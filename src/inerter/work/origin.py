@@ -12,7 +12,7 @@ from inerter.rows import made_of_rows, plugins, sources
 
 VERSION = version("inerter")
 _COMPUTE = ("numpy", "scipy", "numba", "llvmlite")
-_TELL = {"cli", "report", "figures"}  # packages that show numbers and make none, also those of a paper
+_TELL = {"app", "cli", "report", "figures"}  # packages that show numbers and make none, also those of a paper
 
 
 def versions() -> dict[str, str]:

@@ -127,7 +127,7 @@ def _vehicle_shape(model: str) -> type[Shape]:
 
 
 class WithVehicle(Shape):
-    """A file with a vehicle, of which what refers to it has to know: mounts and forces that it names itself, its roads."""
+    """A file with a vehicle: what it names itself, mounts and forces, is known to what refers to it."""
 
     @model_validator(mode="before")
     @classmethod
@@ -142,7 +142,7 @@ class WithVehicle(Shape):
             found["layouts"] = {n: _Mounted(entry) if isinstance(entry, dict) else entry for n, entry in given.items()}
         signal = tables.get("signal")
         if isinstance(signal, dict):
-            found["signal"] = Driving(signal, forces_of(vehicle))
+            found["signal"] = Driving(signal, _units(vehicle))
         return found
 
 
@@ -151,6 +151,17 @@ def _needs_road(vehicle: Mapping[str, Any]) -> bool:
     model = vehicle.get("model")
     row = VEHICLES.get(model) if isinstance(model, str) else None
     return model != MECHANISM and (row is None or row.moved == "road")
+
+
+def _units(vehicle: Mapping[str, Any]) -> dict[str | None, str]:
+    """The units of inputs that only this vehicle knows."""
+    forces: dict[str | None, str] = dict(forces_of(vehicle).items())
+    row = VEHICLES.get(str(vehicle.get("model")))
+    if row is not None:
+        first = row.forces.get(row.moved)
+    else:
+        first = None if vehicle.get("roads") else next(iter(forces.values()), None)
+    return forces if first is None else {**forces, None: first}
 
 
 class _Mounted(dict[str, Any]):

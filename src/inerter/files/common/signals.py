@@ -101,5 +101,5 @@ def _signal_tag(signal: Any) -> str:
     if not isinstance(kind, str) or kind not in SIGNALS:
         return ANY
     moved = signal.get("input")
-    own = signal.units.get(moved) if isinstance(signal, Driving) and isinstance(moved, str) else None
+    own = signal.units.get(moved) if isinstance(signal, Driving) and isinstance(moved, str | None) else None
     return f"<{kind} in {own or unit_of(moved)}>"

@@ -142,9 +142,9 @@ def mechanism_shapes() -> Shapes:
 
 
 class Driving(dict[str, Any]):
-    """A table [signal] with the units of the forces that the vehicle names itself."""
+    """A table [signal] with the units of inputs that only its vehicle knows: of None, if none is named."""
 
-    def __init__(self, table: Mapping[str, Any], units: Mapping[str, str]) -> None:
+    def __init__(self, table: Mapping[str, Any], units: Mapping[str | None, str]) -> None:
         super().__init__(table)
         self.units = units
 

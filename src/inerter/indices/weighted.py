@@ -1,0 +1,94 @@
+"""What people feel of a motion that is known over time: the weighted values of ISO 2631-1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+
+from inerter.errors import PerformanceIndexError
+from inerter.indices.iso2631 import iso2631
+from inerter.systems.linear import LinearSystem
+
+Array = NDArray[np.float64]
+_RUNNING = 1.0  # [s] of a running r.m.s. value
+_EVEN = 1e-6  # of a step, by which steps of time may differ
+
+
+@dataclass(frozen=True, eq=False)
+class WeightedMotion:
+    """A frequency-weighted acceleration and the values that ISO 2631-1:1997 makes of it.
+
+    For a rotation read rad for m.
+    """
+
+    rms: float  # [m/s^2], 6.1
+    mtvv: float  # [m/s^2] the largest running r.m.s. value over 1 s, 6.3.1
+    vdv: float  # [m/s^1.75] fourth-power vibration dose value, 6.3.2
+    time: Array = field(repr=False)  # [s]
+    values: Array = field(repr=False)  # [m/s^2]
+
+
+def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") -> WeightedMotion:
+    """An acceleration [m/s^2] at even steps of `time` [s] through a weighting of ISO 2631-1, from rest.
+
+    `run.time` and `run["sprung_acceleration"]` of a simulation will do, and so will the columns of a record. The
+    acceleration is taken as linear between its samples, which therefore come some ten times in the shortest wave that
+    matters: that of 100 Hz with "Wk", "Wd" and "We", of 0.63 Hz with "Wf".
+
+    Raises `PerformanceIndexError` for another weighting, for steps that are not even, for values that are no finite
+    numbers, and for less than 1 s.
+
+    >>> t = np.arange(0.0, 40.0, 1e-3)
+    >>> felt = weighted(t, np.sin(2.0 * np.pi * 8.0 * t), "Wk")
+    >>> round(felt.rms * 2.0**0.5, 2), round(felt.mtvv * 2.0**0.5, 2)  # 1.036 in the standard's table
+    (1.04, 1.04)
+    """
+    system = iso2631(weighting)
+    times, given = _checked(time, acceleration)
+    step = float(times[-1] - times[0]) / (times.size - 1)
+    values = _passed(system, given, step)
+    energy = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] ** 2 + values[:-1] ** 2))])
+    since = times - times[0]
+    late = since >= _RUNNING * (1.0 - _EVEN)
+    running = energy[late] - np.interp(since[late] - _RUNNING, since, energy)
+    return WeightedMotion(
+        rms=float(np.sqrt(energy[-1] / since[-1])),
+        mtvv=float(np.sqrt(running.max() / _RUNNING)),
+        vdv=float(np.trapezoid(values**4, dx=step) ** 0.25),
+        time=times,
+        values=values,
+    )
+
+
+def _passed(system: LinearSystem, given: Array, step: float) -> Array:
+    """The output for an input that is linear between even samples, mode by mode: the poles of weightings differ."""
+    matrices = (system.A, system.B, system.C, system.D)
+    A, B, C, D, _ = scipy.signal.cont2discrete(matrices, step, method="foh")
+    rates, modes = np.linalg.eig(A)
+    enters, leaves = np.linalg.solve(modes, B.astype(complex))[:, 0], (C @ modes)[0]
+    result = D[0, 0] * given
+    for rate, enter, leave in zip(rates, enters, leaves, strict=True):
+        result = result + scipy.signal.lfilter([0.0, leave * enter], [1.0, -rate], given).real
+    return np.asarray(result)
+
+
+def _checked(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array]:
+    try:
+        times, given = np.asarray(time, dtype=float), np.asarray(acceleration, dtype=float)
+    except (TypeError, ValueError):
+        raise PerformanceIndexError(
+            "A weighted motion is made of two lists of numbers, time and acceleration."
+        ) from None
+    if times.ndim != 1 or times.shape != given.shape or not (np.all(np.isfinite(times)) and np.all(np.isfinite(given))):
+        raise PerformanceIndexError(
+            f"Time and acceleration are two lists of as many finite numbers, got shapes {times.shape} and {given.shape}."
+        )
+    steps = np.diff(times)
+    if not steps.size or not steps.min() > 0.0 or np.ptp(steps) > _EVEN * steps.max():
+        raise PerformanceIndexError("The time of a weighted motion goes on in even steps. Interpolate it first.")
+    if times[-1] - times[0] < _RUNNING * (1.0 - _EVEN):
+        raise PerformanceIndexError(f"A weighted motion lasts {_RUNNING:g} s at least, got {times[-1] - times[0]:g} s.")
+    return times, given

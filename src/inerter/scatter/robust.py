@@ -1,0 +1,229 @@
+"""`robust`: the design whose index is least at a quantile, when values scatter; and that quantile as an index."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from functools import cached_property
+from numbers import Integral
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import OK, DesignError, Status, StatusKind
+from inerter.indices.question import Index
+from inerter.methods.asking import Asked, objective_of
+from inerter.methods.method import Differentiable, Estimate, Method, Objective, asked_of
+from inerter.optimisation.limits import Limit
+from inerter.optimisation.optimise import Optimum, optimise
+from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of
+from inerter.scatter.tolerance import scattered
+from inerter.vehicle.vehicle import Vehicle
+
+Array = NDArray[np.float64]
+_WEIGHT = 1e-6  # of a sample that counts in a gradient
+
+
+@dataclass(frozen=True)
+class Quantile:
+    """An index: the value that another one stays below in this share of cases, when values scatter.
+
+    Elements alone may scatter here. The quantile is a mean of all `samples` by weights that are those of their ranks
+    (Harrell and Davis 1982), which changes smoothly with the design; all designs see the same sample.
+    """
+
+    index: Asked
+    scatter: Scatter
+    share: float = 0.95
+    samples: int = 256
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not is_number(self.share) or not 0.0 < self.share < 1.0:
+            raise DesignError(f"The share of a quantile lies between 0 and 1, got {self.share!r}.")
+        if not isinstance(self.samples, Integral) or self.samples < 16 or self.samples & (self.samples - 1):
+            raise DesignError(f"The number of samples is a power of two from 16 on, got {self.samples!r}.")
+        if not isinstance(self.seed, Integral) or self.seed < 0:
+            raise DesignError(f"The seed is a whole number from 0 on, got {self.seed!r}.")
+
+    @property
+    def symbol(self) -> str:
+        """That of the index."""
+        return self.index.symbol
+
+    @property
+    def title(self) -> str:
+        """That of the index, with the share."""
+        return f"{self.index.title}, {100.0 * self.share:g} % quantile"
+
+    @property
+    def unit(self) -> str:
+        """That of the index."""
+        return self.index.unit
+
+    @property
+    def response(self) -> str:
+        """That of the index."""
+        return self.index.response
+
+    @property
+    def factors(self) -> Array:
+        """What the values that scatter are multiplied by (samples, names)."""
+        sampler = scipy.stats.qmc.Sobol(len(self.scatter.names), rng=np.random.default_rng(self.seed))
+        return self.scatter.factors(sampler.random(self.samples))
+
+    @property
+    def weights(self) -> Array:
+        """Of the samples in rising order."""
+        a, b = (self.samples + 1) * self.share, (self.samples + 1) * (1.0 - self.share)
+        steps = scipy.stats.beta(a, b).cdf(np.arange(self.samples + 1) / self.samples)
+        return np.asarray(np.diff(steps))
+
+    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+        """What is asked of each sample; raises `DesignError` where something else than elements is to scatter."""
+        if not elements_scatter(vehicle, self.scatter):
+            raise DesignError("In a search only values of elements may scatter; name them by their labels.")
+        return asked_of(vehicle, self.index)
+
+    def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> list[Quantile]:
+        """The quantile of each output that is limited by itself."""
+        return [replace(self, index=one) for one in split(self.index, vehicle)]
+
+    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+        """The quantile for a vehicle without free values."""
+        values = np.sort(scattered(vehicle, self.index, method, self.scatter, self.factors))
+        status = OK
+        if not np.all(np.isfinite(values)):
+            lost = int(np.sum(~np.isfinite(values)))
+            status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value")
+        return Estimate(float(values @ self.weights), self.unit, status)
+
+    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+        """The quantiles (designs,) at many values of the free values, nan where one is not known."""
+        rows = np.column_stack([points[name] for name in vehicle.free_values()]) if points else np.zeros((1, 0))
+        found = self.as_objective(vehicle, method).values(rows)
+        return np.where(np.isfinite(found), found, np.nan)
+
+    def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:
+        """The quantile as a function of the free values, with its gradient if the index has one."""
+        loose = loosened(vehicle, self.scatter)
+        inner = objective_of(loose, self.index, method)
+        own = nominal(vehicle, self.scatter)
+        plain = _Values(self, inner, tuple(vehicle.free_values()), tuple(loose.free_values()), tuple(own.items()))
+        return _Smooth(plain) if isinstance(inner, Differentiable) else plain
+
+
+@dataclass(frozen=True, eq=False)
+class _Values:
+    """The quantile as an `Objective`."""
+
+    of: Quantile
+    inner: Any
+    names: tuple[str, ...]  # of the free values
+    inner_names: tuple[str, ...]  # of those and of what scatters besides
+    own: tuple[tuple[str, float], ...]
+
+    @cached_property
+    def weights(self) -> Array:
+        """Of the samples in rising order."""
+        return self.of.weights
+
+    @cached_property
+    def table(self) -> Array:
+        """Factors (samples, inner values)."""
+        factors = dict(zip(self.of.scatter.names, self.of.factors.T, strict=True))
+        return np.column_stack([factors.get(name, np.ones(self.of.samples)) for name in self.inner_names])
+
+    def inner_points(self, point: Array) -> Array:
+        """The sample around a point (samples, inner values)."""
+        known = dict(self.own) | dict(zip(self.names, point.tolist(), strict=True))
+        return np.ascontiguousarray(self.table * np.array([known[name] for name in self.inner_names]))
+
+    def values(self, points: Array) -> Array:
+        """The quantile at each row of `points`; infinite where it is not known."""
+        found = self.inner.values(np.vstack([self.inner_points(point) for point in points]))
+        table = np.sort(found.reshape(len(points), -1), axis=1)
+        good = np.all(np.isfinite(table), axis=1)
+        result = np.full(len(points), np.inf)
+        result[good] = table[good] @ self.weights
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Smooth:
+    """The quantile as a `Differentiable`."""
+
+    plain: _Values
+
+    def values(self, points: Array) -> Array:
+        """As without gradients."""
+        return self.plain.values(points)
+
+    def value_and_gradient(self, point: Array) -> tuple[float, Array]:
+        """The quantile, and the mean of the gradients of the samples by the weights of their ranks."""
+        plain = self.plain
+        inner = plain.inner_points(point)
+        values = plain.inner.values(inner)
+        if not np.all(np.isfinite(values)):
+            return np.inf, np.zeros(point.size)
+        order = np.argsort(values, kind="stable")
+        places = [plain.inner_names.index(name) for name in plain.names]
+        gradient = np.zeros(point.size)
+        for rank in np.flatnonzero(plain.weights > _WEIGHT):
+            row = order[rank]
+            gradient += plain.weights[rank] * (_gradient(plain.inner, inner[row]) * plain.table[row])[places]
+        return float(values[order] @ plain.weights), gradient
+
+    def active(self, point: Array) -> None:
+        """None: it is smooth but for where two samples change places."""
+
+    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
+        """It has none."""
+        raise AssertionError("a quantile is one function")
+
+
+def _gradient(objective: Differentiable, point: Array) -> Array:
+    peaks = objective.active(point)
+    if peaks is None:
+        return objective.value_and_gradient(point)[1]
+    values, gradients = objective.components(point, peaks)
+    return np.asarray(gradients[int(np.argmax(values))])
+
+
+def robust(
+    vehicle: Vehicle,
+    index: Asked,
+    method: Method,
+    *,
+    spread: Mapping[str, float],
+    quantile: float = 0.95,
+    distribution: str = "uniform",
+    samples: int = 256,
+    subject_to: Sequence[Limit] = (),
+    seed: int = 0,
+    starts: int | None = None,
+    executor: Executor | None = None,
+) -> Optimum:
+    """The free values that make an index least in the worse cases: at its 95 % quantile, when values scatter.
+
+    `spread` and `distribution` are those of `tolerance`, of elements alone: free values scatter about what is chosen,
+    fixed ones about what they are. The optimum's value is that quantile, over one sample for all designs; everything
+    else is as in `optimise`, but for `starts`, which is 2 for each free value if left out.
+
+    Raises what `optimise` and `tolerance` raise.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(it.free(100, 1e5, "c")) - it.Inerter(it.free(1, 2000, "b"))
+    >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
+    >>> found = it.robust(car, comfort, it.Norm(), spread={"c": 0.3, "b": 0.3}, samples=64, starts=2)
+    >>> round(found.value, 2)
+    2.52
+    """
+    at = Quantile(index, scatter_of(spread, distribution), quantile, samples, seed)
+    starts = 2 * len(vehicle.free_values()) or None if starts is None else starts
+    return optimise(vehicle, at, method, subject_to=subject_to, seed=seed, starts=starts, executor=executor)

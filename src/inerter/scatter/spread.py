@@ -1,0 +1,122 @@
+"""Values that scatter: which of a vehicle's, how far, and by what distribution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import DesignError
+from inerter.fields import fields_of
+from inerter.networks.elements import Element, Free, Tied
+from inerter.vehicle.changed import changed, labelled, with_elements
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle, VehicleModel
+
+Array = NDArray[np.float64]
+DISTRIBUTIONS = ("uniform", "normal")
+_DEVIATIONS = 3.0  # of a normal distribution, at which it is cut off
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """By what part values lie above or below their own at the most, by their names.
+
+    Under "uniform" all values between are equally likely; under "normal" the standard deviation is a third of the
+    spread, where the distribution is cut off. All scatter by themselves; elements of one label together.
+
+    Raises `DesignError` for a spread that is not between 0 and 1, or another distribution.
+    """
+
+    spread: tuple[tuple[str, float], ...]
+    distribution: str = "uniform"
+
+    def __post_init__(self) -> None:
+        if not self.spread:
+            raise DesignError("A tolerance needs a spread, such as spread={'c': 0.1} for a damping within 10 %.")
+        for name, part in self.spread:
+            if not is_number(part) or not 0.0 < part < 1.0:
+                raise DesignError(f"The spread of {name!r} is a part of its value between 0 and 1, got {part!r}.")
+        if self.distribution not in DISTRIBUTIONS:
+            known = " or ".join(repr(one) for one in DISTRIBUTIONS)
+            raise DesignError(f"The distribution of a tolerance is {known}, got {self.distribution!r}.")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What scatters."""
+        return tuple(name for name, _ in self.spread)
+
+    def factors(self, unit: Array) -> Array:
+        """Factors (n, names) of the values, from numbers that are evenly spread between 0 and 1."""
+        parts = np.array([part for _, part in self.spread])
+        if self.distribution == "uniform":
+            return 1.0 + parts * (2.0 * unit - 1.0)
+        inside = scipy.stats.truncnorm(-_DEVIATIONS, _DEVIATIONS).ppf(unit)
+        return np.asarray(1.0 + parts / _DEVIATIONS * inside)
+
+    def corners(self) -> Array:
+        """All combinations of the extreme factors."""
+        ends = [(1.0 - part, 1.0 + part) for _, part in self.spread]
+        return np.array(np.meshgrid(*ends, indexing="ij")).reshape(len(ends), -1).T
+
+
+def scatter_of(spread: object, distribution: str) -> Scatter:
+    """The scatter; raises `DesignError` for what is none."""
+    if not isinstance(spread, Mapping) or not all(isinstance(name, str) for name in spread):
+        raise DesignError(f"The spread maps names to parts of values, such as {{'c': 0.1}}, got {spread!r}.")
+    return Scatter(tuple(spread.items()), distribution)
+
+
+def elements_scatter(vehicle: Vehicle, scatter: Scatter) -> bool:
+    """Whether all that scatters is values of elements; raises `DesignError` for a name that stands for nothing."""
+    nominal(vehicle, scatter)
+    return all(labelled(vehicle, name) or name in vehicle.free_values() for name in scatter.names)
+
+
+def nominal(vehicle: Vehicle, scatter: Scatter) -> dict[str, float]:
+    """What scatters, with its value; nan where that is free. Raises `DesignError` for a name without a value."""
+    found = {}
+    for name in scatter.names:
+        value = _value(vehicle, name)
+        if value == 0.0:
+            raise DesignError(f"{name!r} is 0, and cannot scatter by a part of itself.")
+        found[name] = value
+    return found
+
+
+def _value(vehicle: Vehicle, name: str) -> float:
+    if name in vehicle.free_values():
+        return np.nan
+    if isinstance(vehicle, VehicleModel) and name in {field.name for field in fields_of(type(vehicle))}:
+        return float(getattr(vehicle, name))
+    chosen = labelled(vehicle, name)
+    if chosen:
+        value = chosen[0].value
+        if isinstance(value, Free | Tied):
+            raise DesignError(f"{name!r} is tied to others, and scatters with them; name those.")
+        return value
+    if isinstance(vehicle, Mechanism):
+        for coordinate in vehicle.coordinates:
+            if coordinate.name == name:
+                return coordinate.inertia
+    changed(vehicle, {name: 1.0})  # which says what there is
+    raise AssertionError("unreachable")
+
+
+def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
+    """The vehicle with a free value in the place of each fixed one that scatters, by its name."""
+    parts = dict(scatter.spread)
+    free = vehicle.free_values()
+    chosen = {id(element) for name in parts if name not in free for element in labelled(vehicle, name)}
+
+    def loose(element: Element) -> Element:
+        value, name = element.value, element.label
+        if id(element) not in chosen or isinstance(value, Free | Tied):
+            return element
+        return element.with_value(Free((1.0 - parts[name]) * value, (1.0 + parts[name]) * value, name))
+
+    return with_elements(vehicle, loose)

@@ -1,0 +1,172 @@
+"""`tolerance`: what an index becomes when values scatter, and which of them that is due to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from functools import partial
+from numbers import Integral
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.checks import is_number
+from inerter.errors import DesignError, Status, StatusKind
+from inerter.methods.asking import Asked, estimate_of
+from inerter.methods.method import Estimate, Method, evaluate, evaluate_many
+from inerter.optimisation.threads import one_blas_thread
+from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of
+from inerter.vehicle.changed import changed
+from inerter.vehicle.vehicle import Vehicle
+from inerter.work.running import mapped, running_on
+
+Array = NDArray[np.float64]
+_MOST_CORNERS = 10  # values that scatter, whose extremes are all combined
+_FEWEST = 16  # samples
+
+
+@dataclass(frozen=True, eq=False)
+class Tolerance:
+    """An index whose design scatters.
+
+    `main` is the part of its variance that each value makes by itself, `total` the part that would go if that value
+    did not scatter (Sobol' indices; they have no error bound, and differ by rounding of the sample from 0 and 1).
+    `worst` is the largest value found, at the `worst_values`, in the sample and where all are at an end of their range.
+    All are nan, and the status says so, where the index has no value for some of the sample.
+    """
+
+    nominal: Estimate
+    mean: float
+    standard_deviation: float
+    worst: float
+    worst_values: dict[str, float]
+    main: dict[str, float]
+    total: dict[str, float]
+    values: Array = field(repr=False)  # of the index over the sample
+    scatter: Scatter
+    seed: int
+    status: Status
+
+    @property
+    def unit(self) -> str:
+        """Unit of the index."""
+        return self.nominal.unit
+
+    def quantile(self, share: float) -> float:
+        """The value that the index stays below in this share of cases.
+
+        Raises `DesignError` unless the share is between 0 and 1.
+        """
+        if not is_number(share) or not 0.0 <= share <= 1.0:
+            raise DesignError(f"The share of a quantile lies between 0 and 1, got {share!r}.")
+        return float(np.quantile(self.values, share))
+
+
+def tolerance(
+    design: Vehicle,
+    index: Asked,
+    method: Method,
+    *,
+    spread: Mapping[str, float],
+    samples: int = 4096,
+    seed: int = 0,
+    distribution: str = "uniform",
+    executor: Executor | None = None,
+) -> Tolerance:
+    """What an index becomes when values of a design scatter.
+
+    `spread` says for values by their names (elements by their labels, quantities of the vehicle, coordinates of a
+    mechanism) by what part of themselves they scatter, up and down at the most: {"c": 0.1} is 10 %. Under the
+    `distribution` "uniform" all between is equally likely; under "normal" the standard deviation is a third of the
+    spread, at which it is cut off. `samples`, a power of two, are points of a scrambled Sobol' sequence; the index is
+    taken at 2 + n times as many, for n values that scatter. Elements go through compiled code where the method has
+    some, other quantities one by one, on the `executor` if there is one.
+
+    Raises `DesignError` for a name that stands for nothing, a spread that is not between 0 and 1, and samples that are
+    no power of two; and what `evaluate` raises.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52)
+    >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
+    >>> found = it.tolerance(car, comfort, it.Norm(), spread={"c": 0.1, "b": 0.05, "k": 0.05}, samples=256)
+    >>> round(found.mean, 3), round(found.quantile(0.95), 3), max(found.total, key=found.total.get)
+    (2.431, 2.471, 'k')
+    """
+    scatter = scatter_of(spread, distribution)
+    if not isinstance(samples, Integral) or samples < _FEWEST or samples & (samples - 1):
+        raise DesignError(f"The number of samples is a power of two from {_FEWEST} on, got {samples!r}.")
+    if not isinstance(seed, Integral) or seed < 0:
+        raise DesignError(f"The seed is a whole number from 0 on, got {seed!r}.")
+    with one_blas_thread(), running_on(executor):
+        here = evaluate(design, index, method)
+        return _found(design, index, method, scatter, int(samples), int(seed), here)
+
+
+def _found(
+    design: Vehicle, index: Asked, method: Method, scatter: Scatter, samples: int, seed: int, here: Estimate
+) -> Tolerance:
+    count = len(scatter.names)
+    unit = scipy.stats.qmc.Sobol(2 * count, rng=np.random.default_rng(seed)).random(samples)
+    a, b = scatter.factors(unit[:, :count]), scatter.factors(unit[:, count:])
+    crossed = []
+    for i in range(count):
+        mixed = a.copy()
+        mixed[:, i] = b[:, i]
+        crossed.append(mixed)
+    corners = scatter.corners() if count <= _MOST_CORNERS else np.zeros((0, count))
+    values = scattered(design, index, method, scatter, np.vstack([a, b, *crossed, corners]))
+    both, mixed_values = values[: 2 * samples], values[2 * samples : (2 + count) * samples].reshape(count, samples)
+    extreme, factors = np.append(both, values[(2 + count) * samples :]), np.vstack([a, b, corners])
+    status, known = here.status, bool(np.all(np.isfinite(values)))
+    if not known:
+        lost = int(np.sum(~np.isfinite(values)))
+        status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value")
+    names = scatter.names
+    main, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
+    top = int(np.argmax(extreme)) if known else 0
+    own = nominal(design, scatter)
+    return Tolerance(
+        nominal=here,
+        mean=float(both.mean()),
+        standard_deviation=float(both.std(ddof=1)),
+        worst=float(extreme[top]) if known else np.nan,
+        worst_values={n: own[n] * f if known else np.nan for n, f in zip(names, factors[top].tolist(), strict=True)},
+        main=dict(zip(names, main.tolist(), strict=True)),
+        total=dict(zip(names, total.tolist(), strict=True)),
+        values=both,
+        scatter=scatter,
+        seed=seed,
+        status=status,
+    )
+
+
+def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:
+    """Main and total Sobol' indices; 0 where nothing varies."""
+    samples = mixed.shape[1]
+    if len(mixed) == 1 or np.ptp(both) == 0.0:
+        share = np.full(len(mixed), float(np.ptp(both) > 0.0))
+        return share, share
+    tables = {"f_A": both[None, :samples], "f_B": both[None, samples:], "f_AB": mixed[:, None, :]}
+    indices: Any = scipy.stats.sobol_indices  # the stubs do not know this form of tables
+    found = indices(func=tables, n=samples)
+    return np.ravel(found.first_order), np.ravel(found.total_order)
+
+
+def scattered(design: Vehicle, index: Asked, method: Method, scatter: Scatter, factors: Array) -> Array:
+    """The index at the values of a design times these factors; nan where it has none."""
+    own = nominal(design, scatter)
+    table = factors * np.array(list(own.values()))
+    if elements_scatter(design, scatter):
+        points = dict(zip(own, table.T, strict=True))
+        return evaluate_many(loosened(design, scatter), index, points, method)[:, 0]
+    rows = [dict(zip(own, row, strict=True)) for row in table.tolist()]
+    return np.array(mapped(partial(_value, design, index, method), rows))
+
+
+def _value(design: Vehicle, index: Asked, method: Method, values: Mapping[str, float]) -> float:
+    found = estimate_of(changed(design, values), index, method)
+    return found.value if found.status.ok else np.nan

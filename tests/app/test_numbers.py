@@ -1,0 +1,226 @@
+"""The numbers of the page are those of the command line and of Python, to the last digit."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from app.conftest import DOCUMENT, EXAMPLES, changed
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from starlette.testclient import TestClient
+
+import inerter as it
+from inerter.app.documents import study_from
+from inerter.files.common.toml import as_toml
+from inerter.report.study_data import as_text
+
+
+def run(document: dict[str, Any], folder: Path) -> Any:
+    """What `inerter run --json` prints of the file that the document is."""
+    path = folder / "study.toml"
+    path.write_text(as_toml(document), encoding="utf-8")
+    result = it.run_study(it.load_study(path), folder / "results")
+    return json.loads("".join(as_text(result))), result
+
+
+def test_a_run_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
+    told = client.post("/api/work", json={"kind": "run", "study": DOCUMENT, "wait": 30}).json()
+    expected, result = run(DOCUMENT, tmp_path)
+    assert told["state"] == "done"
+    assert {**told["result"], "title": ""} == {**expected, "title": ""}
+    files = {row["name"]: row["size"] for row in client.get(f"/api/work/{told['id']}/files").json()["files"]}
+    assert {"report.html", "summary.csv", "results.nc", "study.resolved.toml"} <= set(files)
+    for name in ("summary.csv", "study.resolved.toml"):
+        assert client.get(f"/api/work/{told['id']}/files/{name}").content == (result.folder / name).read_bytes()
+
+
+def test_a_sweep_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
+    sweep = {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 3}}
+    told = client.post(
+        "/api/work", json={"kind": "sweep", "study": DOCUMENT, "sweep": sweep, "indices": ["J1"], "wait": 30}
+    ).json()
+    expected, _ = run(changed(study={"sweep": sweep, "indices": ["J1"]}), tmp_path)
+    assert {**told["result"], "title": ""} == {**expected, "title": ""}
+
+
+def test_optima_are_those_of_a_run(client: TestClient, tmp_path: Path) -> None:
+    """The panel, the work, and the texts of their values: all are the design that a run finds."""
+    expected, _ = run(DOCUMENT, tmp_path)
+    wanted = {(d["layout"], d["index"]): d for d in expected["designs"]}
+    panel = client.post("/api/panel/optimise", json={"study": DOCUMENT}).json()["designs"]
+    work = client.post("/api/work", json={"kind": "optimise", "study": DOCUMENT, "wait": 30}).json()["result"][
+        "designs"
+    ]
+    assert panel == work
+    for found in panel:
+        case = wanted[found["layout"], found["index"]]
+        assert found["values"]["norm"][found["index"]] == case["value"]
+        assert found["parameters"] == case["parameters"]
+        assert {n: float(t.split()[0]) for n, t in found["texts"].items()} == case["parameters"]
+    values = {d["layout"]: d["texts"] for d in panel if d["index"] == "J1"}
+    answer = client.post("/api/panel/indices", json={"study": DOCUMENT, "values": values, "indices": ["J1"]}).json()
+    for design in answer["designs"]:
+        (result,), case = design["results"], wanted[design["layout"], "J1"]
+        assert (result["value"], result["improvement_percent"]) == (case["value"], case["improvement_percent"])
+
+
+@settings(max_examples=8)
+@given(c=st.floats(200.0, 9e4), b=st.floats(2.0, 900.0), c1=st.floats(200.0, 9e4))
+def test_a_study_of_designs_gives_the_numbers_of_the_panel(
+    client: TestClient, tmp_path_factory: pytest.TempPathFactory, c: float, b: float, c1: float
+) -> None:
+    """What is downloaded and run has the page's values, improvements and curves, whatever the sliders are at."""
+    designs = [{"layout": "S1", "values": {"c": c1}}, {"layout": "S3", "values": {"c": c, "b": f"{b!r} kg"}}]
+    panel = client.post("/api/panel/indices", json={"study": DOCUMENT, "designs": designs}).json()
+    text = client.post("/api/study/write", json={"study": DOCUMENT, "designs": designs}).json()["text"]
+    folder = tmp_path_factory.mktemp("run")
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    data = it.run_study(it.load_study(folder / "study.toml"), folder / "results").data
+    for design in panel["designs"]:
+        for row in design["results"]:
+            there = data.sel({"layout": design["layout"], "index": row["index"], "method": "norm"})
+            assert there.value.item() == row["value"]
+            assert there.improvement.item() == row["improvement_percent"]
+    curves = client.post("/api/panel/response", json={"study": DOCUMENT, "designs": designs}).json()
+    assert curves["frequency"] == (data.omega.values / (2.0 * np.pi)).tolist()
+    for curve in curves["curves"]:
+        gains = data[f"gain_{curve['index']}"].sel(layout=curve["layout"])
+        assert curve["gain"] in gains.values.tolist()
+
+
+def test_a_history_is_that_of_python(client: TestClient) -> None:
+    body = {"study": DOCUMENT, "layout": "S3", "values": {"S3": {"c": 3000.0, "b": 50.0}}, "seed": 3, "duration": 0.5}
+    told = client.post("/api/panel/history", json=body).json()
+    study = study_from(DOCUMENT)
+    car = study.design("S3").with_values({"c": 3000.0, "b": 50.0})
+    motion = it.simulate(car, road=it.multisine(study.road, seed=3), duration=0.5, step=told["step"])
+    for name, rms in told["rms"].items():
+        assert rms == motion.rms(name)
+    for signal in told["signals"]:
+        at = dict(zip(motion.time.tolist(), motion[signal["name"]].tolist(), strict=True))
+        assert [at[time] for time in signal["time"]] == signal["values"]
+        assert max(map(abs, signal["values"])) == told["peaks"][signal["name"]]
+    shaded = {(row["element"], row["state"]): row["intervals"] for row in told["shaded"]}
+    assert shaded["f", "stick"] == [list(pair) for pair in motion.intervals("f", "stick")]
+    covered = sum(end - begin for several in shaded.values() for begin, end in several)
+    assert covered == pytest.approx(0.5, rel=1e-9)
+
+
+def test_budgets_and_comparisons_are_those_of_python(client: TestClient) -> None:
+    designs = [
+        {"layout": "S1", "values": {"c": 1500.0}},
+        {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}, "name": "mine"},
+    ]
+    method = "statistical-linearisation"
+    body = {
+        "study": DOCUMENT,
+        "design": designs[1],
+        "baseline": designs[0],
+        "index": "J1",
+        "parameter": "f",
+        "method": method,
+    }
+    told = client.post("/api/panel/budget", json=body).json()
+    study = study_from(DOCUMENT)
+    first, second = (
+        study.design(d["layout"]).with_values({k: float(v) for k, v in d["values"].items()}) for d in designs
+    )  # type: ignore[attr-defined]
+    found = it.budget(second, first, study.index("J1"), parameter="f", method=it.StatisticalLinearisation())
+    assert (told["value"], told["status"]) == (None if np.isnan(found.value) else found.value, found.status.kind.value)
+    body = {
+        "kind": "compare",
+        "study": DOCUMENT,
+        "designs": designs,
+        "indices": ["J1"],
+        "methods": ["norm"],
+        "wait": 30,
+    }
+    (row,) = client.post("/api/work", json=body).json()["result"]["comparisons"]
+    two = it.compare(second, first, study.index("J1"), it.Norm())
+    assert (row["name"], row["improvement_percent"]) == ("mine", -two.percent)
+
+
+def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient) -> None:
+    body = {"kind": "front", "study": DOCUMENT, "layouts": ["S3"], "points": 4, "wait": 30}
+    told = client.post("/api/work", json=body).json()["result"]
+    study = study_from(DOCUMENT)
+    found = it.pareto(study.design("S3"), [study.index("J1"), study.index("J3")], it.Norm(), points=4, seed=0)
+    (front,) = told["fronts"]
+    assert [list(point["values"].values()) for point in front["points"]] == found.values.tolist()
+    assert front["knee"] == found.knee
+    point = front["points"][front["knee"]]
+    answer = client.post(
+        "/api/panel/indices", json={"study": DOCUMENT, "layouts": ["S3"], "values": {"S3": point["texts"]}}
+    )
+    values = {row["index"]: row["value"] for row in answer.json()["designs"][0]["results"]}
+    assert values == pytest.approx(point["values"], rel=1e-9)  # the search values by kernels, a design by itself
+
+
+def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
+    design, spread = {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}, {"c": 0.1, "b": 0.05}
+    body = {"study": DOCUMENT, "design": design, "index": "J1", "spread": spread, "samples": 64}
+    told = client.post("/api/panel/tolerance", json=body).json()
+    study = study_from(DOCUMENT)
+    car = study.design("S3").with_values({"c": 3000.0, "b": 60.0})
+    found = it.tolerance(car, study.index("J1"), it.Norm(), spread=spread, samples=64, seed=0)
+    assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total)
+    assert told["quantiles"]["0.95"] == found.quantile(0.95)
+    assert sum(told["histogram"]["counts"]) == found.values.size
+
+
+def test_tables_read_back_as_the_same(client: TestClient) -> None:
+    request = {"study": DOCUMENT, "layouts": ["S3"]}
+    panel = client.post("/api/panel/indices", json=request).json()["designs"][0]
+    rows = list(
+        csv.DictReader(io.StringIO(client.post("/api/export/csv", json={"panel": "indices", "request": request}).text))
+    )
+    assert [float(row["value"]) for row in rows] == [result["value"] for result in panel["results"]]
+    assert float(rows[0]["b [kg]"]) == panel["values"]["b"]["value"]
+    curves = client.post("/api/panel/response", json=request).json()
+    lines = client.post("/api/export/csv", json={"panel": "response", "request": request}).text.splitlines()
+    numbers = [list(map(float, line.split(","))) for line in lines[1:]]
+    assert [row[0] for row in numbers] == curves["frequency"]
+    assert [row[1] for row in numbers] == curves["curves"][0]["gain"]
+
+
+def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_path: Path) -> None:
+    record = it.VirtualRig(it.Inerter(113.0)).run(it.cosine(1e-3, 3.0), duration=2.0)
+    it.write_record(record, tmp_path / "device.csv")
+    sent = client.post(
+        "/api/records", params={"name": "device.csv"}, content=(tmp_path / "device.csv").read_bytes()
+    ).json()
+    body = {"kind": "identify", "records": [sent["id"]], "model": "ideal", "wait": 30}
+    told = client.post("/api/work", json=body).json()
+    assert told["state"] == "done", told
+    device = told["result"]["device"]
+    document = {
+        **DOCUMENT,
+        "elements": {**DOCUMENT["elements"], **device["elements"]},
+        "layouts": {**DOCUMENT["layouts"], "mine": f"k | c - ({device['layouts']['device']})"},
+    }
+    assert client.post("/api/study/check", json={"study": document}).json()["problems"] == []
+    client.delete(f"/api/records/{sent['id']}")
+
+
+@pytest.mark.parametrize("kind", ["networks", "improvement", "response-J1"])
+def test_pictures(client: TestClient, kind: str) -> None:
+    body = {"kind": kind, "study": DOCUMENT, "designs": [{"layout": "S1"}, {"layout": "S3"}]}
+    assert client.post("/api/figure", json=body).content.startswith(b"<?xml")
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_answer(client: TestClient, path: Path) -> None:
+    """Each example that is a study has indices, curves and a drawing of its car; others say what they are for."""
+    told = client.post("/api/study/read", json={"text": path.read_text(encoding="utf-8")}).json()
+    body = {"study": told["study"], "methods": ["norm"]}
+    for panel in ("indices", "response", "mechanism"):
+        answer = client.post(f"/api/panel/{panel}", json=body)
+        assert answer.status_code == (400 if told["problems"] else 200)
+    if told["problems"]:
+        assert any("inerter" in problem["sentence"] for problem in told["problems"])

@@ -1,0 +1,174 @@
+"""A real server, as the command line starts it: its link, where it listens, many connections, its end."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import resource
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from app.conftest import DOCUMENT, EXAMPLES
+
+import inerter as it
+from inerter.app.documents import study_from
+
+START = "from inerter.cli.start import main; main()"
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[httpx.Client, subprocess.Popen[str], Path]]:
+    """A client with the token, the process, and the folder that it puts its things in."""
+    home = tmp_path_factory.mktemp("home")
+    command = [sys.executable, "-c", START, "serve", str(EXAMPLES / "quarter-car.toml"), "--no-browser"]
+    environment = {**os.environ, "TMPDIR": str(home)}
+    environment.pop("INERTER_TOKEN", None)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
+    assert process.stdout is not None
+    link = process.stdout.readline().strip()
+    base, _, token = link.partition("/#token=")
+    with httpx.Client(base_url=base, headers={"Authorization": f"Bearer {token}"}, timeout=60.0) as client:
+        yield client, process, home
+    if process.poll() is None:
+        process.kill()
+    process.wait()
+    process.stdout.close()
+
+
+def listening(port: int) -> set[str]:
+    """The addresses of this machine on which something listens at a port."""
+    found = set()
+    for name, size in (("tcp", 8), ("tcp6", 32)):
+        for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]:
+            address, number = line.split()[1].split(":")
+            if line.split()[3] == "0A" and int(number, 16) == port:
+                found.add(address if size == 32 else socket.inet_ntoa(bytes.fromhex(address)[::-1]))
+    return found
+
+
+def test_it_answers_as_python_does(served: Any) -> None:
+    client, _, _ = served
+    assert re.fullmatch(r"http://127\.0\.0\.1:\d+/?", str(client.base_url))
+    start = client.get("/api/start").json()
+    assert start["name"] == "quarter-car.toml"
+    assert start["problems"] == []
+    about = client.get("/api/about").json()
+    assert about["version"] == it.__version__
+    design = {"layout": "S3", "values": {"c": 3000.0, "b": 50.0}}
+    answer = client.post(
+        "/api/panel/indices", json={"study": DOCUMENT, "designs": [design], "client": "a", "sequence": 1}
+    )
+    study = study_from(DOCUMENT)
+    car = study.design("S3").with_values(design["values"])
+    for row in answer.json()["designs"][0]["results"]:
+        assert row["value"] == it.evaluate(car, study.index(row["index"]), it.Norm()).value
+
+
+@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="no list of sockets")
+def test_nothing_listens_on_another_address(served: Any) -> None:
+    client, _, _ = served
+    assert listening(client.base_url.port) == {"127.0.0.1"}
+
+
+def test_others_are_refused(served: Any) -> None:
+    client, _, _ = served
+    assert client.get("/api/about", headers={"Authorization": ""}).status_code == 401
+    assert client.get("/api/about", headers={"Host": "evil.example"}).status_code == 403
+    assert client.get("/api/about", headers={"Origin": "http://evil.example"}).status_code == 403
+    with socket.create_connection(("127.0.0.1", client.base_url.port)) as raw:
+        raw.sendall(b"GET /../../../etc/passwd HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n" % client.base_url.port)
+        assert raw.recv(100).startswith(b"HTTP/1.1 404")
+    with socket.create_connection(("127.0.0.1", client.base_url.port)) as raw:
+        raw.sendall(b"\x16\x03\x01 nonsense\r\n\r\n")
+        assert raw.recv(100).startswith(b"HTTP/1.1 400")
+
+
+def test_a_thousand_connections_do_no_harm(served: Any) -> None:
+    """All are taken, those that say nothing too, and one more is answered soon."""
+    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard < 1200:
+        pytest.skip("this machine does not allow as many")
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+    client, process, _ = served
+    port = client.base_url.port
+    request = b"GET /api/start HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: %s\r\n\r\n"
+    token = client.headers["Authorization"].encode()
+    try:
+        with ExitStack() as stack:
+            several = [stack.enter_context(socket.create_connection(("127.0.0.1", port), 30.0)) for _ in range(1000)]
+            for connection in several[::2]:  # the others say nothing
+                connection.sendall(request % (port, token))
+            assert client.get("/api/start").status_code == 200
+            for connection in several[::2]:
+                assert connection.recv(20).startswith(b"HTTP/1.1 200")
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+    assert client.get("/api/start").status_code == 200
+    assert process.poll() is None
+
+
+def test_it_ends_and_leaves_nothing(served: Any) -> None:
+    """The last of these tests: an end in the midst of long work leaves no folder and no process behind."""
+    client, process, home = served
+    sweep = {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 10_000}}
+    work = client.post("/api/work", json={"kind": "sweep", "study": DOCUMENT, "sweep": sweep}).json()["id"]
+    deadline = time.monotonic() + 60.0
+    while client.get(f"/api/work/{work}").json()["done"] < 1 and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert client.get(f"/api/work/{work}").json()["state"] == "running"
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(20.0) == 0
+    assert list(home.glob("inerter-*")) == []
+    assert not [child for child in children if Path(f"/proc/{child}").exists()]
+
+
+def test_wrong_requests_of_the_command_line(tmp_path: Path) -> None:
+    """Each is one sentence and exit code 2, before anything is served."""
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        for arguments, words in (
+            ([str(tmp_path / "nothing.toml")], "no such file"),
+            (["--port", port], "cannot be taken"),
+            (["--port", "99999"], "65535"),
+            (["--limit", "0"], "bytes"),
+        ):
+            command = [sys.executable, "-c", START, "serve", "--no-browser", *arguments]
+            found = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
+            assert found.returncode == 2, found
+            assert words in found.stderr.lower()
+            assert len(found.stderr.strip().splitlines()) == 1
+
+
+def test_without_the_extra_there_is_a_sentence(tmp_path: Path) -> None:
+    program = (
+        "import sys; sys.modules['uvicorn'] = None; sys.modules['starlette'] = None; import inerter as it\n"
+        "try: it.serve(browser=False)\nexcept it.InerterError as error: print(error)"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60.0, check=False)
+    assert 'pip install "inerter[web]"' in found.stdout, found
+
+
+def test_the_command_line_loads_none_of_it() -> None:
+    program = (
+        "import sys, json\nfrom inerter.cli.main import call\n"
+        "for words in (['--help'], ['serve', '--help'], ['check', sys.argv[1]]): call(words)\n"
+        "print(json.dumps([name for name in sys.modules if name.split('.')[0] in ('starlette', 'uvicorn')"
+        " or (name.startswith('inerter.app.') and name != 'inerter.app.serve')]))"
+    )
+    command = [sys.executable, "-c", program, str(EXAMPLES / "quarter-car.toml")]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
+    assert json.loads(found.stdout.splitlines()[-1]) == []

@@ -1,0 +1,130 @@
+"""Long work: told as it goes on, stopped at its next check, and there again for a page that was loaded again."""
+
+from __future__ import annotations
+
+import json
+import time
+from typing import Any
+
+import pytest
+from app.conftest import DOCUMENT, changed
+from starlette.testclient import TestClient
+
+from inerter.app import jobs
+from inerter.app.kinds import KINDS, WorkKind
+
+LONG = changed(study={"sweep": {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 100_000}}, "indices": ["J1"]})
+
+
+def begin(client: TestClient, **body: Any) -> str:
+    return str(client.post("/api/work", json=body).json()["id"])
+
+
+def events(client: TestClient, number: str, last: str = "0") -> list[tuple[int, str, Any]]:
+    text = client.get(f"/api/work/{number}/events", headers={"Last-Event-ID": last}).text
+    found = []
+    for block in text.strip().split("\n\n") if text.strip() else []:
+        fields = dict(line.split(": ", 1) for line in block.split("\n"))
+        found.append((int(fields["id"]), fields["event"], json.loads(fields["data"])))
+    return found
+
+
+def until(client: TestClient, number: str, *states: str) -> Any:
+    deadline = time.monotonic() + 60.0
+    while (told := client.get(f"/api/work/{number}").json())["state"] not in states:
+        assert time.monotonic() < deadline, told
+        time.sleep(0.02)
+    return told
+
+
+def test_a_long_sweep_stops_at_its_next_check(client: TestClient) -> None:
+    number = begin(client, kind="run", study=LONG)
+    deadline = time.monotonic() + 60.0
+    while client.get(f"/api/work/{number}").json()["done"] < 2:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    asked = time.monotonic()
+    assert client.delete(f"/api/work/{number}").json()["state"] == "running"
+    told = until(client, number, "stopped")
+    assert time.monotonic() - asked < 5.0
+    assert 2 <= told["done"] < 100_000
+    found = events(client, number)
+    assert [event for _, event, _ in found[-1:]] == ["stopped"]
+    assert client.get(f"/api/work/{number}/result").status_code == 404
+    names = [row["name"] for row in client.get(f"/api/work/{number}/files").json()["files"]]
+    assert "journal.jsonl" in names  # what was computed is kept
+    after = client.post("/api/work", json={"kind": "compare", "study": DOCUMENT, "layouts": ["S1", "S3"], "wait": 30})
+    assert after.json()["state"] == "done"  # the queue goes on
+    assert client.delete(f"/api/work/{number}").json()["state"] == "forgotten"
+    assert client.get(f"/api/work/{number}").status_code == 404
+
+
+def test_a_page_that_is_loaded_again_sees_all(client: TestClient) -> None:
+    number = begin(client, kind="optimise", study=DOCUMENT, title="mine")
+    until(client, number, "done")
+    listed = {row["id"]: row for row in client.get("/api/work").json()["work"]}
+    assert (listed[number]["title"], listed[number]["done"], listed[number]["total"]) == ("mine", 4, 4)
+    found = events(client, number)
+    assert [event for _, event, _ in found][-1] == "done"
+    assert [data["done"] for _, event, data in found if event == "progress"] == sorted(
+        data["done"] for _, event, data in found if event == "progress"
+    )
+    middle = found[0][0]
+    assert events(client, number, str(middle)) == [one for one in found if one[0] > middle]
+    assert events(client, number, "nonsense") == found
+
+
+def test_work_that_waits_is_stopped_at_once(client: TestClient) -> None:
+    first, second = begin(client, kind="run", study=LONG), begin(client, kind="run", study=LONG)
+    assert client.delete(f"/api/work/{second}").json()["state"] == "stopped"
+    client.delete(f"/api/work/{first}")
+    until(client, first, "stopped")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"kind": "run", "study": {}},
+        {"kind": "run"},
+        {"kind": "sweep", "study": DOCUMENT},
+        {"kind": "sweep", "study": DOCUMENT, "sweep": {"zz": ["1 kg", "2 kg"]}},
+        {"kind": "compare", "study": DOCUMENT, "layouts": ["S1"]},
+        {"kind": "compare", "study": DOCUMENT, "designs": [{"layout": "S1"}] * 5},
+        {"kind": "identify"},
+        {"kind": "front", "study": DOCUMENT, "indices": ["J1"]},
+        {"kind": "optimise", "study": DOCUMENT, "layouts": ["S9"]},
+    ],
+)
+def test_work_that_cannot_be_done_has_a_sentence(client: TestClient, body: Any) -> None:
+    told = client.post("/api/work", json={**body, "wait": 30}).json()
+    assert told["state"] == "failed"
+    assert told["sentence"].strip().endswith((".", "?"))
+    assert events(client, told["id"])[-1][1] == "failed"
+
+
+def test_a_further_kind_is_one_row(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(KINDS, "count", WorkKind("count", "Counting", (), "app.test_work:count"))
+    told = client.post("/api/work", json={"kind": "count", "wait": 30}).json()
+    assert (told["state"], told["title"], told["result"]) == ("done", "Counting", {"counted": 3})
+
+
+def count(request: Any, folder: Any, tell: Any) -> Any:
+    for number in range(3):
+        tell(number, 3, "")
+    return {"counted": 3}
+
+
+def test_a_fault_is_told_and_the_queue_goes_on(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(KINDS, "fault", WorkKind("fault", "A fault", (), "app.test_work:nothing_of_that_name"))
+    told = client.post("/api/work", json={"kind": "fault", "wait": 30}).json()
+    assert told["state"] == "failed"
+    assert told["sentence"]
+    assert client.post("/api/work", json={"kind": "optimise", "study": DOCUMENT, "wait": 30}).json()["state"] == "done"
+
+
+def test_only_so_much_work_is_kept(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(jobs, "_MOST", 3)
+    numbers = [begin(client, kind="run", study={}, wait=20) for _ in range(5)]
+    there = [row["id"] for row in client.get("/api/work").json()["work"]]
+    assert there[-1] == numbers[-1]
+    assert len(there) <= 3

@@ -1,0 +1,134 @@
+"""Indices over operating conditions: against each condition by itself, gradients against differences, optima."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from strategies import paper_quarter_car
+
+import inerter as it
+from inerter.methods.asking import objective_of
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
+NORM = it.Norm()
+USE = it.Conditions(
+    [
+        it.Condition(3.0, road={"speed": 15.0}),
+        it.Condition(5.0, road={"speed": 30.0}, vehicle={"sprung_mass": 240.0, "k": 9e4}),
+        it.Condition(2.0, road=it.Road(roughness=2e-6, speed=10.0), vehicle={"tyre_stiffness": 1.5e5}, name="laden"),
+    ]
+)
+
+
+def car():
+    return paper_quarter_car(
+        it.Spring(1.2e5) | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b"))
+    )
+
+
+def by_hand(index, design):
+    """The values in the three conditions."""
+    on = lambda road: dataclasses.replace(index, road=road) if hasattr(index, "road") else index  # noqa: E731
+    heavy = dataclasses.replace(design, sprung_mass=240.0)
+    damper = design.strut.parts[1]
+    heavy = dataclasses.replace(heavy, strut=it.Spring(9e4) | damper)
+    stiff = dataclasses.replace(design, tyre_stiffness=1.5e5)
+    roads = [it.Road(5e-7, 15.0), it.Road(5e-7, 30.0), it.Road(2e-6, 10.0)]
+    cars = [design, heavy, stiff]
+    return [it.evaluate(one, on(road), NORM).value for one, road in zip(cars, roads, strict=True)]
+
+
+@pytest.mark.parametrize("index", [J1, J3, J5], ids=["J1", "J3", "J5"])
+def test_mean_and_worst_are_those_of_the_conditions(index):
+    rng = np.random.default_rng(0)
+    points = {"c": rng.uniform(1e3, 2e4, 4), "b": rng.uniform(10.0, 1e3, 4)}
+    many = it.evaluate_many(car(), [USE.mean(index), USE.worst(index), index], points, NORM)
+    for i in range(4):
+        design = car().with_values({name: float(column[i]) for name, column in points.items()})
+        values = by_hand(index, design)
+        expected = [np.dot([0.3, 0.5, 0.2], values), max(values), it.evaluate(design, index, NORM).value]
+        assert many[i] == pytest.approx(expected, rel=1e-9)
+        for over, value in zip((USE.mean(index), USE.worst(index)), expected, strict=False):
+            assert it.evaluate(design, over, NORM).value == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("index", [J1, J5], ids=["J1", "J5"])
+@pytest.mark.parametrize("worst", [False, True])
+def test_gradients_over_conditions(index, worst):
+    objective = objective_of(car(), USE.worst(index) if worst else USE.mean(index), NORM)
+    point = np.array([7e3, 400.0])
+    which = objective.active(point)
+    if which is None:
+        value, gradient = objective.value_and_gradient(point)
+    else:
+        values, gradients = objective.components(point, which)
+        value, gradient = values[0], gradients[0]
+        assert values[0] == values.max()
+    assert value == pytest.approx(float(objective.values(point[None])[0]), rel=1e-9)
+    for i in range(2):
+        step = np.where(np.arange(2) == i, 1e-5, 0.0)
+        up, down = objective.values(np.array([point * (1.0 + step), point * (1.0 - step)]))
+        assert gradient[i] * point[i] / value == pytest.approx((up - down) / 2e-5 / value, abs=2e-5)
+
+
+@pytest.mark.parametrize("over", [USE.mean(J1), USE.worst(J1), USE.mean(J5), USE.worst(J5)])
+def test_optima_over_conditions(over):
+    best = it.optimise(car(), over, NORM)
+    assert best.status.ok
+    assert best.agreed > best.starts // 2
+    rng = np.random.default_rng(1)
+    near = {
+        n: np.minimum(v * np.exp(rng.normal(0.0, 0.1, 500)), 2e3 if n == "b" else 1e5)
+        for n, v in best.parameters.items()
+    }
+    assert np.nanmin(it.evaluate_many(car(), over, near, NORM)) >= best.value * (1.0 - 1e-8)
+
+
+def test_a_limit_over_conditions():
+    free = it.optimise(car(), USE.mean(J1), NORM)
+    least = it.optimise(car(), USE.worst(J5), NORM).value
+    here = it.evaluate(free.design, USE.worst(J5), NORM).value
+    limit = it.at_most(USE.worst(J5), float(np.sqrt(least * here)))
+    best = it.optimise(car(), USE.mean(J1), NORM, subject_to=[limit])
+    assert best.limits[0].value == pytest.approx(limit.value, rel=1e-6)
+    assert best.value > free.value
+
+
+def test_simulated_means_have_errors():
+    design = paper_quarter_car(it.Spring(1.2e5) | it.Damper(7e3) - (it.Inerter(300.0) | it.Friction(20.0)))
+    use = it.Conditions([it.Condition(1.0, road={"speed": 15.0}), it.Condition(3.0, vehicle={"sprung_mass": 240.0})])
+    method = it.ExpectedValue(realisations=4, seed=0)
+    found = it.evaluate(design, use.mean(J1), method)
+    one = it.evaluate(design, it.RideComfort(it.Road(5e-7, 15.0)), method)
+    other = it.evaluate(dataclasses.replace(design, sprung_mass=240.0), J1, method)
+    assert found.value == pytest.approx(0.25 * one.value + 0.75 * other.value, rel=1e-12)
+    assert found.standard_error == pytest.approx(0.25 * one.standard_error + 0.75 * other.standard_error, rel=1e-12)
+    two = it.compare(design, dataclasses.replace(design, unsprung_mass=30.0), use.mean(J1), method)
+    assert two.difference.standard_error < found.standard_error
+    worst = it.evaluate(design, use.worst(J1), method)
+    assert worst.value == max(one.value, other.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (lambda: it.Conditions([]), "at least one"),
+        (lambda: it.Conditions(J1), "are a list of Condition"),
+        (lambda: it.Condition(0.0), "positive number, got 0.0"),
+        (lambda: it.Condition(road={"sped": 3.0}), "numbers of one by name"),
+        (lambda: it.Condition(road="B"), "The road of a condition"),
+        (lambda: it.Condition(vehicle=3.0), "numbers of the vehicle by name"),
+        (lambda: USE.mean("J1"), "Expected an index"),
+        (
+            lambda: it.optimise(car(), it.Conditions([it.Condition(vehicle={"mass": 1.0})]).mean(J1), NORM),
+            "nothing named",
+        ),
+        (lambda: it.optimise(car(), it.Conditions([it.Condition(vehicle={"k": "a"})]).mean(J1), NORM), "finite number"),
+    ],
+)
+def test_conditions_that_cannot_be(given, said):
+    with pytest.raises(it.InerterError, match=said):
+        given()

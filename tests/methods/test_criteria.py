@@ -1,0 +1,273 @@
+"""The named criteria: each by the norm, by quadrature of a response that knows no states, and by simulation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from campaigns import in_parts
+from filtered import iso_2631_wk
+from nodal import Nodal
+from quadrature import h2_by_quadrature
+from random_mechanisms import FAMILIES, mechanisms
+from strategies import paper_half_car
+
+import inerter as it
+from inerter import Damper, Friction, Inerter, Spring
+from inerter.errors import InerterError, PerformanceIndexError
+from inerter.indices.iso2631 import WEIGHTINGS, weighting_filter
+from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.norms.response import frequency_response
+
+ROAD = it.Road.iso8608("B", speed=25.0)
+
+# Factors (times 1000) at the nominal frequencies of ISO 2631-1:1997, Table 3.
+FREQUENCIES = [0.1, 0.125, 0.16, 0.2, 0.25, 0.315, 0.4, 0.5, 0.63, 0.8, 1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8, 10]
+FREQUENCIES += [12.5, 16, 20, 25, 31.5, 40, 50, 63, 80, 100, 125, 160, 200, 250, 315, 400]
+TABLE = {
+    "Wk": [31.2, 48.6, 79.0, 121, 182, 263, 352, 418, 459, 477, 482, 484, 494, 531, 631, 804, 967, 1039, 1054, 1036],
+    "Wd": [62.4, 97.3, 158, 243, 365, 530, 713, 853, 944, 992, 1011, 1008, 968, 890, 776, 642, 512, 409, 323, 253],
+    "Wf": [695, 895, 1006, 992, 854, 619, 384, 224, 116, 53.0, 23.5, 9.98, 3.77, 1.55, 0.64, 0.25, 0.097],
+}
+TABLE["Wk"] += [988, 902, 768, 636, 513, 405, 314, 246, 186, 132, 88.7, 54.0, 28.5, 15.2, 7.90, 3.98, 1.95]
+TABLE["Wd"] += [212, 161, 125, 100, 80.0, 63.2, 49.4, 38.8, 29.5, 21.1, 14.1, 8.63, 4.55, 2.43, 1.26, 0.64, 0.31]
+LOW = {0.02: 24.2, 0.025: 37.7, 0.0315: 59.7, 0.04: 97.1, 0.05: 157.0, 0.063: 267.0, 0.08: 461.0}  # of Wf
+
+
+def decibels(ratio: np.ndarray) -> np.ndarray:
+    return np.abs(20.0 * np.log10(ratio))
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_weightings_are_those_of_the_table(name: str) -> None:
+    """The standard allows 1 dB within the nominal band and 2 dB beyond; factors have two or three digits."""
+    found = np.abs(frequency_response(it.iso2631(name), 2.0 * np.pi * np.array(FREQUENCIES))[:, 0, 0])
+    off = decibels(found[: len(TABLE[name])] / (0.001 * np.array(TABLE[name])))
+    assert off.max() < 0.5
+    assert np.median(off) < 0.05
+    if name == "Wf":
+        low = np.abs(frequency_response(it.iso2631(name), 2.0 * np.pi * np.array(list(LOW)))[:, 0, 0])
+        assert decibels(low / (0.001 * np.array(list(LOW.values())))).max() < 0.2
+
+
+@pytest.mark.parametrize("name", WEIGHTINGS)
+def test_a_weighting_is_the_same_as_system_and_as_filter(name: str) -> None:
+    omega = 2.0 * np.pi * np.geomspace(0.01, 1000.0, 200)
+    system, exact = frequency_response(it.iso2631(name), omega)[:, 0, 0], weighting_filter(name).response(omega)
+    np.testing.assert_allclose(system, exact, rtol=1e-12)
+    if name == "Wk":
+        np.testing.assert_allclose(exact, iso_2631_wk().response(omega), rtol=1e-12)
+
+
+def test_the_weighted_values_of_a_signal() -> None:
+    """A sine that has settled: r.m.s. value, its largest over 1 s, and the dose, which is (3/8 T)^(1/4) of the peak."""
+    time = np.arange(0.0, 100.0, 2e-3)
+    for name, frequency in (("Wk", 5.0), ("Wd", 2.0), ("We", 1.0), ("Wf", 0.2)):
+        felt = it.weighted(time, 0.7 * np.sin(2.0 * np.pi * frequency * time), name)
+        peak = 0.7 * float(np.abs(weighting_filter(name).response([2.0 * np.pi * frequency]))[0])
+        assert felt.rms == pytest.approx(peak / math.sqrt(2.0), rel=0.03)
+        if name != "Wf":  # a second of a slow sine is a part of a wave
+            assert felt.mtvv == pytest.approx(peak / math.sqrt(2.0), rel=0.1)
+        assert felt.vdv == pytest.approx((0.375 * 100.0) ** 0.25 * peak, rel=0.03)
+        assert felt.values.shape == time.shape
+
+
+def test_a_simulation_is_felt_as_the_norm_says() -> None:
+    strut = Spring(25e3) | Damper(1500.0)
+    car = it.QuarterCar(sprung_mass=250, unsprung_mass=35, tyre_stiffness=180e3, strut=strut)
+    wanted = it.evaluate(car, it.RideComfort(ROAD, weighting="Wk"), it.Norm()).value
+    found = []
+    for seed in range(6):
+        road = it.multisine(ROAD, seed, lowest=0.05, highest=200.0)
+        run = it.simulate(car, road=road, duration=40.0, step=1e-3)
+        late = run.time >= 20.0  # what is left of the beginning has died out
+        felt = it.weighted(run.time, run["sprung_acceleration"])
+        found.append(np.mean(felt.values[late] ** 2))
+    error = np.std(found, ddof=1) / math.sqrt(len(found))
+    assert abs(np.mean(found) - wanted**2) < 4.0 * error + 0.01 * wanted**2
+
+
+BAD_SIGNALS = {
+    "text": (("a", "b"), "two lists of numbers"),
+    "unlike": (([0.0, 1.0, 2.0], [1.0]), "as many finite numbers"),
+    "nan": (([0.0, 1.0], [1.0, math.nan]), "as many finite numbers"),
+    "uneven": (([0.0, 1.0, 3.0], [1.0, 1.0, 1.0]), "even steps"),
+    "backwards": (([2.0, 1.0, 0.0], [1.0, 1.0, 1.0]), "even steps"),
+    "short": (([0.0, 0.1], [1.0, 1.0]), "lasts 1 s at least"),
+    "weighting": (([0.0, 1.0], [1.0, 1.0], "Wx"), "no weighting 'Wx'"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_SIGNALS)
+def test_signals_that_cannot_be_weighted_are_refused_in_a_sentence(case: str) -> None:
+    given, words = BAD_SIGNALS[case]
+    with pytest.raises(PerformanceIndexError, match=words) as caught:
+        it.weighted(*given)  # type: ignore[arg-type]
+    assert str(caught.value).endswith((".", ")."))
+
+
+def criteria(rng: np.random.Generator, mechanism: it.Mechanism) -> list[object]:
+    """Those that the mechanism has an answer for."""
+    labels = [e.label for mount in mechanism.mounts() for e in mount.network.elements()]
+    alone = [
+        label for label in labels if labels.count(label) == 1 and label not in {m.name for m in mechanism.mounts()}
+    ]
+    found: list[object] = [it.SuspensionTravel(ROAD), it.DynamicLoadCoefficient(ROAD)]
+    found += [it.RideComfort(ROAD, weighting=name) for name in ("Wk", "Wd", "Wf")]
+    if alone:
+        element = str(rng.choice(alone))
+        found += [kind(ROAD, element) for kind in (it.ElementForce, it.ElementStroke, it.ElementVelocity)]
+    return [index for index in found if answers(mechanism, index)]
+
+
+def answers(mechanism: it.Mechanism, index: object) -> bool:
+    try:
+        linear_problem(mechanism, index.question(mechanism), CONVENTIONS["exact"])  # type: ignore[attr-defined]
+    except InerterError:
+        return False
+    return True
+
+
+def gain(nodal: Nodal, output: str, source: str) -> np.ndarray:
+    """From dynamic stiffness; those of elements from the motion of their ends."""
+    label, _, what = output.rpartition("_")
+    numbers = [i for i, (element, *_) in enumerate(nodal.elements) if element.label == label]
+    if what not in ("force", "stroke", "velocity") or not numbers or label in nodal.coordinates:
+        return nodal.response(output, source)
+    stretched = nodal._elongation(numbers[0], nodal.inputs.index(source)) / nodal.s
+    return stretched * {"force": nodal.placed[numbers[0]][0], "stroke": 1.0, "velocity": nodal.s}[what]
+
+
+def by_quadrature(mechanism: it.Mechanism, index: object) -> float:
+    question = index.question(mechanism)  # type: ignore[attr-defined]
+    arrivals = question.arrivals(mechanism)
+    sizes = []
+    for weighted, passed in zip(question.outputs, question.filters, strict=True):
+
+        def response(omega, name=weighted.output, passed=passed):
+            nodal = Nodal(mechanism, omega)
+            across = np.array([gain(nodal, name, arrival.input) for arrival in arrivals], complex).T
+            return across if passed is None else across * passed.response(omega)[:, None]
+
+        delays = [arrival.delay for arrival in arrivals]
+        sizes.append(abs(weighted.weight) * h2_by_quadrature(response, delays, edge=4000.0))
+    together = question.combination is it.Combination.ROOT_OF_SQUARES
+    return question.drive.size * (math.sqrt(sum(x**2 for x in sizes)) if together else sum(sizes))
+
+
+def is_damped(mechanism: it.Mechanism) -> bool:
+    """Enough for a quadrature with equal panels."""
+    poles = np.linalg.eigvals(it.assemble(mechanism).A)
+    moving = poles[np.abs(poles) > 1e-9 * np.abs(poles).max()]
+    return bool(
+        np.all(-moving.real > 0.02 * np.abs(moving)) and 0.1 < np.abs(moving).min() < np.abs(moving).max() < 3e3
+    )
+
+
+@pytest.mark.parametrize("seed", [0, *in_parts(range(1, 13), 4)])
+def test_each_criterion_is_the_integral_of_its_response(seed: int) -> None:
+    """On random mechanisms, 100 in all, that are damped enough for a quadrature."""
+    mechanisms_looked_at, kinds = 0, set()
+    for family in FAMILIES:
+        rng = np.random.default_rng([seed, *family.encode()])
+        damped = (made for made in mechanisms(family, seed, 12, 1.0) if answers(made, it.TyreLoad(ROAD)))
+        for mechanism in [made for made in damped if is_damped(made)][:2]:
+            mechanisms_looked_at += 1
+            for index in criteria(rng, mechanism):
+                found = it.evaluate(mechanism, index, it.Norm())  # type: ignore[arg-type]
+                if not found.status.ok:
+                    continue
+                assert found.value == pytest.approx(by_quadrature(mechanism, index), rel=1e-7)
+                kinds.add(type(index))
+    assert mechanisms_looked_at >= 5
+    assert len(kinds) >= 4
+
+
+@pytest.mark.parametrize("weighting", ["Wk", "Wd"])
+def test_weighted_comfort_of_a_half_car_and_its_gradient(weighting: str) -> None:
+    """Pitch counts times 0.4 m/rad through We; the parts are put together as the root of their squares."""
+    car = paper_half_car(Spring(60e3) | Damper(it.free(500.0, 9e3, "c")), Spring(50e3) | Damper(2e3) - Inerter(90.0))
+    index, point = it.RideComfort(ROAD, weighting=weighting), np.array([2000.0])
+    fixed = car.with_values({"c": 2000.0}).mechanism()
+    question = index.question(fixed)
+    assert [(w.output, w.weight) for w in question.outputs] == [
+        ("sprung_acceleration", 1.0),
+        ("pitch_acceleration", 0.4),
+    ]
+    assert question.filters == (weighting_filter(weighting), weighting_filter("We"))
+    expected = by_quadrature(fixed, index)
+    objective = it.Norm().objective(car, index)
+    value, gradient = objective.value_and_gradient(point)
+    assert value == pytest.approx(expected, rel=1e-8)
+    assert it.evaluate(fixed, index, it.Norm()).value == pytest.approx(expected, rel=1e-8)
+    ahead, behind = (by_quadrature(car.with_values({"c": c}).mechanism(), index) for c in (2002.0, 1998.0))
+    assert gradient[0] == pytest.approx((ahead - behind) / 4.0, rel=1e-5)
+
+
+def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
+    car = paper_half_car(Spring(60e3) | Damper(2e3), Spring(50e3) | Damper(2e3)).mechanism()
+    sick = it.RideComfort(ROAD, weighting="Wf").question(car)
+    assert [w.output for w in sick.outputs] == ["sprung_acceleration"]
+    yaw = replace(car, measures=replace(car.measures, comfort=(it.Weighted("front_travel"),)))
+    with pytest.raises(PerformanceIndexError, match="weighs accelerations"):
+        it.RideComfort(ROAD, weighting="Wk").question(yaw)
+    strut = it.Strut("s", Spring(1e3) | Damper(10.0), upper={"tilt": 1.0}, lower={})
+    tilting = it.Mechanism(
+        (it.Coordinate("tilt", 1.0, angle=True),),
+        (strut,),
+        measures=it.Measures(comfort=(it.Weighted("tilt_acceleration"),)),
+    )
+    with pytest.raises(PerformanceIndexError, match=r"weighs pitch and roll.*'tilt'"):
+        it.RideComfort(it.WhiteForce("f", 1.0), weighting="Wk").question(tilting)
+    for wrong in ("We", "Wx", 3):
+        with pytest.raises(PerformanceIndexError, match=r"Wk, Wd"):
+            it.RideComfort(ROAD, weighting=wrong)  # type: ignore[arg-type]
+
+
+def test_travel_is_that_of_struts_at_one_wheel() -> None:
+    strut = Spring(25e3) | Damper(1500.0)
+    car = it.FullCar(
+        sprung_mass=1400, pitch_inertia=2400, roll_inertia=520, unsprung_mass_front=45, unsprung_mass_rear=40,
+        tyre_stiffness_front=220e3, tyre_stiffness_rear=220e3, distance_front=1.2, distance_rear=1.5, track_front=1.52,
+        track_rear=1.5, front=strut, rear=strut, anti_roll_front=Spring(8e3), anti_roll_rear=Spring(5e3),
+    )  # fmt: skip
+    asked = it.SuspensionTravel(ROAD).question(it.Seat(car, 70.0, Spring(8e3) | Damper(300.0)).mechanism())
+    sides = [f"{axle}_{side}_travel" for axle in ("front", "rear") for side in ("left", "right")]
+    assert [w.output for w in asked.outputs] == sides
+
+
+def test_the_load_coefficient_is_the_load_over_what_stands_on_the_tyre() -> None:
+    car = it.QuarterCar(sprung_mass=250, unsprung_mass=35, tyre_stiffness=180e3, strut=Spring(25e3) | Damper(1500.0))
+    load, part = (it.evaluate(car, kind(ROAD), it.Norm()).value for kind in (it.TyreLoad, it.DynamicLoadCoefficient))
+    assert part == pytest.approx(load / (285.0 * 9.80665), rel=1e-12)
+    loose = it.QuarterCar(sprung_mass=250, unsprung_mass=35, tyre_stiffness=180e3, strut=Damper(1500.0))
+    with pytest.raises(PerformanceIndexError, match="not known"):
+        it.evaluate(loose, it.DynamicLoadCoefficient(ROAD), it.Norm())
+
+
+CAR = it.QuarterCar(
+    sprung_mass=250, unsprung_mass=35, tyre_stiffness=180e3,
+    strut=Spring(25e3, "k") | (Damper(1500.0, "c") - Inerter(80.0, "b")) | Friction(8.0, "f"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["k_stroke", "k_force", "c_velocity", "b_force"])
+def test_what_a_trajectory_calls_an_output_can_be_asked_for(name: str) -> None:
+    """By simulation, against the same motion's samples."""
+    label, _, what = name.partition("_")
+    kind = {"stroke": it.ElementStroke, "force": it.ElementForce, "velocity": it.ElementVelocity}[what]
+    named, free = kind(ROAD, label), it.RandomResponse({name: 1.0}, ROAD)
+    for method in (it.Norm(), it.ExpectedValue(realisations=2)):
+        one, other = (it.evaluate(CAR, index, method) for index in (named, free))
+        assert one.value == other.value
+        assert one.unit == other.unit
+    assert it.evaluate(CAR, named, it.StatisticalLinearisation()).value == pytest.approx(one.value, rel=0.05)
+
+
+def test_elements_that_are_not_there_are_refused_with_those_that_are() -> None:
+    with pytest.raises(PerformanceIndexError, match=r"no element named 'q' \(there are: k, c, b, f"):
+        it.evaluate(CAR, it.ElementForce(ROAD, "q"), it.Norm())
+    with pytest.raises(PerformanceIndexError, match="stroke of 'c' is not known"):
+        it.evaluate(CAR, it.ElementStroke(ROAD, "c"), it.Norm())

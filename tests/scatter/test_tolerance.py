@@ -1,0 +1,195 @@
+"""Designs that scatter: against plain random numbers, closed forms, and searches of another kind."""
+
+from __future__ import annotations
+
+import dataclasses
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import scipy.optimize
+from strategies import paper_quarter_car
+
+import inerter as it
+from inerter.methods.asking import objective_of
+from inerter.scatter.spread import scatter_of
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
+NORM = it.Norm()
+
+
+def fixed(c=7544.2, b=366.5):
+    return paper_quarter_car(it.Spring(1.2e5) | it.Damper(c) - it.Inerter(b))
+
+
+def free():
+    return paper_quarter_car(
+        it.Spring(1.2e5) | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b"))
+    )
+
+
+@pytest.mark.parametrize("distribution", ["uniform", "normal"])
+def test_the_distribution_is_that_of_plain_random_numbers(distribution):
+    spread = {"c": 0.3, "b": 0.2, "k": 0.1}
+    found = it.tolerance(fixed(), J1, NORM, spread=spread, samples=1024, distribution=distribution)
+    rng, count = np.random.default_rng(5), 40_000
+    factors = {}
+    for name, part in spread.items():
+        if distribution == "uniform":
+            factors[name] = 1.0 + part * rng.uniform(-1.0, 1.0, count)
+        else:
+            drawn = rng.normal(0.0, part / 3.0, 2 * count)
+            factors[name] = 1.0 + drawn[np.abs(drawn) <= part][:count]
+    own = {"c": 7544.2, "b": 366.5, "k": 1.2e5}
+    car = paper_quarter_car(
+        it.Spring(it.free(1e3, 1e6, "k")) | it.Damper(it.free(1.0, 1e5, "c")) - it.Inerter(it.free(1.0, 1e4, "b"))
+    )
+    values = it.evaluate_many(car, J1, {n: own[n] * f for n, f in factors.items()}, NORM)[:, 0]
+    error = values.std() / np.sqrt(count)
+    assert abs(found.mean - values.mean()) <= 5.0 * error
+    assert found.standard_deviation == pytest.approx(values.std(), rel=0.02)
+    for share in (0.05, 0.5, 0.95):
+        assert found.quantile(share) == pytest.approx(np.quantile(values, share), abs=20.0 * error)
+    assert found.worst >= values.max() * (1.0 - 1e-9)
+    assert found.nominal.value == it.evaluate(fixed(), J1, NORM).value
+    worst = fixed(found.worst_values["c"], found.worst_values["b"])
+    worst = dataclasses.replace(worst, strut=it.Spring(found.worst_values["k"]) | worst.strut.parts[1])
+    assert it.evaluate(worst, J1, NORM).value == pytest.approx(found.worst, rel=1e-9)
+
+
+def test_effects_are_those_of_a_product():
+    """The static stiffness of springs in series and parallel against exact integrals of variances."""
+    parts = {"k1": 0.2, "k2": 0.1}
+    strut = it.Spring(1e5, "k1") | it.Spring(2e5, "k2") | it.Damper(3e3)
+    found = it.tolerance(paper_quarter_car(strut), it.static_stiffness("strut"), NORM, spread=parts, samples=4096)
+    variances = {"k1": (1e5 * 0.2) ** 2 / 3.0, "k2": (2e5 * 0.1) ** 2 / 3.0}
+    whole = sum(variances.values())
+    for name, variance in variances.items():
+        assert found.main[name] == pytest.approx(variance / whole, abs=0.01)
+        assert found.total[name] == pytest.approx(variance / whole, abs=0.01)
+    assert found.mean == pytest.approx(3e5, rel=1e-4)
+    assert found.standard_deviation == pytest.approx(np.sqrt(whole), rel=5e-3)
+    assert found.worst == pytest.approx(1.2e5 + 2.2e5, rel=1e-12)
+
+
+def found_again(executor=None):
+    spread = {"c": 0.1, "sprung_mass": 0.1}
+    return it.tolerance(fixed(), J1, NORM, spread=spread, samples=16, executor=executor)
+
+
+def test_quantities_of_the_vehicle_scatter_one_by_one():
+    found = it.tolerance(fixed(), J1, NORM, spread={"sprung_mass": 0.1, "c": 0.1}, samples=16)
+    top = found.worst_values
+    car = dataclasses.replace(fixed(c=top["c"]), sprung_mass=top["sprung_mass"])
+    assert it.evaluate(car, J1, NORM).value == pytest.approx(found.worst, rel=1e-9)
+    alike = it.tolerance(fixed(), J1, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
+    mechanism = it.tolerance(fixed().mechanism(), J1, NORM, spread={"c": 0.1, "sprung": 0.1}, samples=16)
+    assert mechanism.values == pytest.approx(found_again().values, rel=1e-9)
+    strut = it.tolerance(fixed().mechanism(), J1, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
+    assert strut.values == pytest.approx(alike.values, rel=1e-9)
+    with ThreadPoolExecutor(2) as pool:
+        assert np.array_equal(found_again(pool).values, found_again().values)
+
+
+def test_a_design_whose_index_is_not_known_somewhere():
+    car = paper_quarter_car(it.Spring(1.2e5) | it.Damper(it.free(1.0, 2.0, "c")))
+    found = it.tolerance(car.with_values({"c": 1.5}), J1, NORM, spread={"c": 0.1}, samples=16)
+    assert found.status.ok
+    friction = paper_quarter_car(it.Spring(1.2e5) | it.Friction(1e4) - it.Spring(1e5) | it.Damper(1e-9))
+    lost = it.tolerance(friction, J1, it.StatisticalLinearisation(), spread={"f": 0.5}, samples=16)
+    assert lost.status.ok == bool(np.isfinite(lost.mean))
+    assert np.isfinite(lost.worst) == lost.status.ok
+
+
+@pytest.mark.parametrize("index", [J1, J3])
+def test_gradients_of_a_quantile(index):
+    of = it.Quantile(index, scatter_of({"c": 0.3, "b": 0.2, "k": 0.1}, "uniform"), samples=64)
+    objective, point = objective_of(free(), of, NORM), np.array([6e3, 300.0])
+    value, gradient = objective.value_and_gradient(point)
+    assert value == pytest.approx(it.evaluate(free().with_values({"c": 6e3, "b": 300.0}), of, NORM).value, rel=1e-9)
+    for i in range(2):
+        step = np.where(np.arange(2) == i, 1e-6, 0.0)
+        up, down = objective.values(np.array([point * (1.0 + step), point * (1.0 - step)]))
+        assert gradient[i] * point[i] / value == pytest.approx((up - down) / 2e-6 / value, abs=1e-5)
+
+
+def test_the_robust_design_is_best_at_its_quantile():
+    spread = {"c": 0.4, "b": 0.4}
+    found = it.robust(free(), J1, NORM, spread=spread, samples=32, starts=2)
+    of = it.Quantile(J1, scatter_of(spread, "uniform"), samples=32)
+
+    def at(x):
+        return it.evaluate(free().with_values(dict(zip(("c", "b"), np.exp(x).tolist(), strict=True))), of, NORM).value
+
+    other = scipy.optimize.minimize(
+        at, np.log([9e3, 300.0]), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-8, "maxfev": 60}
+    )
+    assert found.value <= other.fun * (1.0 + 1e-5)
+    best = it.optimise(free(), J1, NORM)
+    worse, robust = (
+        it.tolerance(design, J1, NORM, spread=spread, samples=256).quantile(0.95)
+        for design in (best.design, found.design)
+    )
+    assert robust < worse
+    assert best.value < found.value
+
+
+def test_the_quantile_is_that_of_a_known_distribution():
+    """A stiffness that is evenly spread between 0.8 and 1.2 of its value has its 95 % quantile at 1.18."""
+    of = it.Quantile(it.static_stiffness("strut"), scatter_of({"k": 0.2}, "uniform"), samples=1024)
+    found = it.evaluate(paper_quarter_car(it.Spring(1e5) | it.Damper(1e3)), of, NORM)
+    assert found.value == pytest.approx(1.18e5, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"spread": {}}, "needs a spread"),
+        ({"spread": {"c": 0.0}}, "between 0 and 1"),
+        ({"spread": {"c": 1.0}}, "between 0 and 1"),
+        ({"spread": {"c": "10 %"}}, "between 0 and 1"),
+        ({"spread": ["c"]}, "maps names"),
+        ({"spread": {"d": 0.1}}, "nothing named 'd'"),
+        ({"samples": 100}, "power of two"),
+        ({"samples": 8}, "power of two"),
+        ({"seed": -1}, "seed is a whole number"),
+        ({"distribution": "cauchy"}, "'uniform' or 'normal'"),
+        ({"design": free()}, "still has free values"),
+        ({"index": "J1"}, "Expected an index"),
+    ],
+)
+def test_tolerances_that_cannot_be(given, said):
+    asked = {"design": fixed(), "index": J1, "method": NORM, "spread": {"c": 0.1}, **given}
+    with pytest.raises(it.InerterError, match=said):
+        it.tolerance(**asked)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"spread": {"sprung_mass": 0.1}}, "only values of elements"),
+        ({"quantile": 1.0}, "between 0 and 1"),
+        ({"samples": 15}, "power of two"),
+        ({"vehicle": fixed()}, "Nothing to optimise"),
+    ],
+)
+def test_robust_designs_that_cannot_be(given, said):
+    asked = {"vehicle": free(), "index": J1, "method": NORM, "spread": {"c": 0.1}, **given}
+    with pytest.raises(it.InerterError, match=said):
+        it.robust(**asked)
+
+
+def test_shares_of_a_quantile():
+    found = it.tolerance(fixed(), J1, NORM, spread={"c": 0.1}, samples=16)
+    assert found.quantile(0.0) == found.values.min()
+    with pytest.raises(it.InerterError, match="between 0 and 1"):
+        found.quantile(1.5)
+    with pytest.raises(it.InerterError, match="is 0, and cannot scatter"):
+        it.tolerance(
+            paper_quarter_car(it.Spring(1e5) | it.Damper(1e3) | it.Friction(0.0)),
+            J1,
+            NORM,
+            spread={"f": 0.1},
+            samples=16,
+        )

@@ -1,0 +1,255 @@
+"""Fronts: ends against single optima, points against many random designs, spread, jumps, limits, hypervolume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from strategies import paper_quarter_car, random_half_car, random_quarter_car
+
+import inerter as it
+from inerter.methods.sampled import SampledObjective
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
+NORM = it.Norm()
+
+
+@dataclass(frozen=True)
+class WithoutGradients(it.Norm):
+    """Norms of which a search knows the values alone, as of what is simulated."""
+
+    def objective(self, vehicle, index):
+        return SampledObjective(self.estimate, vehicle, index)
+
+
+def strut(kind):
+    damper, inerter = it.Damper(it.free(100.0, 1e5, "c")), it.Inerter(it.free(1.0, 3e3, "b"))
+    spring = it.Spring(it.free(3e4, 3e5, "k"))
+    return {
+        "S2": it.Spring(8e4) | damper | inerter,
+        "S3": it.Spring(8e4) | damper - inerter,
+        "S1 k": spring | damper,
+        "S3 k": spring | damper - inerter,
+        "four": spring | damper - inerter - it.Spring(it.free(1e5, 1e6, "k1")),
+    }[kind]
+
+
+def random_designs(car, indices, count, seed=0, around=()):
+    """Values of random designs between the bounds, or around some."""
+    rng, free = np.random.default_rng(seed), car.free_values()
+    if around:
+        which = rng.integers(len(around), size=count)
+        spread = 10.0 ** rng.uniform(-4.0, -0.5, count)
+        points = {
+            name: np.clip(
+                np.array([one[name] for one in around])[which] * np.exp(spread * rng.normal(size=count)),
+                bounds.lower,
+                bounds.upper,
+            )
+            for name, bounds in free.items()
+        }
+    else:
+        points = {n: np.exp(rng.uniform(np.log(v.lower), np.log(v.upper), count)) for n, v in free.items()}
+    return it.evaluate_many(car, indices, points, NORM)
+
+
+def check_undominated(front, others, allowed=1e-7):
+    for values in front.values:
+        assert not np.any(np.all(others < values * (1.0 - allowed), axis=1))
+    for i, values in enumerate(front.values):
+        rest = np.delete(front.values, i, axis=0)
+        assert not np.any(np.all(rest <= values * (1.0 + 1e-12), axis=1))
+
+
+def gaps(front):
+    return np.linalg.norm(np.diff(front.normalised, axis=0), axis=1)
+
+
+TWO = [(J1, J3), (J1, J5), (J3, J5)]
+KINDS = ["S2", "S3", "S1 k", "S3 k", "four"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "pair", "number"),
+    sampled(product(KINDS, range(3), range(3)), [("S3", 0, 0)]),
+)
+def test_no_random_design_dominates_a_point(kind, pair, number):
+    car, indices = random_quarter_car(np.random.default_rng([number, 77]), strut(kind)), list(TWO[pair])
+    points, count = (9, 20_000) if (kind, pair, number) == ("S3", 0, 0) else (15, 100_000)
+    front = it.pareto(car, indices, NORM, points=points)
+    assert all(status.ok for status in front.statuses)
+    check_undominated(front, random_designs(car, indices, count))
+    check_undominated(front, random_designs(car, indices, count // 5, 1, front.parameters))
+    ends = [it.optimise(car, index, NORM).value for index in indices]
+    assert front.values[0, 0] == pytest.approx(ends[0], rel=1e-6)
+    assert front.values[-1, 1] == pytest.approx(ends[1], rel=1e-6)
+    assert np.all(np.diff(front.values[:, 0]) > 0.0)
+    assert np.all(np.diff(front.values[:, 1]) < 0.0)
+    if len(front.values) > 1:
+        closed = [gap for i, gap in enumerate(gaps(front)) if (i, i + 1) not in front.jumps]
+        assert len(front.values) == points
+        assert max(closed) <= 2.5 * np.median(closed)
+
+
+def test_each_point_is_a_design_that_can_be_taken_on():
+    car = paper_quarter_car(strut("S3"))
+    front = it.pareto(car, [J1, J3], NORM, points=5)
+    for design, parameters, values in zip(front.designs, front.parameters, front.values, strict=True):
+        assert design == car.with_values(parameters)
+        assert [it.evaluate(design, index, NORM).value for index in (J1, J3)] == pytest.approx(values, rel=1e-12)
+    again = it.pareto(car, [J1, J3], NORM, points=5)
+    assert np.array_equal(front.values, again.values)
+
+
+@pytest.mark.parametrize("share", sampled([0.25, 0.75], [0.25]))
+def test_points_are_optima_with_the_other_criterion_as_a_limit(share):
+    car = paper_quarter_car(strut("S3 k"))
+    front = it.pareto(car, [J1, J5], NORM, points=9)
+    i = int(share * 8)
+    best = it.optimise(car, J1, NORM, subject_to=[it.at_most(J5, float(front.values[i, 1]))])
+    assert best.value == pytest.approx(front.values[i, 0], rel=1e-5)
+
+
+def test_limits_hold_along_a_front():
+    car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b")))
+    front = it.pareto(car, [J1, J5], NORM, points=5, subject_to=[it.at_most(J3, 540.0)])
+    for design, held in zip(front.designs, front.limits, strict=True):
+        value = it.evaluate(design, J3, NORM).value
+        assert value <= 540.0 * (1.0 + 1e-6)
+        assert held[0].value == value
+    assert any(held[0].active for held in front.limits)
+    others = random_designs(car, [J1, J5, J3], 2_000)
+    check_undominated(front, others[others[:, 2] <= 540.0][:, :2])
+
+
+def test_criteria_that_do_not_contradict_each_other():
+    car = paper_quarter_car(strut("S3"))
+    slow = it.RideComfort(it.Road(roughness=5e-7, speed=10.0))
+    front = it.pareto(car, [J1, slow], NORM, points=7)
+    assert front.values.shape == (1, 2)
+    assert front.values[0, 0] == pytest.approx(it.optimise(car, J1, NORM).value, rel=1e-6)
+
+
+def test_a_front_that_no_design_reaches():
+    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J5], NORM, subject_to=[it.at_most(J3, 100.0)])
+    assert front.values.shape == (0, 2)
+    assert front.status.kind is it.StatusKind.INFEASIBLE
+    assert front.designs == ()
+    with pytest.raises(it.InerterError, match="has no knee"):
+        _ = front.knee
+
+
+@pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], []))
+def test_three_criteria(kind):
+    car = paper_quarter_car(strut(kind))
+    front = it.pareto(car, [J1, J3, J5], NORM, points=15)
+    check_undominated(front, random_designs(car, [J1, J3, J5], 20_000), 1e-6)
+    check_undominated(front, random_designs(car, [J1, J3, J5], 5_000, 1, front.parameters), 1e-6)
+    for i, index in enumerate((J1, J3, J5)):
+        assert front.ideal[i] == pytest.approx(it.optimise(car, index, NORM).value, rel=1e-6)
+    assert 10 <= len(front.values) <= 15
+
+
+def test_hypervolume_of_two_criteria_is_an_area():
+    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3], NORM, points=9)
+    reference = front.nadir * 1.05
+    rng = np.random.default_rng(0)
+    low, size = front.ideal, reference - front.ideal
+    points = low + rng.uniform(size=(200_000, 2)) * size
+    covered = np.zeros(len(points), dtype=bool)
+    for values in front.values:
+        covered |= np.all(points >= values, axis=1)
+    expected, share = covered.mean() * size.prod(), covered.mean()
+    error = size.prod() * np.sqrt(share * (1.0 - share) / len(points))
+    assert abs(front.hypervolume(reference) - expected) <= 5.0 * error
+    assert front.hypervolume(front.ideal * 0.9) == 0.0
+
+
+def test_hypervolume_of_three_criteria_is_a_volume():
+    pytest.importorskip("moocore", reason="the volume of three criteria needs moocore (extra fronts)")
+    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3, J5], NORM, points=6)
+    check_undominated(front, random_designs(paper_quarter_car(strut("S3")), [J1, J3, J5], 2_000), 1e-6)
+    reference = front.nadir * 1.05
+    rng = np.random.default_rng(0)
+    size = reference - front.ideal
+    points = front.ideal + rng.uniform(size=(200_000, 3)) * size
+    covered = np.zeros(len(points), dtype=bool)
+    for values in front.values:
+        covered |= np.all(points >= values, axis=1)
+    share = covered.mean()
+    error = size.prod() * np.sqrt(share * (1.0 - share) / len(points))
+    assert abs(front.hypervolume(reference) - share * size.prod()) <= 5.0 * error
+
+
+def test_the_knee_is_farthest_from_the_line_of_the_ends():
+    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J5], NORM, points=11)
+    a, z = front.normalised[0], front.normalised[-1]
+    along = (z - a) / np.linalg.norm(z - a)
+    away = [np.linalg.norm((u - a) - ((u - a) @ along) * along) for u in front.normalised]
+    assert front.knee == int(np.argmax(away))
+
+
+def test_a_front_of_what_is_simulated():
+    screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
+    car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
+    quick = it.pareto(car, [J1, J3], it.StatisticalLinearisation(), points=3)
+    assert len(quick.values) == 3
+    assert np.all(np.diff(quick.values[:, 1]) < 0.0)
+
+
+def test_a_front_without_gradients_is_the_same():
+    car = paper_quarter_car(strut("S3"))
+    exact, found = it.pareto(car, [J1, J5], NORM, points=3), it.pareto(car, [J1, J5], WithoutGradients(), points=3)
+    assert found.values == pytest.approx(exact.values, rel=2e-3)
+
+
+@pytest.mark.campaign
+def test_a_front_of_what_is_simulated_on_roads():
+    screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
+    car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
+    front = it.pareto(car, [J1, J3], it.ExpectedValue(realisations=2), points=3)
+    assert np.all(np.diff(front.values[:, 0]) > 0.0)
+    assert np.all(np.diff(front.values[:, 1]) < 0.0)
+
+
+def test_a_front_of_a_half_car_over_conditions():
+    use = it.Conditions([it.Condition(1.0, road={"speed": 15.0}), it.Condition(2.0, vehicle={"sprung_mass": 900.0})])
+    front, rear = (
+        it.Spring(6e4) | it.Damper(it.free(300.0, 3e4, "c")),
+        it.Spring(5e4) | it.Damper(it.tied("c", factor=0.8)),
+    )
+    car = random_half_car(np.random.default_rng(4), front, rear)
+    found = it.pareto(car, [use.mean(J1), use.worst(J3)], NORM, points=5)
+    check_undominated(found, random_designs(car, [use.mean(J1), use.worst(J3)], 300))
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"indices": [J1]}, "between two or three indices"),
+        ({"indices": J1}, "between two or three indices"),
+        ({"indices": "J1 J3"}, "between two or three indices"),
+        ({"indices": [J1, J1]}, "indices that differ"),
+        ({"indices": [J1, "J3"]}, "Expected an index"),
+        ({"points": 2}, "at least 3 points"),
+        ({"points": 5, "indices": [J1, J3, J5]}, "at least 6 points"),
+        ({"points": 7.5}, "at least 3 points"),
+        ({"seed": -1}, "whole number from 0"),
+        ({"subject_to": [J3]}, "list of limits"),
+        ({"vehicle": paper_quarter_car(it.Spring(1e5) | it.Damper(1e3))}, "Nothing to optimise"),
+    ],
+)
+def test_fronts_that_cannot_be(given, said):
+    asked = {"vehicle": paper_quarter_car(strut("S3")), "indices": [J1, J3], "method": NORM, **given}
+    with pytest.raises(it.InerterError, match=said):
+        it.pareto(**asked)
+
+
+def test_a_reference_that_cannot_be():
+    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3], NORM, points=3)
+    with pytest.raises(it.InerterError, match="has 2 numbers"):
+        front.hypervolume([1.0])

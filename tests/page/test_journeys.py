@@ -155,7 +155,7 @@ def test_every_example_opens(visitors: Any, served: Served) -> None:
         page = visitor.page
         before = visitor.text
         visitor.open(path)
-        page.wait_for_function("() => document.querySelector('.notice')")
+        page.wait_for_selector(".notice")
         told = page.inner_text(".notice")
         try:
             study = load_study(path)

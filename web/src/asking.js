@@ -34,12 +34,11 @@ export function keepAsking(store, api, client, found = async () => {}) {
     underWay[panel] = question;
     store.dispatch({ type: "asked", panel, question });
     sequence += 1;
-    const begun = performance.now();
     try {
       const sent = path.startsWith("panel/") ? { ...body, client: `${client}.${panel}`, sequence } : body;
       const value = await api.post(path, sent);
       settled[panel] = question;
-      store.dispatch({ type: "answered", panel, question, value, took: performance.now() - begun });
+      store.dispatch({ type: "answered", panel, question, value});
       if (learnt) store.dispatch(learnt(value));
     } catch (error) {
       if (error instanceof Lost) lose();

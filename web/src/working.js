@@ -7,8 +7,7 @@ import { isRange } from "./state/document.js";
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./api.js").Api} Api */
 
-const QUICK = 150; // [ms] that indices take where the best values are found while one waits
-const PATIENCE = 4; // [s] for what is begun with a study
+const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
 const LOOK = 300; // [ms] between two looks at work that goes on
 
 /** The best values of layouts, taken into the document; returns what to tell. @param {Store} store @param {Api} api @param {{study: any, layouts: string[], index: string, method: string}} asked */
@@ -16,8 +15,7 @@ export async function optimise(store, api, asked) {
   const { study, layouts, index, method } = asked;
   const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
-    const { took } = store.get().answers.indices ?? {};
-    if (!sees(store.get(), method, "neither") || (took ?? 0) > QUICK) {
+    if (!sees(store.get(), method, "neither") || !(await isSmall(api, study, layouts[0]))) {
       await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")}: best ${index}`, ...body });
       store.dispatch({ type: "viewed", view: { tab: "work" } });
       return "Under way: see Work.";
@@ -61,16 +59,21 @@ export async function beginAtBest(store, api, gesture = null) {
   const free = Object.values(study.elements ?? {}).some(isRange);
   const method = store.get().about.methods.find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
   if (!index || !free || !method) return;
-  const isAsItWas = () => store.get().history.present.study === study && Object.keys(store.get().history.present.values).length === 0;
   try {
-    const body = { kind: "optimise", title: `Best ${index} to begin with`, study, indices: [index], method, methods: [method] };
-    const job = await api.post("work", { ...body, wait: PATIENCE });
-    if (job.state === "done" && isAsItWas()) takeOptima(store, job.result.designs, gesture);
-    if (job.state !== "done") store.dispatch({ type: "said", message: "The free values are in the middle of their bounds: to find the best takes longer here. Press Optimise." });
-    await api.remove(`work/${job.id}`);
+    if (await isSmall(api, study, Object.keys(study.layouts ?? {})[0])) {
+      const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
+      const { present } = store.get().history;
+      if (present.study === study && Object.keys(present.values).length === 0) takeOptima(store, designs, gesture);
+    } else store.dispatch({ type: "said", message: "The free values are in the middle of their bounds: to find the best takes longer here. Press Optimise." });
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   }
+}
+
+/** @param {Api} api @param {any} study @param {string} layout */
+async function isSmall(api, study, layout) {
+  const { coordinates } = await api.post("panel/mechanism", { study, layout, client: "page.size", sequence: Date.now() });
+  return coordinates.length <= SMALL;
 }
 
 /** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */

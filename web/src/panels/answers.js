@@ -89,7 +89,7 @@ const better = (value) => (typeof value !== "number" || Math.abs(value) < 0.005 
 /** @param {{result: any}} props */
 function Notes({ result }) {
   const texts = [result.status !== "ok" && result.message, ...(result.notes ?? [])].filter(Boolean);
-  return texts.length === 0 ? null : html`<details class="notes"><summary aria-label="Notes">ⓘ</summary><ul>${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
+  return texts.length === 0 ? null : html`<details class="notes"><summary>note</summary><ul>${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
 }
 
 /** Which limits are kept. @param {{value: any}} props */

@@ -8,7 +8,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {import("./document.js").Change} Change */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
 /** @typedef {import("../network/algebra.js").Path} Path */
-/** @typedef {{key: string, value: any, sentence: string | null, waiting: boolean, of: string | null, took: number}} Answer  of a panel, to which question, and how long it took [ms] */
+/** @typedef {{key: string, value: any, sentence: string | null, waiting: boolean, of: string | null}} Answer  of a panel, and to which question */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed", share: number | null, sentence: string | null, result: any}} Job */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number, playing: boolean, compared: string[], seconds: number, seed: number}} View */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
@@ -17,7 +17,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {{type: "changed", change: Change, gesture: string | null}
  *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
  *  | {type: "asked", panel: string, question: string}
- *  | {type: "answered", panel: string, question: string, value: any, took?: number}
+ *  | {type: "answered", panel: string, question: string, value: any}
  *  | {type: "refused", panel: string, question: string, sentence: string}
  *  | {type: "measured", quantities: {[key: string]: {value?: number, sentence?: string}}}
  *  | {type: "worked", job: Partial<Job> & {id: string}}
@@ -44,7 +44,7 @@ export const initial = () => ({
 });
 
 /** @type {Answer} */
-const NOTHING = { key: "", value: null, sentence: null, waiting: false, of: null, took: 0 };
+const NOTHING = { key: "", value: null, sentence: null, waiting: false, of: null };
 
 /** @type {{[type: string]: (state: State, action: any) => State}} */
 const STEPS = {
@@ -54,7 +54,7 @@ const STEPS = {
   undone: (state) => ({ ...state, history: undone(state.history) }),
   redone: (state) => ({ ...state, history: redone(state.history) }),
   asked: (state, { panel, question }) => answer(state, panel, { key: question, waiting: true }),
-  answered: (state, { panel, question, value, took = 0 }) => answer(state, panel, { of: question, value, took, sentence: null, waiting: question !== state.answers[panel]?.key }),
+  answered: (state, { panel, question, value }) => answer(state, panel, { of: question, value, sentence: null, waiting: question !== state.answers[panel]?.key }),
   refused: (state, { panel, question, sentence }) => answer(state, panel, { of: question, sentence, waiting: question !== state.answers[panel]?.key }),
   measured: (state, { quantities }) => ({ ...state, quantities: { ...state.quantities, ...quantities } }),
   worked: (state, { job }) => ({ ...state, work: { ...state.work, [job.id]: { ...state.work[job.id], ...job } } }),

@@ -61,8 +61,8 @@ function Indices({ value, layout, baseline, stale }) {
     <tbody>${design.results.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span></th>
-        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}<${Notes} result=${result} /></td>
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span> <${Notes} result=${result} /></th>
+        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}</td>
         ${!alone && html`<td class="number">${reference ? number(reference) : "–"}</td><td class=${`number ${better(result.improvement_percent)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}</td>`}
       </tr>`;
     })}</tbody>

@@ -46,6 +46,7 @@ def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, 
     assert page.get_by_role("button", name="Undo").is_disabled()  # sixty steps are one
 
 
+@pytest.mark.campaign
 def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     before = visitor.text

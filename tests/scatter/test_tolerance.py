@@ -116,7 +116,7 @@ def test_gradients_of_a_quantile(index):
 
 def test_the_robust_design_is_best_at_its_quantile():
     spread = {"c": 0.4, "b": 0.4}
-    found = it.robust(free(), J1, NORM, spread=spread, samples=32, starts=2)
+    found = it.robust(free(), J1, NORM, spread=spread, samples=32)
     of = it.Quantile(J1, scatter_of(spread, "uniform"), samples=32)
 
     def at(x):

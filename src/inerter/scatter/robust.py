@@ -201,18 +201,16 @@ def robust(
     *,
     spread: Mapping[str, float],
     quantile: float = 0.95,
-    distribution: str = "uniform",
     samples: int = 256,
     subject_to: Sequence[Limit] = (),
     seed: int = 0,
-    starts: int | None = None,
     executor: Executor | None = None,
 ) -> Optimum:
     """The free values that make an index least in the worse cases: at its 95 % quantile, when values scatter.
 
-    `spread` and `distribution` are those of `tolerance`, of elements alone: free values scatter about what is chosen,
-    fixed ones about what they are. The optimum's value is that quantile, over one sample for all designs; everything
-    else is as in `optimise`, but for `starts`, which is 2 for each free value if left out.
+    `spread` is that of `tolerance`, of elements alone, all between equally likely: free values scatter about what is
+    chosen, fixed ones about what they are. The optimum's value is that quantile, over one sample for all designs;
+    everything else is as in `optimise`, with two starts for each free value. `Quantile` has what is not told here.
 
     Raises what `optimise` and `tolerance` raise.
 
@@ -220,10 +218,10 @@ def robust(
     >>> strut = it.Spring(120e3) | it.Damper(it.free(100, 1e5, "c")) - it.Inerter(it.free(1, 2000, "b"))
     >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
     >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
-    >>> found = it.robust(car, comfort, it.Norm(), spread={"c": 0.3, "b": 0.3}, samples=64, starts=2)
-    >>> round(found.value, 2)
-    2.52
+    >>> found = it.robust(car, comfort, it.Norm(), spread={"c": 0.3, "b": 0.3}, samples=32)
+    >>> round(found.value, 1)
+    2.5
     """
-    at = Quantile(index, scatter_of(spread, distribution), quantile, samples, seed)
-    starts = 2 * len(vehicle.free_values()) or None if starts is None else starts
+    at = Quantile(index, scatter_of(spread, "uniform"), quantile, samples, seed)
+    starts = 2 * len(vehicle.free_values()) or None
     return optimise(vehicle, at, method, subject_to=subject_to, seed=seed, starts=starts, executor=executor)

@@ -33,13 +33,13 @@ from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
+from inerter.trade_off.points import Found, gaps, pair, sparse, thinned, undominated
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
 Array = NDArray[np.float64]
 _NO_CONFLICT = 1e-6  # relative size of a trade-off up to which there is none
 _SHIFT = 3.0  # added to normalised criteria, so that they have logarithms
-_SAME = 1e-4  # normalised distance up to which two points are one
 _SLACK = 1e-6  # of a normalised criterion that is better than asked for
 _WIDE, _DOUBTED = 1.6, 1.2  # of the typical gap: what is filled, and what is looked into for a jump
 _AT_END = 0.02  # of a gap, up to which a point lies at its end
@@ -106,15 +106,6 @@ def _checked(vehicle: Vehicle, indices: object, method: Method, points: object) 
 
 
 @dataclass(frozen=True, eq=False)
-class _Found:
-    """A design on the front: its point, its criteria, and these normalised."""
-
-    point: Array
-    values: Array
-    normal: Array
-
-
-@dataclass(frozen=True, eq=False)
 class _Trade:
     """Criteria of a vehicle as functions of its free values, normalised by the single optima."""
 
@@ -141,11 +132,11 @@ class _Trade:
         size = table.max(axis=0) - ideal
         return ideal, np.where(size > 0.0, size, 1.0)
 
-    def at(self, point: Array) -> _Found:
+    def at(self, point: Array) -> Found:
         """What a point comes to."""
         values = self.criteria(point[None])[0]
         ideal, size = self.scale
-        return _Found(point, values, (values - ideal) / size)
+        return Found(point, values, (values - ideal) / size)
 
     @cached_property
     def sample(self) -> tuple[Array, Array, NDArray[np.int64]]:
@@ -183,7 +174,7 @@ class _Trade:
         lowest = [i for i in order[: 64 * _STARTS] if np.isfinite(merit[i]) and merit[i] <= merit[near[i]].min()]
         return [points[i] for i in lowest[:_STARTS]]
 
-    def solve(self, aim: Array, known: Sequence[_Found], which: Sequence[int] = ()) -> _Found | None:
+    def solve(self, aim: Array, known: Sequence[Found], which: Sequence[int] = ()) -> Found | None:
         """The point of the front that comes closest to an aim, from the sample and from what is known."""
         which = which or range(len(self.objectives))
         close = sorted(known, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
@@ -199,7 +190,7 @@ class _Trade:
             return self.strict(best)
         return best
 
-    def strict(self, found: _Found) -> _Found:
+    def strict(self, found: Found) -> Found:
         """A design that is no worse in any criterion, and cannot be better in one alone."""
         ideal, size = self.scale
         parts = [Part(one, None, 1.0 / s, -i / s + 1.0) for one, i, s in zip(self.objectives, ideal, size, strict=True)]
@@ -218,7 +209,7 @@ class _Trade:
         )
         return better if gained > _SLACK and no_worse_now else found
 
-    def front(self, count: int) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
+    def front(self, count: int) -> tuple[list[Found], set[tuple[bytes, bytes]]]:
         """Points of the front, and the pairs between which it jumps."""
         ends = [self.at(point) for point in self.ends]
         table = np.array([one.values for one in ends])
@@ -229,12 +220,12 @@ class _Trade:
         return self.over_triangle(ends, count), set()
 
     def between(
-        self, ends: Sequence[_Found], count: int, which: Sequence[int] = (0, 1)
-    ) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
+        self, ends: Sequence[Found], count: int, which: Sequence[int] = (0, 1)
+    ) -> tuple[list[Found], set[tuple[bytes, bytes]]]:
         """The front of two criteria from one end to the other."""
         a, z = (one.normal for one in ends)
         aims = [a + (z - a) * share for share in np.linspace(0.0, 1.0, count)[1:-1]]
-        found: list[_Found] = list(ends)
+        found: list[Found] = list(ends)
         for aim in aims:
             one = self.solve(aim, found, which)
             found += [] if one is None else [one]
@@ -243,40 +234,40 @@ class _Trade:
             again = polished(problem, problem.at(best.point, 0)) if self._quick else None
             if again is not None and again.excess <= 1e-6:
                 found.append(self.at(again.point))
-        return self.filled(_undominated(found, which), count, which)
+        return self.filled(undominated(found, which), count, which)
 
-    def reached(self, aim: Array, found: Sequence[_Found], which: Sequence[int]) -> _Found:
+    def reached(self, aim: Array, found: Sequence[Found], which: Sequence[int]) -> Found:
         """What comes closest to an aim of all that was found."""
         return min(found, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
 
     def filled(
-        self, found: list[_Found], count: int, which: Sequence[int]
-    ) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
+        self, found: list[Found], count: int, which: Sequence[int]
+    ) -> tuple[list[Found], set[tuple[bytes, bytes]]]:
         """So many points, in whose widest gaps others were put; and the gaps in which there is nothing."""
         jumps: set[tuple[bytes, bytes]] = set()
-        found = _thinned(found, count, which)
+        found = thinned(found, count, which)
         for _ in range(3 * count):
-            gaps = _gaps(found, jumps, which)
-            if not gaps:
+            free = gaps(found, jumps, which)
+            if not free:
                 break
-            widest, i = max(gaps)
-            if len(found) >= count and widest <= _WIDE * float(np.median([gap for gap, _ in gaps])):
+            widest, i = max(free)
+            if len(found) >= count and widest <= _WIDE * float(np.median([gap for gap, _ in free])):
                 break
             one = self.inside(found[i], found[i + 1], which)
             if one is None:
-                jumps.add(_pair(found, i))
+                jumps.add(pair(found, i))
             else:
-                found = _thinned(_undominated([*found, one], which), max(count, 3), which, keep=one)
-        gaps = _gaps(found, jumps, which)
-        typical = float(np.median([gap for gap, _ in gaps])) if gaps else 0.0
+                found = thinned(undominated([*found, one], which), max(count, 3), which, keep=one)
+        free = gaps(found, jumps, which)
+        typical = float(np.median([gap for gap, _ in free])) if free else 0.0
         jumps |= {
-            _pair(found, i)
-            for gap, i in gaps
+            pair(found, i)
+            for gap, i in free
             if gap > _DOUBTED * typical and self.inside(found[i], found[i + 1], which) is None
         }
         return found, jumps
 
-    def inside(self, a: _Found, b: _Found, which: Sequence[int]) -> _Found | None:
+    def inside(self, a: Found, b: Found, which: Sequence[int]) -> Found | None:
         """A point between two neighbours; None if the search for one ends at one of them: the front jumps there."""
         one = self.solve(0.5 * (a.normal + b.normal), [a, b], which)
         if one is None:
@@ -284,7 +275,7 @@ class _Trade:
         apart = [float(np.linalg.norm((one.normal - other.normal)[list(which)])) for other in (a, b)]
         return one if min(apart) > _AT_END * float(np.linalg.norm((a.normal - b.normal)[list(which)])) else None
 
-    def over_triangle(self, ends: Sequence[_Found], count: int) -> list[_Found]:
+    def over_triangle(self, ends: Sequence[Found], count: int) -> list[Found]:
         """The front of three criteria: the fronts of each two, and points between them."""
         steps = int(np.ceil(0.5 * (np.sqrt(8.0 * count + 1.0) - 3.0)))
         found = list(ends)
@@ -296,15 +287,15 @@ class _Trade:
             for b in range(1, steps - a):
                 one = self.solve(np.array([a, b, steps - a - b]) / steps @ corners, found)
                 found += [] if one is None else [one]
-        found = _undominated(found, (0, 1, 2))
+        found = undominated(found, (0, 1, 2))
         rng = scipy.stats.qmc.Sobol(3, rng=np.random.default_rng(self.seed))
         shares = -np.log(np.maximum(rng.random(32), 1e-9))
         for share in shares / shares.sum(axis=1, keepdims=True):
             if len(found) >= count:
                 break
             one = self.solve(share @ corners, found)
-            found = found if one is None else _undominated([*found, one], (0, 1, 2))
-        return _sparse(found, count, ends)
+            found = found if one is None else undominated([*found, one], (0, 1, 2))
+        return sparse(found, count, ends)
 
 
 def _costly(problem: Limited, first: Sequence[Array]) -> LocalOptimum:
@@ -313,53 +304,6 @@ def _costly(problem: Limited, first: Sequence[Array]) -> LocalOptimum:
         return trust_region_within(problem, start)
     assert problem.objective is not None
     return trust_region(problem.objective, start, problem.lower, problem.upper)
-
-
-def _pair(found: Sequence[_Found], i: int) -> tuple[bytes, bytes]:
-    """What tells the gap behind a point from others."""
-    return found[i].point.tobytes(), found[i + 1].point.tobytes()
-
-
-def _gaps(found: Sequence[_Found], jumps: set[tuple[bytes, bytes]], which: Sequence[int]) -> list[tuple[float, int]]:
-    """The widths of the gaps between neighbours that are no jumps, with their numbers."""
-    table = np.array([one.normal for one in found])[:, list(which)]
-    widths = np.linalg.norm(np.diff(table, axis=0), axis=1).tolist()
-    return [(width, i) for i, width in enumerate(widths) if _pair(found, i) not in jumps]
-
-
-def _undominated(found: Sequence[_Found], which: Sequence[int]) -> list[_Found]:
-    """Those that no other one is better than, each once, in order of the first criterion."""
-    table = np.array([one.normal for one in found])[:, list(which)]
-    kept: list[int] = []
-    for i in np.lexsort(table.T[::-1]):
-        better = np.all(table <= table[i] + 1e-12, axis=1) & np.any(table < table[i] - 1e-9, axis=1)
-        twin = any(np.abs(table[i] - table[j]).max() < _SAME for j in kept)
-        if not better.any() and not twin:
-            kept.append(int(i))
-    return [found[i] for i in kept]
-
-
-def _thinned(found: list[_Found], count: int, which: Sequence[int], keep: _Found | None = None) -> list[_Found]:
-    """At most so many, without those that lie closest to their neighbours; the ends stay."""
-    found = list(found)
-    while len(found) > count:
-        table = np.array([one.normal for one in found])[:, list(which)]
-        width = np.linalg.norm(table[2:] - table[:-2], axis=1)
-        if keep is not None:
-            width = np.where([one is keep for one in found[1:-1]], np.inf, width)
-        del found[1 + int(np.argmin(width))]
-    return found
-
-
-def _sparse(found: list[_Found], count: int, ends: Sequence[_Found]) -> list[_Found]:
-    """At most so many of three criteria, without those that lie closest together; the ends stay."""
-    found = list(found)
-    while len(found) > count:
-        table = np.array([one.normal for one in found])
-        far = np.linalg.norm(table[:, None] - table[None], axis=2) + 1e9 * np.eye(len(found))
-        fixed = [any(np.abs(row - end.normal).max() < _SAME for end in ends) for row in table]
-        del found[int(np.argmin(np.where(fixed, np.inf, np.sort(far, axis=1)[:, :2].sum(axis=1))))]
-    return found
 
 
 def _trade(
@@ -406,7 +350,7 @@ def _empty(indices: tuple[Asked, ...], seed: int, status: Status) -> Front:
     return Front(indices, np.zeros((0, len(indices))), (), (), (), (), (), seed, status)
 
 
-def _front(trade: _Trade, found: tuple[list[_Found], set[tuple[bytes, bytes]]], seed: int) -> Front:
+def _front(trade: _Trade, found: tuple[list[Found], set[tuple[bytes, bytes]]], seed: int) -> Front:
     several, jumps = found
     names = tuple(trade.vehicle.free_values())
     parameters = tuple(dict(zip(names, one.point.tolist(), strict=True)) for one in several)

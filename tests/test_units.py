@@ -1,6 +1,7 @@
 """Quantities as text: what they are worth, what is refused, and that they survive the way there and back."""
 
 import math
+import re
 import subprocess
 import sys
 
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from inerter.errors import UnitError
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.units import format_quantity, format_with_interval, parse_quantity, shown
+from inerter.units import format_quantity, format_with_interval, parse_one_of, parse_quantity, shown
 
 UNITS = (*kinds_by_unit(), "kg m^2", "m/s", "m^3/cycle", "rad/s")
 
@@ -206,3 +207,40 @@ def test_pint_is_loaded_by_the_first_quantity_only():
     before, after = (f"assert 'pint' {state} sys.modules" for state in ("not in", "in"))
     code = f"import sys, inerter.units as u; {before}; u.parse_quantity('1 N', 'N'); {after}"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("100 lbm", "kg", 45.359237),
+        ("1 lbf/in", "N/m", 4.4482216152605 / 0.0254),
+        ("600 lbf/in", "N/m", 600 * 4.4482216152605 / 0.0254),
+        ("10 lbf s/in", "N s/m", 10 * 4.4482216152605 / 0.0254),
+        ("10 lbf*s/in", "N s/m", 10 * 4.4482216152605 / 0.0254),
+        ("20 in/s", "m/s", 0.508),
+        ("2 in", "m", 0.0508),
+        ("65 mph", "m/s", 65 * 1609.344 / 3600),
+        ("1 slug", "kg", 4.4482216152605 / 0.3048),
+    ],
+)
+def test_units_of_the_trade(text, unit, value):
+    """From their definitions: a pound is 0.45359237 kg, an inch 0.0254 m, standard gravity 9.80665 m/s^2."""
+    assert parse_quantity(text, unit) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "meant"),
+    [
+        ("600 lb/in", "N/m", "600 lbf/in"),
+        ("600 lbs/in", "N/m", "600 lbf/in"),
+        ("600 lbm/in", "N/m", "600 lbf/in"),
+        ("5 lb s/in", "N s/m", "5 lbf s/in"),
+        ("2 kg/mm", "N/m", "2 kgf/mm"),
+    ],
+)
+def test_a_mass_where_a_force_is_meant(text, unit, meant):
+    with pytest.raises(UnitError, match=f'such as "{re.escape(meant)}"'):
+        parse_quantity(text, unit)
+    with pytest.raises(UnitError, match=f'Did you mean "{re.escape(meant)}"'):
+        parse_one_of(text, {"N/m": "spring", "N s/m": "damper"}, "N/m")
+    assert parse_quantity(meant, unit) > 0.0

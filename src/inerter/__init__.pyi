@@ -36,6 +36,7 @@ from inerter.indices.excitation import Shaped as Shaped
 from inerter.indices.excitation import WhiteForce as WhiteForce
 from inerter.indices.iso2631 import iso2631 as iso2631
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
+from inerter.indices.measured_road import measured_road as measured_road
 from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.question import Combination as Combination
 from inerter.indices.question import Question as Question
@@ -98,15 +99,15 @@ from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
 from inerter.records.result import Response as Response
 from inerter.records.writers import write_record as write_record
-from inerter.scatter.robust import Quantile as Quantile
-from inerter.scatter.robust import robust as robust
-from inerter.scatter.tolerance import Tolerance as Tolerance
-from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.roads.iri import iri as iri
 from inerter.roads.profile import Profile as Profile
 from inerter.roads.reading import profile as profile
 from inerter.roads.reading import read_profile as read_profile
 from inerter.roads.spectrum import road_spectrum as road_spectrum
+from inerter.scatter.robust import Quantile as Quantile
+from inerter.scatter.robust import robust as robust
+from inerter.scatter.tolerance import Tolerance as Tolerance
+from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.signals.coherence import Coherence as Coherence
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
@@ -123,6 +124,8 @@ from inerter.signals.transients import step as step
 from inerter.simulation.batch import Batch as Batch
 from inerter.simulation.batch import simulate_many as simulate_many
 from inerter.simulation.histories import simulate_to_files as simulate_to_files
+from inerter.simulation.peaks import LiftOff as LiftOff
+from inerter.simulation.peaks import Peak as Peak
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.arrivals import Arrival as Arrival
@@ -140,6 +143,7 @@ from inerter.vehicle.mechanism import Coordinate as Coordinate
 from inerter.vehicle.mechanism import Force as Force
 from inerter.vehicle.mechanism import Measures as Measures
 from inerter.vehicle.mechanism import Mechanism as Mechanism
+from inerter.vehicle.mechanism import Point as Point
 from inerter.vehicle.mechanism import RoadInput as RoadInput
 from inerter.vehicle.mechanism import Strut as Strut
 from inerter.vehicle.mechanism import Tyre as Tyre

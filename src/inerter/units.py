@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -19,6 +19,9 @@ _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*")
 _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 # Pint evaluates what it is given, so only names, small exponents and separators reach it.
 _UNIT = re.compile(r"(?:[^\W\d_]++(?:(?:\^|\*\*)-?\d|[²³])?+|[()\s*/·.])+")
+_FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # the weight of a mass, for those who mean it
+_MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
+PURE = "1"  # the unit of what is a mere number
 _LONGEST = 100
 _FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
 _MOST_DIGITS = 6  # of a value with an interval
@@ -46,7 +49,7 @@ def parse_quantity(text: str, unit: str) -> float:
     number, given = _split(text, expected, unit)
     if _dimension(given) != _dimension(unit):
         problem = f"{_described(given)} is a unit of another kind"
-        _fail(text, problem, expected, f"{_number_of(text)} {_prefixed(given, unit)}")
+        _fail(text, problem, expected, f"{_number_of(text)} {_as_force(given, (unit,)) or _prefixed(given, unit)}")
     return _converted(text, number, given, unit)
 
 
@@ -66,7 +69,37 @@ def parse_one_of(text: str, units: Mapping[str, str], example: str) -> tuple[str
         if _dimension(unit) == kind:
             return unit, _converted(text, number, given, unit)
     known = ", ".join(f"{unit} ({what})" for unit, what in units.items())
-    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no element; expected one of {known}.")
+    force = _as_force(given, units)
+    hint = f' Did you mean "{_number_of(text)} {force}"?' if force else ""
+    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no element; expected one of {known}.{hint}")
+
+
+def unit_in(text: str) -> str:
+    """The unit in a quantity of any kind, as it is written.
+
+    Raises `UnitError` unless `text` is a finite number followed by a unit.
+    """
+    return _split(text, "its unit", "kN/m")[1]
+
+
+def are_alike(unit: str, other: str) -> bool:
+    """Whether both are units of the same kind of quantity.
+
+    >>> are_alike("km/h", "m/s"), are_alike("kg", "N/m")
+    (True, False)
+    """
+    return bool(_dimension("" if unit == PURE else unit) == _dimension("" if other == PURE else other))
+
+
+def product(one: str, sign: str, other: str) -> str:
+    """The unit of a product ("*") or a quotient ("/") of quantities in two units, in SI units.
+
+    >>> product("N/m", "/", "N/m"), product("1", "/", "N/m")
+    ('1', 'm/N')
+    """
+    parts = [_registry().parse_units("" if unit == PURE else unit) for unit in (one, other)]
+    found = parts[0] * parts[1] if sign == "*" else parts[0] / parts[1]
+    return f"{found:~D}".replace(" ** ", "^").replace(" * ", " ").replace(" / ", "/") or PURE
 
 
 def format_quantity(value: float, unit: str, digits: int = 4) -> str:
@@ -78,6 +111,8 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     '7.544 kN s/m'
     """
     rounded = float(f"{value:.{digits}g}")
+    if unit == PURE:
+        return f"{rounded:.12g}"
     if rounded == 0.0 or not math.isfinite(rounded):
         return f"{rounded:g} {unit}"
     choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
@@ -190,6 +225,12 @@ def _number_of(text: object) -> str:
     return number.group(1) if number and len(number.group(1)) < 12 else "120"
 
 
+def _as_force(given: str, units: Iterable[str]) -> str:
+    """`given` with forces for its masses ("lbf/in" for "lb/in"), if that is a unit of the kind of one of `units`."""
+    force = _MASS.sub(lambda mass: _FORCES[mass[0]], given)
+    return force if force != given and any(_dimension(force) == _dimension(unit) for unit in units) else ""
+
+
 def _prefixed(given: str, unit: str) -> str:
     """`unit`, with the k or M of `given` where that is what the author meant ("120 kN" for N/m)."""
     return given[0] + unit if given[0] in "kM" and given[1:2] == unit[0] else unit
@@ -243,5 +284,6 @@ def _registry() -> UnitRegistry[Any]:
     registry: UnitRegistry[Any] = pint.UnitRegistry(on_redefinition="ignore")
     # Pint has cycle = 2 pi rad and Hz = 1/s, each of which would silently put 2 pi into a road or a frequency.
     registry.define("cycle = [cycle]")
+    registry.define("@alias pound = lbm")
     registry.define("hertz = 2 * pi * radian / second = Hz")
     return registry

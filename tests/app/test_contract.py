@@ -169,7 +169,7 @@ def test_no_quantity_has_a_sentence(client: TestClient, asked: Any) -> None:
     assert client.post("/api/quantity", json=asked).json()["sentence"].endswith(".")
 
 
-BAD: list[tuple[str, Any]] = [
+BAD: list[Any] = [
     ("/api/panel/indices", {}),
     ("/api/panel/indices", {"study": []}),
     ("/api/panel/indices", {"study": {}, "colour": 1}),
@@ -191,7 +191,7 @@ BAD: list[tuple[str, Any]] = [
     ("/api/work", {"study": DOCUMENT}),
     ("/api/study/read", {}),
     ("/api/study/read", {"text": "x = 1", "study": {}}),
-    ("/api/figure", {"kind": "magic", "study": DOCUMENT}),
+    pytest.param("/api/figure", {"kind": "magic", "study": DOCUMENT}, marks=pytest.mark.campaign),
     ("/api/figure", {"kind": "networks", "study": DOCUMENT, "format": "exe"}),
     ("/api/export/csv", {"panel": "mechanism", "request": {"study": DOCUMENT}}),
 ]
@@ -269,3 +269,11 @@ def test_a_file_that_is_no_record_is_not_kept(client: TestClient, server: Any, n
     assert told.json()["sentence"].strip().endswith((".", "?"))
     assert server.records.known == {}
     assert list(server.records.root.iterdir()) == []
+
+
+def test_several_designs_of_one_layout_have_names_of_their_own(client: TestClient) -> None:
+    document = changed(layouts={"S1.2": "k | c | b"})
+    designs = [{"layout": "S1", "values": {"c": c}} for c in (1e3, 2e3, 3e3)] + [{"layout": "S1.2"}]
+    told = client.post("/api/study/write", json={"study": document, "designs": designs}).json()["study"]
+    assert list(told["layouts"]) == ["S1", "S1.3", "S1.4", "S1.2"]
+    assert client.post("/api/study/check", json={"study": told}).json()["problems"] == []

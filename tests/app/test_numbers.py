@@ -40,6 +40,7 @@ def test_a_run_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -
         assert client.get(f"/api/work/{told['id']}/files/{name}").content == (result.folder / name).read_bytes()
 
 
+@pytest.mark.campaign
 def test_a_sweep_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
     sweep = {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 3}}
     told = client.post(
@@ -70,7 +71,7 @@ def test_optima_are_those_of_a_run(client: TestClient, tmp_path: Path) -> None:
         assert (result["value"], result["improvement_percent"]) == (case["value"], case["improvement_percent"])
 
 
-@settings(max_examples=8)
+@settings(max_examples=3)
 @given(c=st.floats(200.0, 9e4), b=st.floats(2.0, 900.0), c1=st.floats(200.0, 9e4))
 def test_a_study_of_designs_gives_the_numbers_of_the_panel(
     client: TestClient, tmp_path_factory: pytest.TempPathFactory, c: float, b: float, c1: float
@@ -189,6 +190,7 @@ def test_tables_read_back_as_the_same(client: TestClient) -> None:
     assert [row[1] for row in numbers] == curves["curves"][0]["gain"]
 
 
+@pytest.mark.campaign
 def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_path: Path) -> None:
     record = it.VirtualRig(it.Inerter(113.0)).run(it.cosine(1e-3, 3.0), duration=2.0)
     it.write_record(record, tmp_path / "device.csv")
@@ -208,7 +210,10 @@ def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_pa
     client.delete(f"/api/records/{sent['id']}")
 
 
-@pytest.mark.parametrize("kind", ["networks", "improvement", "response-J1"])
+@pytest.mark.parametrize(
+    "kind",
+    ["networks", *(pytest.param(kind, marks=pytest.mark.campaign) for kind in ("improvement", "response-J1"))],
+)
 def test_pictures(client: TestClient, kind: str) -> None:
     body = {"kind": kind, "study": DOCUMENT, "designs": [{"layout": "S1"}, {"layout": "S3"}]}
     assert client.post("/api/figure", json=body).content.startswith(b"<?xml")

@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -164,6 +165,17 @@ def test_check_knows_rows_of_another_distribution(session: Session, study: Path)
     assert "seated-car; layouts S1, S3; indices J1, T1, W1: 6 designs to find." in said
     for method in ("norm", "quadrature"):
         assert f"Note: S3: {method}: friction 'J_friction' in 'strut' left out." in said
+
+
+def test_a_start_is_made_of_the_vehicle_and_the_indices(session: Session, tmp_path: Path) -> None:
+    session.command("new", "seated-car", cwd=tmp_path)
+    text = (tmp_path / "seated-car.toml").read_text(encoding="utf-8")
+    assert 'seat_stiffness = "15 kN/m"' in text
+    assert re.search(r"^# More indices: .*T1", text, re.MULTILINE)
+    assert "ok." in session.command("check", "seated-car.toml", cwd=tmp_path)[0]
+    assert "Of the cushion." in session.command("explain", "vehicle.seat_damping", cwd=tmp_path)[0]
+    told = json.loads(session.command("schema", cwd=tmp_path)[0])
+    assert "middle" in told["$defs"]["Method_quadrature"]["properties"]
 
 
 def test_a_run_in_two_processes_values_every_index_by_every_method(results: Path) -> None:

@@ -12,6 +12,8 @@ import pytest
 from campaigns import sampled
 from synthetic import LONG, designs, judged, sweep, with_value
 
+import inerter as it
+from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.loading import load_study
@@ -84,9 +86,11 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     endless = replace(found, layout="S3", value=None, crossings=[], status="unbounded", message="better for every f")
     results = judged(designs())
     asked = replace(study, evaluate=("norm", "expected-value"), indices=("J1",), settings={"force": 1e3})
+    asked = replace(asked, elements={**study.elements, "f": it.Friction(10.0)})
     text = Page(report(results, asked, tmp_path, [found, endless])).text.replace(SPACE, " ")
     assert "2.4447 ± 0.0098+6.00 ± 0.31 %" in text
     assert "up to 280.5 ± 6.6 N" in text
+    assert "Friction f, S3, ride comfort: better for every f." in text
     assert "J1: equally good at 280.5 N and 900 N" in text
     assert "S3 – J1: better for every f" in text
     assert "Values by expected-value are means over simulations" in text
@@ -209,3 +213,25 @@ def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
     text = Page(report(designs(["S1"], baseline=""), study, tmp_path)).text
     assert "Improvement" not in text
     assert "Best ride comfort: S1, 2.525 m/s²." in text.replace(SPACE, " ")
+
+
+def test_a_page_has_contents_that_lead_to_its_parts(study, tmp_path):
+    draw_study(designs(), tmp_path)
+    source = report(designs(), study, tmp_path)
+    contents = re.search(r'<nav class="contents".*?</nav>', source)
+    assert contents
+    links = re.findall(r'<a href="#(part-\d+)">(.*?)</a>', contents[0])
+    assert links == re.findall(r'<h2 id="(part-\d+)">(.*?)</h2>', source)
+    assert len(links) == source.count("<h2") >= 5
+
+
+def test_networks_are_drawn_where_the_question_is(study, tmp_path):
+    files = draw_layouts(study, tmp_path)
+    assert sum(file.suffix == ".svg" for file in files) == len(study.layouts)
+    source = report(designs(), study, tmp_path)
+    page = Page(source)
+    asked = source.partition("What was asked</h2>")[2].partition("<h2")[0]
+    assert page.tags.count("svg") == asked.count("<svg") == len(study.layouts)
+    names = Counter(value for key, value in page.attributes if key == "id")
+    assert set(names.values()) == {1}
+    assert asked.count("This drawing is wider than the screen") == len(study.layouts)

@@ -26,7 +26,7 @@ from inerter.cli.progress import progress
 from inerter.figures.curves import thinned_band
 from inerter.figures.labels import one_method
 from inerter.files.study import checking, running, summary
-from inerter.files.study.cases import Case, Outcome, cases, portable
+from inerter.files.study.cases import Case, Cases, Outcome, cases, portable
 from inerter.files.study.journal import journal_of, outcomes
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import Gathered, dataset
@@ -78,11 +78,11 @@ def row_of(study: Study, outcome: Outcome, base: Outcome) -> dict[str, str]:
     best = np.isfinite(value)
     improvement = 100.0 * (1.0 - value / ours) if np.isfinite(ours) else np.nan
     kind, bound = outcome.status["norm"], outcome.active_bounds["c"]
-    assert study.sweep is not None
+    (swept,) = study.sweeps
     return {
         "layout": outcome.layout,
         "index": outcome.index,
-        "k [N/m]": repr(study.sweep.values[outcome.point]),
+        "k [N/m]": repr(swept.values[outcome.point]),
         "value": "" if np.isnan(value) else repr(value),
         "improvement_percent": "" if np.isnan(improvement) else repr(float(improvement)),
         "status": kind if kind == "ok" else f"{kind}: {outcome.message}",
@@ -140,18 +140,21 @@ def test_cases_are_made_when_they_are_asked_for(tmp_path: Path) -> None:
     for number in (0, 1, 999_999, 1_000_000, 3_999_999):
         case = everything[number]
         assert everything.number(case) == number
-        assert study.sweep is not None
-        assert case.swept == study.sweep.values[case.point]
-    assert portable(study).sweep == replace(study.sweep, values=())
+        (swept,) = study.sweeps
+        assert case.swept == (swept.values[case.point],)
+    assert portable(study).sweeps == (replace(swept, values=()),)
     assert portable(study).design("S1", 12e3) == study.design("S1", 12e3)
 
 
 def test_a_large_sweep_is_checked_at_its_ends_and_extremes() -> None:
     values = [float(i) for i in range(1000, 0, -1)] + [0.0] + [float(i) for i in range(1001, 100_000)]
-    tried = list(checking._tried(values))
+    tried = [values[i] for i in checking._tried(Cases((), (), (tuple(values),)))]
     assert len(tried) < 300
     assert {values[0], values[-1], 0.0, 99_999.0} <= {*tried}
-    assert list(checking._tried(values[:150])) == values[:150]
+    assert checking._tried(Cases((), (), (tuple(values[:150]),))) == list(range(150))
+    both = Cases((), (), (tuple(values), (2.0, 1.0, 3.0)))
+    corners = {(value, end) for value in (0.0, 99_999.0) for end in (1.0, 3.0)}
+    assert corners <= {both.swept(point) for point in checking._tried(both)}
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -263,7 +266,7 @@ def test_failures_are_told_one_by_one(tmp_path: Path, swift: object) -> None:
     study = study_of(tmp_path, 60)
     result = run_study(study, tmp_path / "out")
     bad = [(case, o) for case in cases(study) if (o := drawn(study, case)).kind != "ok"]
-    expected = [f"{c.layout} {c.index} {c.swept}: {o.kind}: {o.message}" for c, o in bad]
+    expected = [f"{c.layout} {c.index} {c.swept[0]}: {o.kind}: {o.message}" for c, o in bad]
     assert result.failures == expected
     assert result.not_ok == len(bad)
     assert next(result.failing()) == expected[0]

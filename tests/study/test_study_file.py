@@ -17,7 +17,9 @@ from inerter.fields import fields_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.vehicle_shapes import MECHANISM
 from inerter.files.study.loading import load_study
-from inerter.files.study.study import Study, Sweep, write_resolved
+from inerter.files.study.places import place_of
+from inerter.files.study.study import Study, Sweep
+from inerter.files.study.written import write_resolved
 from inerter.indices.registry import INDICES as INDICES_TABLE
 from inerter.indices.registry import index_settings
 from inerter.methods.registry import METHODS
@@ -116,7 +118,7 @@ def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tm
         optimise="norm",
         evaluate=("norm",),
         baseline="S2",
-        sweep=None,
+        sweeps=(),
         seed=0,
         settings={},
     )
@@ -159,9 +161,9 @@ def test_high_pass_is_an_angular_frequency(load, text, omega):
 )
 def test_swept_values(load, sweep, values):
     study = load(GOOD, ("[study]", f"[study]\nsweep = {{ k = {sweep} }}"))
-    assert study.sweep == Sweep("k", pytest.approx(values, rel=1e-14), "N/m")
-    assert study.sweep.values[0] == values[0]
-    assert study.sweep.values[-1] == values[-1]
+    (swept,) = study.sweeps
+    assert swept == Sweep(place_of("k"), pytest.approx(values, rel=1e-14), "N/m", "k")
+    assert (swept.values[0], swept.values[-1]) == (values[0], values[-1])
 
 
 def test_a_design_of_a_quarter_car(load):
@@ -174,6 +176,41 @@ def test_a_swept_value_replaces_the_value_of_the_element(load):
     strut = Spring(20e3, "k") | Damper(Free(100.0, 100e3, "c"), "c")
     assert study.design("S1", 20e3) == QuarterCar(181.75, 25.0, 120e3, strut)
     assert study.design("S1") == load(GOOD).design("S1")
+
+
+def test_places_of_all_sections_are_swept(load, tmp_path):
+    """Any number of the file, by its place: each design is that of the file with the number written there."""
+    for place, value, old in (
+        ("vehicle.sprung_mass", "300 kg", '"181.75 kg"'),
+        ("road.speed", "50 km/h", '"25 m/s"'),
+        ("elements.k", "10 kN/m", '"60 kN/m"'),
+        ("elements.c.to", "3 kN s/m", '"100 kN s/m"'),
+    ):
+        for key in (f'"{place}"', place):
+            swept = load(
+                GOOD, ("[study]", f'[study]\nsweep = {{ {key} = ["{value}", "1234 {value.split(" ", 1)[1]}"] }}')
+            )
+            written = load(GOOD, (old, f'"{value}"'))
+            (sweep,) = swept.sweeps
+            here = swept.at([sweep.values[0]])
+            assert here == written
+            assert swept.design("S1", sweep.values[0]) == written.design("S1")
+            assert_survives(swept, tmp_path)
+
+
+def test_two_places_are_swept_together(load, tmp_path):
+    both = '{ "road.speed" = ["20 m/s", "30 m/s", "10 m/s"], k = { from = "10 kN/m", to = "40 kN/m", points = 4 } }'
+    study = load(GOOD, ("[study]", f"[study]\nsweep = {both}"))
+    assert [(sweep.label, sweep.unit, sweep.words) for sweep in study.sweeps] == [
+        ("road.speed", "m/s", "speed"),
+        ("k", "N/m", "k"),
+    ]
+    here = study.at([30.0, 20e3])
+    assert (here.road.speed, here.elements["k"], here.sweeps) == (30.0, Spring(20e3, "k"), ())
+    assert study.design("S1", 30.0, 20e3) == here.design("S1")
+    with pytest.raises(StudyError, match=r"Got 1 swept values for road\.speed, k"):
+        study.at([30.0])
+    assert_survives(study, tmp_path)
 
 
 def test_a_design_of_a_half_car(load):
@@ -276,7 +313,7 @@ def test_any_values_survive_to_the_last_bit(tmp_path_factory, numbers, seed):
         layouts={"S": StrutLayout({"strut": "k | c | b"})},
         indices=("J3",),
         optimise="norm",
-        sweep=Sweep("k", (tyre, 2 * tyre), "N/m"),
+        sweeps=(Sweep(place_of("k"), (tyre, 2 * tyre), "N/m", "k"),),
         seed=seed,
         settings={"high_pass": omega},
     )
@@ -496,10 +533,68 @@ BAD = {
     "sweep word": ([sweep('{ k = "10 kN/m" }')], "study.sweep.k", ['"10 kN/m"', "points = 30"]),
     "sweep text": ([sweep('"k"')], "study.sweep", ["not a table", "points = 30"]),
     "no sweep": ([sweep("{}")], "study.sweep", ["0 swept elements", "exactly one"]),
-    "two sweeps": (
-        [sweep('{ k = ["1 N/m", "2 N/m"], b = ["1 kg", "2 kg"] }')],
+    "three sweeps": (
+        [sweep('{ k = ["1 N/m", "2 N/m"], b = ["1 kg", "2 kg"], road.speed = ["1 m/s", "2 m/s"] }')],
         "study.sweep",
-        ["2 swept elements", '"k", "b"', "exactly one"],
+        ["3 swept elements", '"k", "b"', "one, or two"],
+    ),
+    "the same sweep twice": (
+        [sweep('{ k = ["1 N/m", "2 N/m"], "elements.k" = ["1 N/m", "2 N/m"] }')],
+        "study.sweep",
+        ["k twice", "two places"],
+    ),
+    "a map of too many points": (
+        [
+            sweep(
+                '{ k = { from = "1 N/m", to = "2 N/m", points = 10000 },'
+                ' b = { from = "1 kg", to = "2 kg", points = 1001 } }'
+            )
+        ],
+        "study.sweep",
+        ["10010000 points", "at most 10000000"],
+    ),
+    "sweep of no place": (
+        [sweep('{ "rode.speed" = ["1 m/s", "2 m/s"] }')],
+        'study.sweep."rode.speed"',
+        ['"road.speed"'],
+    ),
+    "sweep of no number": (
+        [sweep('{ "vehicle.sprung_mas" = ["1 kg", "2 kg"] }')],
+        'study.sweep."vehicle.sprung_mas"',
+        ["no number at vehicle.sprung_mas", 'Did you mean "vehicle.sprung_mass"?'],
+    ),
+    "sweep of another car's number": (
+        [sweep('{ "vehicle.pitch_inertia" = ["1 kg m^2", "2 kg m^2"] }')],
+        'study.sweep."vehicle.pitch_inertia"',
+        ["no number at vehicle.pitch_inertia", "vehicle.sprung_mass"],
+    ),
+    "sweep of a word": (
+        [sweep('{ "vehicle.model" = ["1 kg", "2 kg"] }')],
+        'study.sweep."vehicle.model"',
+        ["no number"],
+    ),
+    "sweep of a section": ([sweep('{ road = ["1 kg", "2 kg"] }')], "study.sweep.road", ["not in [elements]"]),
+    "sweep of a place in another unit": (
+        [sweep('{ "road.speed" = ["1 m", "2 m"] }')],
+        'study.sweep."road.speed"',
+        ["values in m", "road.speed is in m/s"],
+    ),
+    "sweep of no speed": (
+        [sweep('{ "road.speed" = ["0 m/s", "2 m/s"] }')],
+        'study.sweep."road.speed"',
+        ["not positive"],
+    ),
+    "sweep of a number": ([sweep('{ "road.speed" = [10, 20] }')], 'study.sweep."road.speed"', ["without a unit"]),
+    "sweep in no unit": ([sweep('{ "road.speed" = ["1 xyz/s", "2 xyz/s"] }')], 'study.sweep."road.speed"', ['"xyz/s"']),
+    "sweep of bounds beyond each other": (
+        [sweep('{ "elements.c.to" = ["1 N s/m", "200 kN s/m"] }')],
+        'study.sweep."elements.c.to"',
+        ["lower < upper"],
+    ),
+    "sweep of a setting of no index": (
+        [sweep('{ "study.high_pass" = ["1 Hz", "2 Hz"] }'), ('"J3", "J1"', '"J1"')],
+        "study.high_pass",
+        ["not in indices"],
     ),
     "one point": (
         [sweep('{ k = { from = "1 N/m", to = "2 N/m", points = 1 } }')],

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 from math import isfinite, sqrt
 from typing import Any
 
@@ -21,12 +22,12 @@ Values = Mapping[str, "str | float"]
 class Design:
     """A layout with numbers only."""
 
-    name: str
-    layout: str
+    name: str = field(compare=False)
+    layout: str = field(compare=False)
     vehicle: Vehicle
-    values: dict[str, float]  # of what was free, in SI units
+    values: dict[str, float] = field(compare=False)  # of what was free, in SI units
 
-    @property
+    @cached_property
     def mechanism(self) -> Mechanism:
         """What analysis takes."""
         return self.vehicle.mechanism()
@@ -77,12 +78,6 @@ def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]
         return None
     here = next((design for design in designs if design.layout == study.baseline), None)
     return here or design_of(study, study.baseline, (body.get("values") or {}).get(study.baseline) or {})
-
-
-def elements_of(mechanism: Mechanism) -> Iterator[str]:
-    """The labels of all elements of the struts."""
-    for strut in mechanism.struts:
-        yield from (element.label for element in strut.network.elements())
 
 
 def _number(name: str, given: str | float, unit: str) -> float:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from itertools import count
 from typing import Any
 
 from inerter.app.designs import Design
@@ -20,9 +21,7 @@ def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) 
     """
     names, elements = _renamed(study, designs)
     made = deepcopy(dict(document))
-    free = {name for design in designs for name in design.vehicle.free_values()} | {
-        n for d in designs for n in d.values
-    }
+    free = {name for design in designs for name in design.values}
     kept = {name: entry for name, entry in made["elements"].items() if name not in free}
     made["elements"] = {**kept, **elements}
     keys = _keys(designs)
@@ -36,12 +35,13 @@ def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) 
     return made
 
 
-def _keys(designs: Iterable[Design]) -> list[str]:
-    """A layout's name for each design, none of them twice."""
-    keys: list[str] = []
+def _keys(designs: Sequence[Design]) -> list[str]:
+    """A name for the layout of each design, none of them twice: its own, or with a number behind it."""
+    layouts, keys = {design.layout for design in designs}, list[str]()
     for design in designs:
-        number = sum(key == design.layout or key.startswith(f"{design.layout}.") for key in keys)
-        keys.append(design.layout if not number else f"{design.layout}.{number + 1}")
+        numbered = (f"{design.layout[:35]}.{number}" for number in count(2))
+        free = (key for key in numbered if key not in keys and key not in layouts)
+        keys.append(next(free) if design.layout in keys else design.layout)
     return keys
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,12 +13,12 @@ from typing import Any
 from inerter.app.answers import optimum
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
-from inerter.app.kinds import RESULTS, Tell
+from inerter.app.kinds import RESULTS, Stopped, Tell
 from inerter.errors import DesignError, StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
-from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
+from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.methods.compare import compare
@@ -54,7 +55,7 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
         settings["indices"] = body["indices"]
     document["study"] = settings
     study = study_from(document)
-    if study.sweep is None:
+    if not study.sweeps:
         raise StudyError('A sweep needs `sweep`, such as {"k": {"from": "10 kN/m", "to": "300 kN/m", "points": 30}}.')
     wanted = body.get("layouts") or list(study.layouts)
     for layout in wanted:
@@ -69,11 +70,15 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
     def show(result: StudyResult, into: Path) -> None:
         tell(done[0], done[0], "figures and report")
         draw_study(result.data, into / FIGURES)
-        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets)
+        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
 
-    def told(count: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
+    def told(count: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
         done[0] = count
         tell(count, total, f"{last.layout} {last.index}" if last else "")
+
+    def compiling(title: str, number: int, total: int) -> None:
+        with suppress(Stopped):  # other threads tell this too; the next design will stop
+            tell(0, 0, f"compiling kernels {number} of {total}: {title}")
 
     done = [0]
     result = run_study(
@@ -81,7 +86,7 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         folder / RESULTS,
         jobs=max((os.cpu_count() or 2) - 1, 1),
         progress=told,
-        compiling=lambda title, number, total: tell(0, 0, f"compiling kernels {number} of {total}: {title}"),
+        compiling=compiling,
         finish=show,
     )
     return json.loads("".join(as_text(result)))

@@ -7,8 +7,11 @@ from textwrap import wrap
 
 from inerter.files.common.suggest import some
 from inerter.files.study.budgets import budget_cases
+from inerter.files.study.cases import cases
 from inerter.files.study.checking import check_study, study_notes
+from inerter.files.study.fronts import front_cases
 from inerter.files.study.loading import load_study
+from inerter.files.study.tolerances import tolerance_cases
 
 _WIDTH = 80
 
@@ -17,13 +20,17 @@ def check(study: Path) -> int:
     """Check a study file; returns the exit code."""
     loaded = load_study(study)
     check_study(loaded)
-    points = len(loaded.sweep.values) if loaded.sweep else 1
-    count = len(loaded.layouts) * len(loaded.indices) * points
-    budgets = f", and {len(budget_cases(loaded))} budgets" if loaded.budgets else ""
-    swept = f", {loaded.sweep.element} at {points} values" if loaded.sweep else ""
+    count = len(cases(loaded))
+    counts = {
+        "budgets": len(budget_cases(loaded)),
+        "fronts": len(front_cases(loaded)),
+        "tolerances": len(tolerance_cases(loaded)),
+    }
+    further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
+    swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in loaded.sweeps)
     _say(
         f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
-        f": {count} designs to {'find' if loaded.optimise else 'judge'}{budgets}."
+        f": {count} designs to {'find' if loaded.optimise else 'judge'}{further}."
     )
     for note in study_notes(loaded):
         _say(f"Note: {note}.")

@@ -16,17 +16,20 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.options import OWN, Cluster
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
+from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
+from inerter.report.answers import answers
 from inerter.report.budgets import budget_lines
-from inerter.report.findings import headlines
+from inerter.report.fronts import front_lines
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table, wrapped
+from inerter.report.tolerances import tolerance_lines
 
 _MOST = 20  # designs that are told one by one
 
@@ -48,10 +51,12 @@ def run(
 
     def show(result: StudyResult, into: Path) -> None:
         draw_study(result.data, into / FIGURES)
-        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets)
+        draw_layouts(loaded, into / FIGURES)
+        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
 
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
-    items = "designs and budgets" if loaded.budgets else "designs"
+    asked = {"budgets": loaded.budgets, "fronts": loaded.trade_off, "tolerances": loaded.tolerance}
+    items = " and ".join(["designs", *(kind for kind, some in asked.items() if some)])
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,
@@ -73,11 +78,17 @@ def run(
         for text in as_text(result):
             print(text, end="")
     else:
-        print("\n".join(line for text in (loaded.title, *headlines(result.data)) for line in wrapped(text)))
-        print(f"\n{summary_table(result.data)}")
-        print("".join(f"{line}\n" for line in budget_lines(result.budgets, loaded, WIDTH)), end="")
+        print("\n".join([*wrapped(loaded.title), "", summary_table(result.data)]))
+        lines = (
+            *front_lines(result.data, WIDTH),
+            *tolerance_lines(result.tolerances, WIDTH),
+            *budget_lines(result.budgets, loaded, WIDTH),
+        )
+        print("".join(f"{line}\n" for line in lines), end="")
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
+        told = answers(result.data, loaded, result.budgets)
+        print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
     return _judge(result)
 
 

@@ -22,8 +22,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
+from inerter.files.study.journal import Further
 from inerter.files.study.running import Progress as Report
 from inerter.kernels.prepare import Told
 from inerter.work.cluster import slots
@@ -60,7 +60,7 @@ def progress(what: str, items: str = "designs", executor: Executor | None = None
         task = bar.add_task(what, total=None, pace="")
         pace = _Pace()
 
-        def show(done: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
+        def show(done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
             pace.begin(done)
             name = f"{what}: {last.layout} {last.index}{_not_ok(not_ok)}" if last else what
             told = f"{pace.rate(done):.3g}/s{_hands(executor)}" if last else ""
@@ -173,7 +173,7 @@ class _Lines:
     pace: _Pace = field(default_factory=_Pace)
     last: float = field(default_factory=time.monotonic)
 
-    def __call__(self, done: int, total: int, last: Outcome | BudgetOutcome | None, not_ok: int) -> None:
+    def __call__(self, done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
         self.pace.begin(done)
         if last is None and done < total:
             kept = f", {done} of them done before" if done else ""

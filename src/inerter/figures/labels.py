@@ -11,13 +11,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from inerter.units import format_quantity, parse_quantity
+from inerter.units import PURE, format_quantity, parse_quantity
 
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
+NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -61,9 +62,25 @@ def error_of(design: xr.Dataset, of: str = "value") -> float:
     return float(design[name]) if name in design else np.nan
 
 
+def swept_places(results: xr.Dataset) -> list[str]:
+    """The places that the study sweeps, such as elements by their names; they are also names of dimensions."""
+    return [str(name) for name in results["status"].dims if name not in ("layout", "index")]
+
+
 def swept_element(results: xr.Dataset) -> str | None:
-    """The element that the study sweeps; its name is also that of the dimension."""
-    return next((str(name) for name in results["status"].dims if name not in ("layout", "index")), None)
+    """The place that the study sweeps, where it sweeps but one."""
+    return next(iter(swept_places(results)), None)
+
+
+def swept_words(results: xr.Dataset) -> list[str]:
+    """What is swept, in words."""
+    return [str(results[place].attrs["long_name"]) for place in swept_places(results)]
+
+
+def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
+    """The label of an axis of swept values: what an element is called stays as it is."""
+    words = str(results[place].attrs["long_name"])
+    return axis_label(words if words == place else capital(words), unit)
 
 
 def layouts(results: xr.Dataset) -> list[str]:
@@ -93,6 +110,31 @@ def index_unit(results: xr.Dataset, index: str) -> str:
     return str(results["index_unit"].sel(index=index).item())
 
 
+def titled(title: str, name: str, form: str = "{} ({})") -> str:
+    """What an index is, with what the study calls it, unless that says the same.
+
+    >>> titled("ride comfort", "J1"), titled("dynamic tyre load", "tyre-load")
+    ('ride comfort (J1)', 'dynamic tyre load')
+    """
+    return title if name.replace("-", " ") in title else form.format(title, name)
+
+
+def criteria(results: xr.Dataset) -> list[str]:
+    """The indices of the trade-off that the study asks for; none if it asks for none."""
+    names: list[str] = results["criterion"].values.tolist() if "front_value" in results else []
+    return names
+
+
+def criterion_title(results: xr.Dataset, name: str) -> str:
+    """The name of an index of a trade-off in words."""
+    return str(results["criterion_title"].sel(criterion=name).item())
+
+
+def criterion_unit(results: xr.Dataset, name: str) -> str:
+    """The unit of an index of a trade-off."""
+    return str(results["criterion_unit"].sel(criterion=name).item())
+
+
 def flat_range(entry: xr.Dataset) -> str:
     """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
@@ -120,7 +162,7 @@ def with_unit(value: float, unit: str, error: float = np.nan) -> str:
     if not shows_error(value, error):
         return format_quantity(value, unit)
     own = scale([value], unit)
-    return f"{measured(value * own.factor, error * own.factor)} {own.unit}"
+    return f"{measured(value * own.factor, error * own.factor)} {own.unit}".removesuffix(f" {PURE}")
 
 
 def shows_error(value: float, error: float) -> bool:
@@ -176,7 +218,7 @@ def scale(values: ArrayLike, unit: str) -> Scale:
     sizes = np.abs(np.asarray(values, dtype=float))
     sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
     _, _, prefixed = format_quantity(float(np.median(sizes)) if sizes.size else 1.0, unit).partition(" ")
-    return Scale(1.0, unit) if prefixed == unit else Scale(1.0 / parse_quantity(f"1 {prefixed}", unit), prefixed)
+    return Scale(1.0, unit) if prefixed in ("", unit) else Scale(1.0 / parse_quantity(f"1 {prefixed}", unit), prefixed)
 
 
 def axis_label(what: str, unit: str) -> str:

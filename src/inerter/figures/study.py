@@ -7,14 +7,31 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
-from inerter.figures.labels import compared, index_title, indices, layouts, methods, one_method, swept_element
-from inerter.figures.style import add_legend, new_figure, save, styled
+from inerter.figures.fronts import front_curves, pairs
+from inerter.figures.labels import (
+    by_which,
+    compared,
+    criteria,
+    criterion_title,
+    index_title,
+    indices,
+    layouts,
+    methods,
+    one_method,
+    swept_places,
+    swept_words,
+    titled,
+)
+from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
+from inerter.figures.style import WIDE, add_legend, new_figure, save, styled
 from inerter.figures.sweeps import parameter_curves, sweep_curves
 
+_MOST_MAPS = 3  # side by side
 _MOST_ENTRIES = 9  # of a legend below a figure of the usual height
 
 
@@ -29,7 +46,7 @@ class StudyFigure:
 
 def study_figures(results: xr.Dataset) -> list[StudyFigure]:
     """All figures of a study, in the order of a report. Nothing is drawn yet."""
-    return list(_of_designs(results) if swept_element(results) is None else _of_sweep(results))
+    return list((_of_designs, _of_sweep, _of_map)[len(swept_places(results))](results))
 
 
 def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:
@@ -56,20 +73,28 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"Improvement over {baseline} by each method." + _uncertain(every, " Bars with caps: one standard error."),
             partial(_methods, every),
         )
+    if criteria(every) and bool(np.isfinite(every["front_value"]).any()):
+        yield StudyFigure(
+            "front",
+            f"Trade-off between {' and '.join(criterion_title(every, name) for name in criteria(every))}: no design of "
+            "a layout is better in all of them. Large open markers: the knee, beyond which either is bought dearly."
+            + (" Gaps: there the front leaps to another kind of design." if bool(every["front_jump"].any()) else ""),
+            partial(_front, every),
+        )
     linear = "Linear frequency response" if "realisations" in results else "Frequency response"
     for index in indices(results):
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
-                f"{linear} of the designs that are best for {index_title(results, index)} ({index}).",
+                f"{linear} of the designs that are best for {titled(index_title(results, index), index)}.",
                 partial(_response, results, index),
             )
 
 
 def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
-    element, baseline = swept_element(results), results.attrs["baseline"]
+    (element,), baseline = swept_words(results), results.attrs["baseline"]
     for index in indices(results):
-        title = f"{index_title(results, index)} ({index})"
+        title = titled(index_title(results, index), index)
         versus = f", and improvement over the best {baseline} of the same {element}" if compared(results) else ""
         yield StudyFigure(
             f"sweep-{index}",
@@ -87,9 +112,41 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
             )
 
 
+def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
+    words, results = " and ".join(swept_words(results)), one_method(results)
+    baseline = results.attrs["baseline"]
+    for index in indices(results):
+        title = titled(index_title(results, index), index)
+        versus = f" of {baseline}, and improvement over it of every other layout" if compared(results) else ""
+        yield StudyFigure(
+            f"map-{index}",
+            f"Best {title}{versus}, over {words}{by_which(results)}."
+            + (f" Heavy line: as good as {baseline}." if compared(results) else "")
+            + " Dots: the designs that were found; between them the map is interpolated."
+            + (" Grey: no finite value." if not bool(np.isfinite(results["value"].sel(index=index)).all()) else ""),
+            partial(_map, results, index),
+        )
+        for parameter in results["parameter"].values.tolist():
+            shown = parameter_panels(results, index, parameter)
+            if shown:
+                yield StudyFigure(
+                    f"map-{parameter}-{index}",
+                    f"Best {parameter} for {title}, over {words}. Open circles: at a bound.",
+                    partial(_parameter_map, results, index, parameter),
+                )
+
+
 def _uncertain(results: xr.Dataset, sentence: str) -> str:
     """The sentence if there is a standard error that can be seen."""
     return sentence if "improvement_error" in results and bool((results["improvement_error"] > 0.0).any()) else ""
+
+
+def _front(results: xr.Dataset) -> Figure:
+    panels = len(pairs(results))
+    figure, axes = new_figure(panels, panels, height=3.6 if panels == 1 else 2.9, width=WIDE if panels > 1 else 5.0)
+    front_curves(results, axes)
+    add_legend(figure, axes)
+    return figure
 
 
 def _methods(results: xr.Dataset) -> Figure:
@@ -124,6 +181,20 @@ def _sweep(results: xr.Dataset, index: str) -> Figure:
     figure, axes = new_figure(panels, panels, height=3.4 if crowded else 2.9)
     sweep_curves(results, index, axes)
     add_legend(figure, axes)
+    return figure
+
+
+def _map(results: xr.Dataset, index: str) -> Figure:
+    panels = results.sizes["layout"]
+    figure, axes = new_figure(panels, min(panels, _MOST_MAPS), height=2.7)
+    index_maps(results, index, axes)
+    return figure
+
+
+def _parameter_map(results: xr.Dataset, index: str, parameter: str) -> Figure:
+    panels = len(parameter_panels(results, index, parameter))
+    figure, axes = new_figure(panels, min(panels, _MOST_MAPS), height=2.7)
+    parameter_maps(results, index, parameter, axes)
     return figure
 
 

@@ -11,18 +11,21 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from numpy.typing import ArrayLike
 
 from inerter.figures.labels import typeset
 from inerter.writing import whole
 
 NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
+_LOG_RATIO = 20.0  # values within this ratio are on a linear axis
 _LABELLED_RATIO = 300.0  # up to which ratio a log axis labels 2 and 5 too
 
 # Okabe and Ito (2008), distinct for all kinds of colour vision; without yellow, which is faint on white.
@@ -142,6 +145,12 @@ def add_legend(figure: Figure, axes: Iterable[Axes], most: int | None = None) ->
             break
         legend.remove()
     return legend
+
+
+def suits_log_axis(values: ArrayLike) -> bool:
+    """Whether a logarithmic axis spreads some values more evenly than a linear one."""
+    low, middle, high = np.quantile(np.asarray(values, dtype=float), (0.0, 0.5, 1.0))
+    return bool(low > 0.0 and high > _LOG_RATIO * low and middle**2 < (low + high) / 2.0 * np.sqrt(low * high))
 
 
 def log_axis(ax: Axes, which: str, *, least_ratio: float = _LEAST_RATIO) -> None:

@@ -26,13 +26,14 @@ from inerter.figures.labels import (
     one_method,
     scale,
     swept_element,
+    swept_label,
+    titled,
 )
-from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line
+from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
 
 Array = NDArray[np.float64]
 
 _MOST_MARKERS = 40
-_LOG_RATIO = 20.0  # swept values within this ratio are on a linear axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,11 +74,9 @@ class _Sweep:
 
     def finish(self, axes: Sequence[Axes]) -> None:
         """The axes of the swept values: logarithmic if that spreads them more evenly."""
-        low, middle, high = np.quantile(self.values, (0.0, 0.5, 1.0))
-        logarithmic = low > 0.0 and high > _LOG_RATIO * low and middle**2 < (low + high) / 2.0 * np.sqrt(low * high)
         for ax in axes:
             ax.set_xlabel(self.label)
-            if logarithmic:
+            if suits_log_axis(self.values):
                 log_axis(ax, "x")
 
 
@@ -94,7 +93,7 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
     for one, line in zip(sweeps, lines, strict=True):
         for name in layouts(results):
             _curve(one, left, name, "value", unit.factor, line)
-    left.set_ylabel(axis_label(f"{capital(index_title(results, index))} {index}", unit.unit))
+    left.set_ylabel(axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit))
     for ax in right:
         for one, line in zip(sweeps, lines, strict=True):
             for name in compared(results):
@@ -154,4 +153,4 @@ def _sweep(results: xr.Dataset, index: str) -> _Sweep:
     data = one_method(results).sel(index=index).sortby(element).transpose("layout", element, ...)
     unit = scale(data[element].values, data[element].attrs["units"])
     styles = layout_styles(layouts(results), results.attrs["baseline"])
-    return _Sweep(data, data[element].values * unit.factor, axis_label(element, unit.unit), styles)
+    return _Sweep(data, data[element].values * unit.factor, swept_label(results, element, unit.unit), styles)

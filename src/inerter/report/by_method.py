@@ -23,11 +23,12 @@ from inerter.figures.labels import (
     percent,
     scale,
     shows_error,
-    swept_element,
+    swept_places,
+    titled,
     typeset,
     with_unit,
 )
-from inerter.report.findings import extremes
+from inerter.report.findings import extremes, place_text
 from inerter.report.tables import Cell, Row, Table
 
 _LONGEST_NAME = 20
@@ -69,18 +70,18 @@ def _table(results: xr.Dataset, index: str) -> Table:
     for name in _names(results):
         entries = [_entry(by_method(results, method), index, name, unit) for method in methods(results)]
         rows.append(Row(name, [Cell(_typeset(entry.first), _typeset(entry.second)) for entry in entries]))
-    caption = f"{index_title(results, index)} ({index}) {_what(results, unit)}"
+    caption = f"{titled(index_title(results, index), index)} {_what(results, unit)}"
     return Table(typeset(caption[:1].upper() + caption[1:]), ["Layout", *methods(results)], rows)
 
 
 def _what(results: xr.Dataset, unit: Scale) -> str:
-    if swept_element(results) is None:
+    if not swept_places(results):
         return f"by each method, in {unit.unit}"
     return "by each method, at its best" + (f" compared with {results.attrs['baseline']}" if compared(results) else "")
 
 
 def _names(results: xr.Dataset) -> list[str]:
-    return layouts(results) if swept_element(results) is None else compared(results) or layouts(results)
+    return (compared(results) if swept_places(results) else []) or layouts(results)
 
 
 def _unit(results: xr.Dataset, index: str) -> Scale:
@@ -89,18 +90,18 @@ def _unit(results: xr.Dataset, index: str) -> Scale:
 
 def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
     """Value and improvement; over a sweep the largest improvement, or the least value, and where it is."""
-    row, baseline, element = results.sel(layout=layout, index=index), results.attrs["baseline"], swept_element(results)
-    if element is None:
+    row, baseline = results.sel(layout=layout, index=index), results.attrs["baseline"]
+    if not swept_places(results):
         value, error = float(row["value"]) * unit.factor, error_of(row) * unit.factor
         better = "" if layout == baseline or not baseline else _percent(row)
         return _Entry(measured(value, error) if shows_error(value, error) else _plain(value), better)
-    ends = extremes(row["improvement" if compared(results) else "value"], element)
+    ends = extremes(row["improvement" if compared(results) else "value"])
     if ends is None:
         return _Entry("n/a")
     place = ends[1] if compared(results) else ends[0]
-    here = row.sel({element: place[1]})
+    here = row.sel(place[1])
     text = _percent(here) if compared(results) else with_unit(place[0], index_unit(results, index), error_of(here))
-    return _Entry(text, f"at {with_unit(place[1], results[element].attrs['units'])}")
+    return _Entry(text, f"at {place_text(results, place[1])}")
 
 
 def _percent(design: xr.Dataset) -> str:

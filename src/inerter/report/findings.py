@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 import scipy
 import xarray as xr
 
+from inerter.errors import StatusKind
 from inerter.figures.labels import (
+    NOTICEABLE,
     by_method,
     by_which,
     compared,
@@ -21,24 +24,43 @@ from inerter.figures.labels import (
     one_method,
     percent,
     swept_element,
+    swept_places,
+    swept_words,
     with_unit,
 )
 from inerter.methods.ties import equally_least
 
 Writer = Callable[[float, str, float], str]
 
+_STATIC = "the static limit, which no damper or inerter lowers"
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
-_NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 
 
-def headlines(results: xr.Dataset, write: Writer = with_unit) -> list[str]:
-    """One sentence for each index: which layout is best, how good it is, and how much better than the baseline.
+@dataclass(frozen=True)
+class Telling:
+    """How findings are told: `write` turns a number, its unit and its error into text.
 
-    `write` turns a number and its unit into text.
+    `ways` are words for methods, such as "with friction"; `static` are indices and layouts whose largest gain is that
+    under a steady force.
     """
-    if swept_element(results) is None:
-        return [_of_designs(results, index, write) for index in indices(results)]
-    return [_of_sweep(one_method(results), index, write) for index in indices(results)]
+
+    write: Writer = with_unit
+    ways: Mapping[str, str] = field(default_factory=dict)
+    static: frozenset[tuple[str, str]] = frozenset()
+
+    def way(self, results: xr.Dataset, method: str) -> str:
+        """Words for a method of these results; empty where there is but one and nothing to tell of it."""
+        return self.ways.get(method, f"by {method}" if len(methods(results)) > 1 else "")
+
+
+PLAIN = Telling()
+
+
+def headlines(results: xr.Dataset, telling: Telling = PLAIN) -> list[str]:
+    """One sentence for each index: which layout is best, how good it is, and how much better than the baseline."""
+    if not swept_places(results):
+        return [_of_designs(results, index, telling) for index in indices(results)]
+    return [_of_sweep(results, index, telling) for index in indices(results)]
 
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
@@ -48,9 +70,34 @@ def best_layout(results: xr.Dataset, index: str) -> str | None:
 
 def best_layouts(results: xr.Dataset, index: str) -> list[str]:
     """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
-    values = one_method(results)["value"].sel(index=index).squeeze()
+    row = one_method(results).sel(index=index).squeeze()
+    values = np.atleast_1d(row["value"].values).tolist()
+    least = equally_least(values)
+    if not least:
+        return []
+    margins = _margins(row, least[0])
     names = results["layout"].values.tolist()
-    return _simplest_first(results, [names[i] for i in equally_least(values.values.reshape(-1).tolist())])
+    best = [i for i, value in enumerate(values) if i in least or value - values[least[0]] <= margins[i]]
+    return _simplest_first(results, [names[i] for i in best])
+
+
+def _margins(row: xr.Dataset, best: int) -> list[float]:
+    """How much larger than that of the `best` each value may be by chance, with 95 % confidence; zero without errors.
+
+    Where there is a baseline, errors are those of differences from it on the same roads.
+    """
+    if "standard_error" not in row or "realisations" not in row:
+        return [0.0] * row.sizes.get("layout", 1)
+    names, baseline = np.atleast_1d(row["layout"].values).tolist(), row.attrs["baseline"]
+    errors = np.atleast_1d(row["standard_error"].values)
+    if baseline and "improvement_error" in row:
+        own = np.atleast_1d(row["improvement_error"].values) / 100.0 * float(row["value"].sel(layout=baseline))
+        known = [names.index(baseline) == i or np.isfinite(own[i]) for i in range(len(names))]
+        errors = np.where(known, np.where(np.array(names) == baseline, 0.0, own), errors)
+    freedom = np.maximum(np.atleast_1d(row["realisations"].values) - 1, 1)
+    student = scipy.special.stdtrit(np.minimum(freedom, freedom[best]), 0.975)
+    found = student * np.hypot(errors, errors[best])
+    return [float(margin) for margin in np.nan_to_num(found)]
 
 
 def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
@@ -60,18 +107,34 @@ def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: int(results["elements"].sel(layout=name)))
 
 
-def _as_good(names: list[str]) -> str:
-    return f" (equally good: {_listed(names[1:])})" if len(names) > 1 else ""
+def _alike(names: list[str]) -> str:
+    return f"{listed(names)}, equally good" if len(names) > 1 else names[0]
 
 
-def extremes(row: xr.DataArray, element: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """The least and the largest finite number over the swept element, each with the swept value; None if none is."""
-    finite = np.isfinite(row.values)
-    if not finite.any():
+Extreme = tuple[float, dict[str, float]]  # a number, and the swept values where it is
+
+
+def extremes(row: xr.DataArray) -> tuple[Extreme, Extreme] | None:
+    """The least and the largest finite number over the swept places; None if none is finite."""
+    numbers = row.values.ravel()
+    finite = np.flatnonzero(np.isfinite(numbers))
+    if not finite.size:
         return None
-    numbers, swept = row.values[finite], row[element].values[finite]
-    least, largest = np.argmin(numbers), np.argmax(numbers)
-    return (float(numbers[least]), float(swept[least])), (float(numbers[largest]), float(swept[largest]))
+
+    def extreme(number: int) -> Extreme:
+        place = np.unravel_index(number, row.shape)
+        return float(numbers[number]), {str(d): float(row[d].values[i]) for d, i in zip(row.dims, place, strict=True)}
+
+    return extreme(finite[np.argmin(numbers[finite])]), extreme(finite[np.argmax(numbers[finite])])
+
+
+def place_text(results: xr.Dataset, place: dict[str, float], write: Writer = with_unit, *, named: bool = False) -> str:
+    """Swept values with their units, as a sentence has them if they are `named`."""
+    texts = []
+    for name, value in place.items():
+        text = write(value, results[name].attrs["units"], np.nan)
+        texts.append(f"{results[name].attrs['long_name']} = {text}" if named else text)
+    return ", ".join(texts) or "n/a"
 
 
 def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float, float]]:
@@ -84,7 +147,7 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     row = results.sel(layout=layout, index=index).sortby(element)
     swept, better = row[element].values, row["improvement"].values
     errors = row["improvement_error"].values if "improvement_error" in row else np.zeros(better.size)
-    told = np.flatnonzero(np.isfinite(better) & (np.abs(better) >= _NOTICEABLE))
+    told = np.flatnonzero(np.isfinite(better) & (np.abs(better) >= NOTICEABLE))
     if told.size < 2:
         return []
     curve, found = scipy.interpolate.PchipInterpolator(swept[told], better[told]), []
@@ -98,9 +161,32 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     return found
 
 
+def over_the_sweep(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
+    """Each index, and where each layout is better than the baseline: crossings over one place, a share over two."""
+    return crossing_sentences(results, write) if len(swept_places(results)) == 1 else _shares(results)
+
+
+def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
+    """Each index, and at how many points of a map each layout is better than the baseline."""
+    sentences = []
+    for index in indices(results):
+        for name in compared(results):
+            better = one_method(results)["improvement"].sel(layout=name, index=index).values
+            counts = {
+                "better than": int((better >= NOTICEABLE).sum()),
+                "as good as": int((np.abs(better) < NOTICEABLE).sum()),
+                "worse than": int((better <= -NOTICEABLE).sum()),
+            }
+            told = [f"{words} {results.attrs['baseline']} at {count}" for words, count in counts.items() if count]
+            if told:
+                sentences.append((index, f"{name} is {listed(told)} of {better.size} points{by_which(results)}"))
+    return sentences
+
+
 def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
-    """Each index, and where each layout crosses the baseline over a sweep. For a study with a sweep."""
+    """Each index, and where each layout crosses the baseline over a sweep. For a study with one swept place."""
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
+    words = results[element].attrs["long_name"]
     several = len(methods(results)) > 1
     ways = {f" by {m}": by_method(results, m) for m in methods(results)} if several else {"": one_method(results)}
     sentences = []
@@ -110,7 +196,7 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
             unit = results[element].attrs["units"]
             texts = [_places(places, unit, write) + by for by, places in found.items() if places]
             if texts:
-                said = f"{name} and {baseline} are equally good at {element} = {', '.join(texts)}"
+                said = f"{name} and {baseline} are equally good at {words} = {', '.join(texts)}"
                 sentences.append((index, said))
     return sentences
 
@@ -119,66 +205,103 @@ def _places(found: list[tuple[float, float]], unit: str, write: Writer) -> str:
     """Swept values with their errors; of many the first, and how many there are."""
     more = len(found) - _MOST_PLACES
     texts = [write(at, unit, error) for at, error in found[:_MOST_PLACES]]
-    return _listed([*texts, *([f"{more} other values"] if more > 0 else [])])
+    return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def _listed(words: list[str]) -> str:
+def listed(words: list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
-    every, results = results, one_method(results)
-    title, baseline = index_title(results, index), results.attrs["baseline"]
+def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
+    title = f"Best {index_title(results, index)}"
     names = best_layouts(results, index)
     if not names:
-        return f"Best {title}: no layout has a finite value."
-    best = names[0]
-    design = results.sel(layout=best, index=index)
-    value = write(float(design["value"]), index_unit(results, index), error_of(design))
-    answer = f"Best {title}: {best}{_as_good(names)}, {value}"
-    if best == baseline:
-        return f"{answer}; no other layout is better than this baseline."
+        return f"{title}: {_none(results, index)}."
+    ways = {method: telling.way(results, method) for method in methods(results)} or {"": ""}
+    parts: list[str] = []
+    for method, way in ways.items():
+        one = by_method(results, method) if method else results
+        if not parts:
+            parts.append(f"{' '.join(filter(None, (title, way)))}: {_verdict(one, index, telling)}")
+        elif best_layouts(one, index)[:1] == names[:1]:
+            parts.append(f"{way} still {_still(one, index, names[0])}")
+        else:
+            parts.append(f"{way} {_verdict(one, index, telling)}")
+    return f"{'; '.join(parts)}."
+
+
+def _verdict(results: xr.Dataset, index: str, telling: Telling) -> str:
+    """By one method: the best layouts, the value, and how it compares with the baseline."""
+    names, baseline = best_layouts(results, index), results.attrs["baseline"]
+    if not names:
+        return _none(results, index)
+    design = results.sel(layout=names[0], index=index)
+    value = telling.write(float(design["value"]), index_unit(results, index), error_of(design))
+    limit = f", {_STATIC}" if (index, names[0]) in telling.static else ""
+    answer = f"{_alike(names)}, {value}{limit}"
+    if names[0] == baseline:
+        return f"{answer}; no other layout is better than this baseline"
     improvement = float(design["improvement"])
     if not np.isfinite(improvement):
-        return f"{answer}; {baseline} has no finite value." if baseline else f"{answer}."
-    if improvement < _NOTICEABLE:
-        return f"{answer}, no better than {baseline}."
-    better = percent(improvement, error_of(design, "improvement")).removeprefix("+")
-    if len(methods(every)) < 2:
-        return f"{answer}, {better} better than {baseline}."
-    first, *others = methods(every)
-    further = []
-    for method in others:
-        by = by_method(every, method).sel(layout=best, index=index)
-        text = percent(float(by["improvement"]), error_of(by, "improvement")).removeprefix("+")
-        further.append(f"{text} by {method}")
-    return f"{answer}, {better} better than {baseline} by {first}, {_listed(further)}."
+        return f"{answer}; {_without(results, index, baseline)}" if baseline else answer
+    if improvement < NOTICEABLE:
+        return f"{answer}, no better than {baseline}"
+    return f"{answer}, {_better(design)} better than {baseline}"
 
 
-def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
-    element, title, baseline = str(swept_element(results)), index_title(results, index), results.attrs["baseline"]
-    unit = results[element].attrs["units"]
+def _still(results: xr.Dataset, index: str, name: str) -> str:
+    """The same layout by another method."""
+    design = results.sel(layout=name, index=index)
+    if name == results.attrs["baseline"] or not np.isfinite(float(design["improvement"])):
+        return name
+    return f"{name}, {_better(design)} better"
+
+
+def _better(design: xr.Dataset) -> str:
+    return percent(float(design["improvement"]), error_of(design, "improvement")).removeprefix("+")
+
+
+def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
+    results, write = one_method(every), telling.write
+    way = next((telling.way(every, method) for method in methods(every)), "")
+    by = f", {way}" if way else ""
+    swept, title, baseline = swept_words(results), index_title(results, index), results.attrs["baseline"]
     layouts = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
-    found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name), element)) is not None}
+    found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
-        return f"Best {title}: no layout has a finite value."
+        return f"Best {title}: {_none(results, index)}."
     if not compared(results):
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
         value, at = found[names[0]][0]
         text = write(value, index_unit(results, index), np.nan)
-        return f"Best {title}: {names[0]}{_as_good(names)}, {text} at {element} = {write(at, unit, np.nan)}."
+        where = place_text(results, at, write, named=True)
+        return f"Best {title}: {_alike(names)}, {text} at {where}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]
-    if largest < _NOTICEABLE:
-        return f"Best {title}: no layout is better than {baseline} at any {element}."
-    best = f"{names[0]}{_as_good(names)}, {largest:.1f} % better at {element} = {write(at, unit, np.nan)}"
+    if largest < NOTICEABLE:
+        return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
+    where = place_text(results, at, write, named=True)
+    best = f"{_alike(names)}, {largest:.1f} % better at {where}"
     return (
-        f"Best {title} compared with {baseline} of the same {element}{by_which(results)}: {best}; its improvement over "
-        f"the sweep lies {_range(least, largest)}."
+        f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
+        f"improvement over the sweep lies {_range(least, largest)}."
     )
+
+
+def _without(results: xr.Dataset, index: str, layout: str) -> str:
+    """That a layout has no value, and why."""
+    status = str(results["status"].sel(layout=layout, index=index).item())
+    infeasible = status.startswith(StatusKind.INFEASIBLE.value)
+    return f"no {layout} keeps the limits" if infeasible else f"{layout} has no finite value"
+
+
+def _none(results: xr.Dataset, index: str) -> str:
+    """Why there is no best layout."""
+    kinds = {str(status).partition(":")[0] for status in results["status"].sel(index=index).values.ravel()}
+    return "no layout keeps the limits" if kinds == {StatusKind.INFEASIBLE.value} else "no layout has a finite value"
 
 
 def _range(least: float, largest: float) -> str:

@@ -5,28 +5,39 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 
 import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from inerter.figures.labels import printed, swept_element, typeset
+from inerter.figures.labels import printed, swept_places, typeset
+from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.running import RESOLVED
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study, Sweep
+from inerter.files.study.tolerances import ToleranceOutcome
+from inerter.files.study.written import write_resolved
+from inerter.report.answers import answers
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
-from inerter.report.findings import crossing_sentences, headlines
-from inerter.report.question import computation, element_rows, index_rows, layout_rows, vehicle_rows
-from inerter.report.tables import design_tables, sweep_tables, trade_off_tables, where_all_are
+from inerter.report.findings import over_the_sweep
+from inerter.report.fronts import front_tables
+from inerter.report.limits import limit_tables
+from inerter.report.question import computation, condition_rows, element_rows, index_rows, layout_rows, vehicle_rows
+from inerter.report.tables import tables_of, trade_off_tables, where_all_are
+from inerter.report.tolerances import tolerance_tables
 from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
+_LARGER = 1.2  # than they are drawn, are drawings between text
 _MOST_SWEPT = 1000  # values of a sweep on a page
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
+_WIDTH = re.compile(r'viewBox="0 0 ([\d.]+) ')
+_PART = re.compile(r"<h2>(.*?)</h2>")
 _REFERENCE = re.compile(r'(\bid="|href="#|url\(#)')
 
 
@@ -39,33 +50,49 @@ class PageFigure:
 
 
 def write_report(
-    results: xr.Dataset, study: Study, figures: Path, path: Path, budgets: Sequence[BudgetOutcome] = ()
+    results: xr.Dataset,
+    study: Study,
+    figures: Path,
+    path: Path,
+    budgets: Sequence[BudgetOutcome] = (),
+    tolerances: Sequence[ToleranceOutcome] = (),
 ) -> Path:
     """Write the report of `study` to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
-    write_text(path, report(results, study, figures, budgets))
+    write_text(path, report(results, study, figures, budgets, tolerances))
     return path
 
 
-def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[BudgetOutcome] = ()) -> str:
+def report(
+    results: xr.Dataset,
+    study: Study,
+    figures: Path,
+    budgets: Sequence[BudgetOutcome] = (),
+    tolerances: Sequence[ToleranceOutcome] = (),
+) -> str:
     """The page as text."""
-    swept = swept_element(results)
-    return (
+    swept = swept_places(results)
+    return with_contents(
         environment()
         .get_template("report.html")
         .render(
             title=results.attrs["title"],
-            swept=swept is not None,
+            swept=bool(swept),
             searched=study.optimise is not None,
-            headlines=[printed_sentence(sentence) for sentence in headlines(results, printed)],
+            headlines=[printed_sentence(sentence) for sentence in answers(results, study, budgets, printed)],
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
             layouts=layout_rows(study),
+            drawings=dict(_layout_drawings(study, figures)),
             indices=index_rows(results),
-            tables=design_tables(results) if swept is None else sweep_tables(results),
+            tables=tables_of(results),
             by_method=method_tables(results),
             remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
             budgets=budget_tables(budgets, study),
-            trade_offs=trade_off_tables(results) if swept is None else [],
+            fronts=front_tables(results),
+            tolerances=tolerance_tables(tolerances),
+            limits=limit_tables(results),
+            conditions=condition_rows(study),
+            trade_offs=[] if swept else trade_off_tables(results),
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),
             computation=list(computation(study, results)),
@@ -74,20 +101,32 @@ def report(results: xr.Dataset, study: Study, figures: Path, budgets: Sequence[B
     )
 
 
+def _layout_drawings(study: Study, folder: Path) -> Iterator[tuple[str, Markup]]:
+    """The networks of each layout, in the size in which they are drawn."""
+    for layout in study.layouts:
+        path = folder / f"{layout_figure(layout)}.svg"
+        if path.exists():
+            name = layout_figure(layout)
+            yield layout, inline(path.read_text(encoding="utf-8"), name, f"Networks of {layout}", natural=True)
+
+
 def _remarks(results: xr.Dataset) -> list[str]:
-    """What goes below the tables of a sweep: where layouts cross the baseline, and where the other designs are."""
-    crossings = crossing_sentences(results, printed) if results.attrs["baseline"] else []
-    return [*(f"{index}: {sentence}." for index, sentence in crossings), *where_all_are(results)]
+    """What goes below the tables of a sweep: where layouts are better than the baseline, where other designs are."""
+    told = over_the_sweep(results, printed) if results.attrs["baseline"] else []
+    return [*(f"{index}: {sentence}." for index, sentence in told), *where_all_are(results)]
 
 
 def _study_file(study: Study) -> str:
     """The study as it was resolved; of a great many swept values the ends, and where they all are."""
-    sweep = study.sweep
-    if sweep is None or len(sweep.values) <= _MOST_SWEPT:
-        return write_resolved(study)
-    ends = (*sweep.values[: _MOST_SWEPT // 2], *sweep.values[-_MOST_SWEPT // 2 :])
-    note = f"# {_MOST_SWEPT} of the {len(sweep.values)} values of {sweep.element}; {RESOLVED} has all.\n"
-    return note + write_resolved(replace(study, sweep=replace(sweep, values=ends)))
+    long = [sweep for sweep in study.sweeps if len(sweep.values) > _MOST_SWEPT]
+    notes = [f"# {_MOST_SWEPT} of the {len(s.values)} values of {s.label}; {RESOLVED} has all.\n" for s in long]
+    return "".join(notes) + write_resolved(replace(study, sweeps=tuple(map(_ends, study.sweeps))))
+
+
+def _ends(sweep: Sweep) -> Sweep:
+    if len(sweep.values) <= _MOST_SWEPT:
+        return sweep
+    return replace(sweep, values=(*sweep.values[: _MOST_SWEPT // 2], *sweep.values[-_MOST_SWEPT // 2 :]))
 
 
 def environment(*packages: str) -> Environment:
@@ -112,7 +151,7 @@ def environment(*packages: str) -> Environment:
 
 def printed_sentence(sentence: str) -> str:
     """A sentence with a minus where there is one, and per cent on the line of their number."""
-    text = sentence.replace(" +- ", " ± ").replace(" %", f"{_SPACE}%")
+    text = sentence.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}").replace(" %", f"{_SPACE}%")
     return re.sub(r" -(?=[\d.]|inf\b)", " −", text)
 
 
@@ -128,9 +167,22 @@ def breakable(name: str) -> Markup:
     return Markup("<wbr>").join(re.split(r"(?<=[-_.+])(?=.)", name))
 
 
-def inline(svg: str, name: str, caption: str) -> Markup:
-    """An SVG file as an element of a page: names are made unique by `name`, and the page decides on the size."""
+def inline(svg: str, name: str, caption: str, *, natural: bool = False) -> Markup:
+    """An SVG file as an element of a page: names are made unique by `name`, and the page decides on the size unless it
+    is to have its `natural` one.
+    """
     body = _METADATA.sub("", svg[svg.index("<svg") :])
     opening, _, rest = body.partition(">")
     rest = _REFERENCE.sub(rf"\g<1>{name}-", rest)
-    return Markup(f'{_SIZE.sub("", opening)} role="img" aria-label="{escape(caption)}">{rest}')
+    width = _WIDTH.search(opening)
+    size = f' style="width: {_LARGER * float(width[1]):.0f}pt"' if natural and width else ""
+    return Markup(f'{_SIZE.sub("", opening)}{size} role="img" aria-label="{escape(caption)}">{rest}')
+
+
+def with_contents(page: str) -> str:
+    """A page with a list of its parts below its header, and a mark at each part."""
+    titles = _PART.findall(page)
+    links = " ".join(f'<a href="#part-{i}">{title}</a>' for i, title in enumerate(titles, 1))
+    numbers = count(1)
+    marked = _PART.sub(lambda found: f'<h2 id="part-{next(numbers)}">{found[1]}</h2>', page)
+    return marked.replace("</header>", f'<nav class="contents" aria-label="Contents">{links}</nav>\n</header>', 1)

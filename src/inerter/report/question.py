@@ -12,11 +12,14 @@ import xarray as xr
 from inerter.fields import fields_of
 from inerter.figures.labels import capital, index_title, indices
 from inerter.files.common.vehicles import vehicle_words
+from inerter.files.study.conditions import OVER
+from inerter.files.study.places import places
 from inerter.files.study.study import Study
-from inerter.indices.registry import INDICES, amplitude_of
+from inerter.files.study.written import as_written
+from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
-from inerter.networks.elements import Element, Free, Tied
+from inerter.networks.elements import Free, Tied
 from inerter.units import format_quantity
 
 _ALSO = {  # the same value in the unit in which it is usually told
@@ -37,24 +40,39 @@ class LayoutText:
 def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
-    told = vehicle_words(study.model, study.vehicle)
-    rows += [(capital(name), unit if value is None else _given(value, unit)) for name, value, unit in told]
+    swept = {sweep.words for sweep in study.sweeps}
+    told = [row for row in vehicle_words(study.model, study.vehicle) if row[0] not in swept]
+    rows += [(capital(name), unit if value is None else _given(study, value, unit)) for name, value, unit in told]
+    rows += [(capital(s.words), _told(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
     if study.road is not None:
-        rows += [("Speed", _given(study.road.speed, "m/s"))]
-        rows += [("Road roughness", _given(study.road.roughness, "m^3/cycle"))]
-    for symbol in study.indices:
+        rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
+    for name in study.indices:
+        symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
-        given = [field for field in fields_of(INDICES[symbol]) if field.key in study.settings and field != amplitude]
-        rows += [(f"{capital(f.in_words)} of {symbol}", _given(study.settings[f.key], f.unit)) for f in given]
+        given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
+        rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
+        texts = [one for one in index_choices(symbol) if one.key in settings]
+        rows += [(f"{capital(one.key.replace('_', ' '))} of {name}", settings[one.key]) for one in texts]
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
-        rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
+        rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
     return rows
 
 
 def element_rows(study: Study) -> list[tuple[str, str, str]]:
     """The elements: name, kind, and value or bounds."""
-    return [(name, element.key, _value(study, name, element)) for name, element in study.elements.items()]
+    return [(name, element.key, _told(study, name)) for name, element in study.elements.items()]
+
+
+def condition_rows(study: Study) -> list[tuple[str, str, str]]:
+    """The operating conditions: name or number, share of all, and the numbers that are others."""
+    total, known = sum(condition.share for condition in study.conditions), places(study)
+    rows = []
+    for i, condition in enumerate(study.conditions, start=1):
+        numbers = [f"{label} = {_given(study, value, known[label].unit)}" for label, value in condition.numbers.items()]
+        told = ", ".join(numbers) or "as above"
+        rows.append((condition.name or f"{i}", f"{100.0 * condition.share / total:.3g} %", told))
+    return rows
 
 
 def layout_rows(study: Study) -> list[LayoutText]:
@@ -80,7 +98,8 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
     if study.optimise is None:
         yield "Every layout was evaluated as it is given; nothing was optimised."
     else:
-        again = f", and again for each value of {study.sweep.element}" if study.sweep else ""
+        swept = " and of ".join(sweep.words for sweep in study.sweeps)
+        again = f", and again for each value of {swept}" if swept else ""
         yield (
             f"The free values of each layout were chosen for each index on its own{again}, within their bounds, by "
             f"local searches from many starting points of a sample with seed {study.seed}. Agreement is the number of "
@@ -88,6 +107,11 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         )
         if not is_blind(study.optimise):
             yield f"What was made smallest is the value by {study.optimise}: {words_of(study.optimise)}."
+    if study.limits:
+        yield f"Every design keeps these limits: {'; '.join(limit.label for limit in study.limits)}."
+    if study.conditions:
+        how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
+        yield f"An index is its {how}; limits hold in each. Frequency responses are those of the vehicle as it stands."
     yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."
 
@@ -102,24 +126,32 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    forced = {symbol: field for symbol in INDICES if (field := amplitude_of(symbol)) and field.key in study.settings}
-    for symbol in [asked for asked in forced if asked in study.indices] or forced:
-        amplitude = _given(study.settings[forced[symbol].key], forced[symbol].unit)
-        yield f"The sinusoidal force of {symbol} has an amplitude of {amplitude}."
+    amplitudes = [symbol for symbol in INDICES if amplitude_of(symbol)]
+    asked = [name for name in study.indices if study.symbol(name) in amplitudes]
+    for name in asked or amplitudes:
+        field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
+        if field is not None and field.key in settings:
+            amplitude = _given(study, settings[field.key], field.unit)
+            yield f"The sinusoidal force of {name} has an amplitude of {amplitude}."
 
 
-def _value(study: Study, name: str, element: Element) -> str:
-    if study.sweep is not None and study.sweep.element == name:
-        ends = _given(min(study.sweep.values), element.unit), _given(max(study.sweep.values), element.unit)
-        return f"swept, {len(study.sweep.values)} values from {ends[0]} to {ends[1]}"
-    if isinstance(element.value, Free):
-        return f"free, {_given(element.value.lower, element.unit)} to {_given(element.value.upper, element.unit)}"
-    if isinstance(element.value, Tied):
-        return f"tied, {element.value}"
-    return _given(element.value, element.unit)
+def _told(study: Study, place: str) -> str:
+    """The number at a place: its value, its bounds if it is free, or the ends of what it takes in a sweep."""
+    number = places(study)[place]
+    for sweep in study.sweeps:
+        if sweep.label == place:
+            ends = _given(study, min(sweep.values), sweep.unit), _given(study, max(sweep.values), sweep.unit)
+            return f"swept, {len(sweep.values)} values from {ends[0]} to {ends[1]}"
+    value = number.value
+    if isinstance(value, Free):
+        return f"free, {_given(study, value.lower, number.unit)} to {_given(study, value.upper, number.unit)}"
+    if isinstance(value, Tied):
+        return f"tied, {value}"
+    return "" if value is None else _given(study, value, number.unit)
 
 
-def _given(value: float, unit: str) -> str:
-    """A value with all digits that the study file gives it, on the line of its unit."""
-    text = format_quantity(value, unit, digits=12).replace(" ", "\N{NO-BREAK SPACE}")
-    return text + _ALSO[unit](value) if unit in _ALSO else text
+def _given(study: Study, value: float, unit: str) -> str:
+    """A value as the study file writes it, else with all digits that it gives it, on the line of its unit."""
+    text = as_written(study, value, unit) or format_quantity(value, unit, digits=12)
+    also = _ALSO[unit](value) if unit in _ALSO and text.endswith(f" {unit}") else ""
+    return text.replace(" ", "\N{NO-BREAK SPACE}") + also

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from textwrap import indent
 from typing import Any
 
 import numpy as np
 
+from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult
 from inerter.report.json_data import json_data
 
@@ -17,8 +18,13 @@ _JSON = {"improvement_error": "improvement_error_percent"}
 
 def as_text(result: StudyResult) -> Iterator[str]:
     """All results as JSON, in pieces: a list of a million designs is never held."""
-    budgets = {"budgets": [found.to_json() for found in result.budgets]} if result.budgets else {}
-    whole = json.dumps({**result.data.attrs, "designs": [None], **budgets}, indent=2)
+    kinds: dict[str, Sequence[Further]] = {
+        "budgets": result.budgets,
+        "fronts": result.fronts,
+        "tolerances": result.tolerances,
+    }
+    further = {kind: [found.to_json() for found in several] for kind, several in kinds.items() if several}
+    whole = json.dumps({**result.data.attrs, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
     separator = "\n"
     yield before

@@ -11,6 +11,7 @@ import xarray as xr
 from inerter.figures.labels import (
     by_method,
     by_which,
+    capital,
     compared,
     error_of,
     flat_range,
@@ -26,13 +27,17 @@ from inerter.figures.labels import (
     scale,
     shows_error,
     swept_element,
+    swept_places,
+    swept_words,
+    titled,
     typeset,
     with_unit,
 )
 from inerter.files.study.running import DATASET, SUMMARY
-from inerter.report.findings import best_layout
+from inerter.report.findings import best_layout, place_text
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
+_MOST_ACROSS = 9  # columns of a map
 _MOST_BETWEEN = 100  # swept values between two of them
 _MOST_FAILURES = 20
 
@@ -73,6 +78,11 @@ class Table:
         return any(row.cells[-1].prose for row in self.rows if row.cells)
 
 
+def tables_of(results: xr.Dataset) -> list[Table]:
+    """The tables of a study: of its designs, or over the values of the place, or of the two, that it sweeps."""
+    return (design_tables, sweep_tables, map_tables)[len(swept_places(results))](results)
+
+
 def design_tables(results: xr.Dataset) -> list[Table]:
     """For each index, the best design of every layout."""
     results = one_method(results)
@@ -96,8 +106,15 @@ def sweep_tables(results: xr.Dataset) -> list[Table]:
     ]
 
 
+def map_tables(results: xr.Dataset) -> list[Table]:
+    """For each index and layout, the improvement over the baseline at some pairs of the swept values, or the value."""
+    results = one_method(results)
+    names = compared(results) or layouts(results)
+    return [_map_table(results, index, name) for index in indices(results) for name in names]
+
+
 def _title(results: xr.Dataset, index: str) -> str:
-    return f"{index_title(results, index)} ({index})"
+    return titled(index_title(results, index), index)
 
 
 def _improvement(design: xr.Dataset, baseline: str) -> str:
@@ -155,7 +172,7 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
 
 
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
-    element = str(swept_element(results))
+    element, (words,) = str(swept_element(results)), swept_words(results)
     data, unit = results.sel(index=index).sortby(element), results[element].attrs["units"]
     swept, values = scale(data[element].values, unit), scale(data["value"].values, index_unit(results, index))
     points = _some(data, element)
@@ -174,16 +191,51 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     if _are_far(data.sizes[element]):
         some += ", the extremes among them"
     caption = (
-        f"Best {_title(results, index)} in {typeset(values.unit)}, over {element} in {typeset(swept.unit)}{by}{some}"
+        f"Best {_title(results, index)} in {typeset(values.unit)}, over {words} in {typeset(swept.unit)}{by}{some}"
     )
-    return Table(caption, [element, *names], rows, True, tuple(_failures(data, element, unit)))
+    return Table(caption, [words, *names], rows, True, tuple(_failures(data)))
+
+
+def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
+    """Values of the first place in rows, of the second in columns."""
+    first, second = swept_places(results)
+    data = results.sel(index=index, layout=layout).sortby([first, second])
+    down, across = (scale(data[place].values, data[place].attrs["units"]) for place in (first, second))
+    values = scale(data["value"].values, index_unit(results, index))
+    rows = []
+    for i in _spread(data.sizes[first], _MOST_SWEPT):
+        cells = []
+        for j in _spread(data.sizes[second], _MOST_ACROSS):
+            design = data.isel({first: i, second: j})
+            number = _number(float(design["value"]) * values.factor, error_of(design) * values.factor)
+            cells.append(Cell(_percent(design), number) if compared(results) else Cell(number))
+        rows.append(Row(typeset(f"{float(data[first][i]) * down.factor:.4g}"), cells))
+    columns = data[second].values[list(_spread(data.sizes[second], _MOST_ACROSS))] * across.factor
+    words = [f"{w} in {typeset(u.unit)}" for w, u in zip(swept_words(results), (down, across), strict=True)]
+    what = f"improvement over {results.attrs['baseline']} and its value" if compared(results) else "value"
+    caption = (
+        f"{layout}, best {_title(results, index)}: {what} in {typeset(values.unit)}, over {words[0]} in rows and "
+        f"{words[1]} in columns{by_which(results)}"
+    )
+    header = [f"{capital(swept_words(results)[0])} ↓, {swept_words(results)[1]} →", *(f"{c:.4g}" for c in columns)]
+    return Table(caption, header, rows, True, tuple(_failures(results.sel(index=index, layout=[layout]))))
+
+
+def _spread(size: int, most: int) -> list[int]:
+    """At most so many places of a list, evenly spread, with its ends."""
+    return sorted({*np.linspace(0, size - 1, min(size, most)).round().astype(int).tolist()})
 
 
 def where_all_are(results: xr.Dataset) -> list[str]:
-    """A sentence on the designs that `sweep_tables` leave out, if they are a great many."""
-    element = str(swept_element(results))
-    size = results.sizes[element]
-    return [f"The designs at all {size} values of {element} are in {SUMMARY} and {DATASET}."] if _are_far(size) else []
+    """A sentence on the designs that tables leave out, if they are a great many."""
+    sizes = [results.sizes[place] for place in swept_places(results)]
+    words = " and ".join(swept_words(results))
+    if len(sizes) == 2:
+        left_out = sizes[0] > _MOST_SWEPT or sizes[1] > _MOST_ACROSS
+        values = f"{sizes[0]} x {sizes[1]}"
+    else:
+        left_out, values = _are_far(sizes[0]), f"{sizes[0]}"
+    return [f"The designs at all {values} values of {words} are in {SUMMARY} and {DATASET}."] if left_out else []
 
 
 def _some(data: xr.Dataset, element: str) -> list[int]:
@@ -216,12 +268,16 @@ def _number(value: float, error: float) -> str:
     return typeset(re.sub(r"\.(?=e|$)", "", f"{value:#.4g}"))
 
 
-def _failures(data: xr.Dataset, element: str, unit: str) -> list[str]:
-    """Where a status is not ok: layout, swept value and sentence; a long list is cut and says so."""
-    bad = [(name, i) for name in layouts(data) for i in np.flatnonzero(data["status"].sel(layout=name).values != "ok")]
+def _failures(data: xr.Dataset) -> list[str]:
+    """Where a status is not ok: layout, swept values and sentence; a long list is cut and says so."""
+    bad = []
+    for name in layouts(data):
+        status = data["status"].sel(layout=name)
+        bad += [(name, tuple(point)) for point in np.argwhere(status.values != "ok").tolist()]
     lines = []
-    for name, i in bad[:_MOST_FAILURES]:
-        value, status = float(data[element].values[i]), data["status"].sel(layout=name).values[i]
-        lines.append(f"{name} at {element} = {printed(value, unit)}: {status}")
+    for name, point in bad[:_MOST_FAILURES]:
+        status = data["status"].sel(layout=name)[point]
+        place = {swept: float(status[swept]) for swept in swept_places(data)}
+        lines.append(f"{name} at {place_text(data, place, printed, named=True)}: {status.item()}")
     more = len(bad) - _MOST_FAILURES
     return lines if more <= 0 else [*lines, f"and {more} more, which are in the table of results"]

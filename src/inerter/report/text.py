@@ -22,11 +22,13 @@ from inerter.figures.labels import (
     methods,
     one_method,
     percent,
-    swept_element,
+    swept_places,
+    swept_words,
     with_unit,
 )
 from inerter.report.by_method import method_lines
-from inerter.report.findings import crossing_sentences, extremes
+from inerter.report.findings import extremes, over_the_sweep, place_text
+from inerter.report.limits import limit_lines
 
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -57,12 +59,13 @@ def summary_table(results: xr.Dataset) -> str:
     methods, the first of them, and then all side by side.
     """
     every, results = results, one_method(results)
-    block = _designs if swept_element(results) is None else _extremes
+    block = _extremes if swept_places(results) else _designs
     several = len(methods(every)) > 1
     blocks = [
         [
             *block(results, index),
-            *_crossings(every, index),
+            *_compared(every, index),
+            *limit_lines(every, index, WIDTH),
             *(["", *method_lines(every, index, WIDTH)] if several else []),
         ]
         for index in indices(results)
@@ -92,15 +95,15 @@ def _improvement(design: xr.Dataset) -> str:
 
 
 def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
-    element, versus = str(swept_element(results)), bool(compared(results))
-    unit = results[element].attrs["units"]
+    versus = bool(compared(results))
     rows = results["improvement" if versus else "value"].sel(index=index)
-    yield from wrap(f"{_heading(results, index)}, over {element}", WIDTH, subsequent_indent="    ")
+    heading = f"{_heading(results, index)}, over {' and '.join(swept_words(results))}"
+    yield from wrap(heading, WIDTH, subsequent_indent="    ")
     table = []
     for name in compared(results) or layouts(results):
-        ends = extremes(rows.sel(layout=name), element) or ((np.nan, np.nan),) * 2
+        ends = extremes(rows.sel(layout=name)) or ((np.nan, {}),) * 2
         texts = [
-            f"{percent(value) if versus else with_unit(value, index_unit(results, index))} at {with_unit(at, unit)}"
+            f"{percent(value) if versus else with_unit(value, index_unit(results, index))} at {place_text(results, at)}"
             for value, at in ends
         ]
         texts = texts[::-1] if versus else texts
@@ -108,10 +111,10 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     yield from _lines(["layout", "best"], "worst", table)
 
 
-def _crossings(results: xr.Dataset, index: str) -> Iterator[str]:
-    """Where layouts cross the baseline over a sweep."""
-    if swept_element(results) is not None and compared(results):
-        for _, sentence in crossing_sentences(results.sel(index=[index])):
+def _compared(results: xr.Dataset, index: str) -> Iterator[str]:
+    """Where layouts are better than the baseline over a sweep."""
+    if swept_places(results) and compared(results):
+        for _, sentence in over_the_sweep(results.sel(index=[index])):
             yield from wrapped(sentence, initial_indent="  ", subsequent_indent="    ")
 
 
@@ -136,10 +139,9 @@ def _parameters(design: xr.Dataset) -> list[str]:
 
 def _first_failure(results: xr.Dataset, layout: str, index: str) -> str:
     """The first status over the sweep that is not ok, and how many there are."""
-    bad = [text for text in results["status"].sel(layout=layout, index=index).values.tolist() if text != "ok"]
-    if not bad:
-        return "ok"
-    return f"{bad[0]} ({len(bad)} of {results.sizes[str(swept_element(results))]} values are not ok)"
+    every = results["status"].sel(layout=layout, index=index).values.ravel().tolist()
+    bad = [text for text in every if text != "ok"]
+    return f"{bad[0]} ({len(bad)} of {len(every)} values are not ok)" if bad else "ok"
 
 
 def _lines(header: list[str], last: str, table: Sequence[_Row]) -> Iterator[str]:

@@ -18,6 +18,7 @@ from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import Budget, budget
 from inerter.optimisation.threads import one_blas_thread
 
+_ANSWERS = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)
 _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 
 
@@ -28,6 +29,14 @@ class BudgetCase:
     layout: str
     index: str
     parameter: str
+
+    def run(self, study: Study, outcomes: Mapping[Case, Outcome], threads: int = 1) -> BudgetOutcome:
+        """The budget of the design that was found. A failure is an outcome with a status and a sentence."""
+        return _run(study, outcomes, self, threads)
+
+    def lost(self, study: Study) -> BudgetOutcome:
+        """What is known of a budget whose processes have ended, each time that it was tried."""
+        return _outcome(study, self, None, StatusKind.FAILED.value, ENDED)
 
 
 @dataclass(frozen=True)
@@ -52,6 +61,16 @@ class BudgetOutcome:
         """The case that it answers."""
         return BudgetCase(self.layout, self.index, self.parameter)
 
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return f"budget of {self.parameter}, {self.layout} {self.index}"
+
+    @property
+    def ok(self) -> bool:
+        """Whether there is an answer: that it is better at every value is one too."""
+        return self.status in _ANSWERS
+
     def to_json(self) -> dict[str, Any]:
         """A plain dictionary; `BudgetOutcome(**...)` undoes it."""
         return asdict(self)
@@ -69,8 +88,7 @@ def budget_cases(study: Study) -> list[BudgetCase]:
     ]
 
 
-def run_budget(study: Study, outcomes: Mapping[Case, Outcome], case: BudgetCase, threads: int = 1) -> BudgetOutcome:
-    """The budget of the design that was found. A failure is an outcome with a status and a sentence."""
+def _run(study: Study, outcomes: Mapping[Case, Outcome], case: BudgetCase, threads: int) -> BudgetOutcome:
     element, method = study.elements[case.parameter], budget_method(study)
     at_most = element.may_vanish
     try:
@@ -79,18 +97,13 @@ def run_budget(study: Study, outcomes: Mapping[Case, Outcome], case: BudgetCase,
                 study.design(layout).with_values(outcomes[Case(layout, case.index)].parameters)
                 for layout in (case.layout, str(study.baseline))
             )
-            index, how = study.index(case.index), study.method(method, threads)
+            index, how = study.over_conditions(case.index), study.method(method, threads)
             present = design_value(study, outcomes[Case(case.layout, case.index)], case.parameter)
             bounds = None if at_most else (present / _DOWN, present * _UP)
             found = budget(design, baseline, index, parameter=case.parameter, method=how, bounds=bounds)
     except FAILURES as error:
         return _outcome(study, case, None, StatusKind.FAILED.value, str(error))
     return _outcome(study, case, found, found.status.kind.value, found.status.message)
-
-
-def lost_budget(study: Study, case: BudgetCase) -> BudgetOutcome:
-    """What is known of a budget whose processes have ended, each time that it was tried."""
-    return _outcome(study, case, None, StatusKind.FAILED.value, ENDED)
 
 
 def _outcome(study: Study, case: BudgetCase, found: Budget | None, status: str, message: str) -> BudgetOutcome:

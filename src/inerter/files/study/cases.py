@@ -1,4 +1,4 @@
-"""The cases of a study: one layout, one index, one swept value each, and what running one gives."""
+"""The cases of a study: one layout, one index, one point of the sweeps each, and what running one gives."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
+from math import prod
 from typing import Any
 
 import numpy as np
 
 from inerter.errors import OK, InerterError, Status, StatusKind
+from inerter.files.study.limits import kept, limits_in
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.note import after, parts_of
@@ -35,27 +37,40 @@ class Case:
     layout: str
     index: str
     point: int = 0
-    swept: float | None = field(default=None, compare=False)  # the value of that number
+    swept: tuple[float, ...] = field(default=(), compare=False)  # the value of each sweep at that point
 
 
 @dataclass(frozen=True)
 class Cases:
     """All cases of a study in the order of the results, each made when it is asked for.
 
-    The order is that of layouts, of indices, of swept values.
+    The order is that of layouts, of indices, of the values of the first sweep, of the second.
     """
 
     layouts: tuple[str, ...]
     indices: tuple[str, ...]
-    values: tuple[float | None, ...]
+    axes: tuple[tuple[float, ...], ...]  # the values of each sweep
+
+    @cached_property
+    def points(self) -> int:
+        """How many points the sweeps have."""
+        return prod(map(len, self.axes))
 
     def __len__(self) -> int:
-        return len(self.layouts) * len(self.indices) * len(self.values)
+        return len(self.layouts) * len(self.indices) * self.points
 
     def __getitem__(self, number: int) -> Case:
-        design, point = divmod(number, len(self.values))
+        design, point = divmod(number, self.points)
         layout, index = divmod(design, len(self.indices))
-        return Case(self.layouts[layout], self.indices[index], point, self.values[point])
+        return Case(self.layouts[layout], self.indices[index], point, self.swept(point))
+
+    def swept(self, point: int) -> tuple[float, ...]:
+        """The value of each sweep at the point of that number."""
+        values = []
+        for axis in reversed(self.axes):
+            point, place = divmod(point, len(axis))
+            values.append(axis[place])
+        return tuple(reversed(values))
 
     def __iter__(self) -> Iterator[Case]:
         return map(self.__getitem__, range(len(self)))
@@ -67,7 +82,7 @@ class Cases:
     @cached_property
     def _firsts(self) -> dict[tuple[str, str], int]:
         designs = product(self.layouts, self.indices)
-        return {design: i * len(self.values) for i, design in enumerate(designs)}
+        return {design: i * self.points for i, design in enumerate(designs)}
 
 
 @dataclass(frozen=True)
@@ -90,6 +105,7 @@ class Outcome:
     notes: list[list[str | float]] = field(default_factory=list)  # the parts of each: words, and numbers between them
     realisations: dict[str, int] = field(default_factory=dict)  # method -> roads of the case's own index
     samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
+    limits: list[list[float]] = field(default_factory=list)  # of each: value, whether it holds back, its cost
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
 
     @property
@@ -109,12 +125,12 @@ class Outcome:
 
 def cases(study: Study) -> Cases:
     """All cases of a study."""
-    return Cases(tuple(study.layouts), study.indices, study.sweep.values if study.sweep else (None,))
+    return Cases(tuple(study.layouts), study.indices, tuple(sweep.values for sweep in study.sweeps))
 
 
 def portable(study: Study) -> Study:
     """The study without its swept values, of which each case has its own: as small for a process as any."""
-    return replace(study, sweep=replace(study.sweep, values=())) if study.sweep else study
+    return replace(study, sweeps=tuple(replace(sweep, values=()) for sweep in study.sweeps))
 
 
 def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
@@ -157,8 +173,9 @@ def _prefix(study: Study, method: str) -> str:
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
-    assert (case.swept is None) == (study.sweep is None), case
-    vehicle = study.design(case.layout, case.swept).mechanism()
+    study = study.at(case.swept)
+    design = study.design(case.layout)
+    vehicle = design if study.conditions else design.mechanism()  # whose numbers conditions change
     fields: dict[str, Any] = {
         "parameters": {},
         "active_bounds": {},
@@ -170,15 +187,18 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     found: Optimum | None = None
     if study.optimise is not None and vehicle.free_values():
         method = study.method(study.optimise, threads)
-        found = optimise(vehicle, study.index(case.index), method, seed=study.seed)
+        limits = [limit for several in limits_in(study) for limit in several]
+        free = vehicle
+        found = optimise(free, study.asked(case.index, case.layout), method, subject_to=limits, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
         fields = {name: getattr(found, name) for name in fields}
+        fields["limits"] = [list(one) for one in kept(study, free, found.limits)]
 
     def estimate(method: str, index: str) -> Estimate:
         if found is not None and (method, index) == (study.optimise, case.index):
             return found.estimate
         try:
-            return evaluate(vehicle, study.index(index), study.method(method, threads))
+            return evaluate(vehicle, study.asked(index, case.layout), study.method(method, threads))
         except FAILURES as error:
             if len(study.evaluate) == 1:
                 raise
@@ -189,7 +209,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
     bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
-    left_out = design_notes(study, vehicle)
+    left_out = design_notes(study, vehicle.mechanism())
     notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
     notes += [parts_of(note) for note in left_out]
     return Outcome(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -12,15 +12,16 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
-from inerter.files.study.cases import design_notes
-from inerter.files.study.study import Study
+from inerter.files.study.cases import Cases, cases, design_notes
+from inerter.files.study.limits import limits_in, questions_limited
+from inerter.files.study.study import Study, elements_used
+from inerter.methods.asking import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.methods.method import Compiled
+from inerter.methods.method import Compiled, asked_of
 from inerter.methods.registry import is_blind
-from inerter.networks.parser import names
+from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
-from inerter.vehicle.vehicle import Vehicle
 
 _MOST_TRIED = 200  # swept values
 
@@ -33,11 +34,11 @@ def check_study(study: Study) -> None:
 
     Raises `StudyError` with a line for every layout that cannot be analysed.
     """
-    problems = []
+    problems, every = [], cases(study)
     for layout in study.layouts:
-        for swept in _tried(study.sweep.values) if study.sweep else (None,):
+        for point in _tried(every):
             try:
-                _check_design(study, study.design(layout, swept))
+                _check_design(study.at(every.swept(point)), layout)
             except InerterError as error:
                 problems.append(at(("layouts", layout), str(error)))
                 break
@@ -45,19 +46,23 @@ def check_study(study: Study) -> None:
         raise refusal(study.path, problems)
 
 
-def _tried(values: Sequence[float]) -> Iterator[float]:
-    """All of some values; of many the ends, the extremes, and others evenly between."""
-    places = {*np.linspace(0, len(values) - 1, min(len(values), _MOST_TRIED), dtype=int).tolist()}
-    if len(places) < len(values):
-        places |= {int(np.argmin(values)), int(np.argmax(values))}
-    return (values[i] for i in sorted(places))
+def _tried(every: Cases) -> list[int]:
+    """All of some points; of many the ends, those of the extremes of each sweep, and others evenly between."""
+    tried = {*np.linspace(0, every.points - 1, min(every.points, _MOST_TRIED), dtype=int).tolist()}
+    if len(tried) < every.points:
+        corners = product(*((int(np.argmin(axis)), int(np.argmax(axis))) for axis in every.axes))
+        tried |= {int(np.ravel_multi_index(corner, [len(axis) for axis in every.axes])) for corner in corners}
+    return sorted(tried)
 
 
-def _check_design(study: Study, vehicle: Vehicle) -> None:
-    mechanism = vehicle.mechanism()
-    questions = [study.index(name).question(mechanism) for name in study.indices]
+def _check_design(study: Study, layout: str) -> None:
+    vehicle = study.design(layout)
+    loose = without_tied_values(vehicle)
+    over = [study.over_conditions(name) for name in study.indices]
+    each = [one for index in over for one in asked_of(loose.vehicle if loose else vehicle, index)]
+    questions = [(case.mechanism(), index.question(case.mechanism())) for case, index in each]
     if any(map(is_blind, study.methods)):
-        for question in questions:
+        for mechanism, question in questions:
             linear_problem(mechanism, question, CONVENTIONS[study.conventions])
     else:
         free = vehicle.free_values().items()
@@ -66,7 +71,8 @@ def _check_design(study: Study, vehicle: Vehicle) -> None:
         check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
-            method.objective(vehicle, study.index(name))
+            objective_of(vehicle, study.asked(name, layout), method)
+        bounds_of(vehicle, [limit for several in limits_in(study) for limit in several], method)
 
 
 def study_notes(study: Study) -> list[str]:
@@ -75,7 +81,7 @@ def study_notes(study: Study) -> list[str]:
     for layout in study.layouts:
         for note in design_notes(study, study.design(layout).mechanism()):
             notes.setdefault(note, []).append(layout)
-    used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
+    used = elements_used(study)
     unused = [name for name in study.elements if name not in used]
     return [f"{some(layouts)}: {note}" for note, layouts in notes.items()] + (
         [f"no layout uses {some(unused)}"] if unused else []
@@ -89,7 +95,7 @@ def kernels(study: Study) -> list[Any]:
     for name in study.methods:
         method = study.method(name)
         if isinstance(method, Compiled):
-            for index in study.indices:
-                question = study.index(index).question(design.mechanism())
+            questions = [study.index(index).question(design.mechanism()) for index in study.indices]
+            for question in [*questions, *questions_limited(study, design)]:
                 found += method.kernels(question, search=name == study.optimise)
     return list(dict.fromkeys(found))

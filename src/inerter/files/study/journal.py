@@ -1,4 +1,4 @@
-"""The journal of a study: one line a finished case or budget."""
+"""The journal of a study: one line a finished case, budget or front."""
 
 from __future__ import annotations
 
@@ -10,10 +10,18 @@ from pathlib import Path
 from inerter.errors import StudyError
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
+from inerter.files.study.fronts import FrontOutcome
 from inerter.files.study.study import Study
+from inerter.files.study.tolerances import ToleranceOutcome
 from inerter.work.journal import Journal
 
 NAME = "journal.jsonl"
+Further = BudgetOutcome | FrontOutcome | ToleranceOutcome
+_FURTHER: dict[str, type[Further]] = {  # by a key that others lack
+    "parameter": BudgetOutcome,
+    "jumps": FrontOutcome,
+    "effects": ToleranceOutcome,
+}
 
 
 def journal_of(study: Study, path: Path) -> Journal:
@@ -22,10 +30,11 @@ def journal_of(study: Study, path: Path) -> Journal:
     return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
 
 
-def outcomes(journal: Journal) -> Iterator[Outcome | BudgetOutcome]:
-    """The finished cases and budgets, one by one; raises `StudyError` for an entry that is none of a study."""
+def outcomes(journal: Journal) -> Iterator[Outcome | Further]:
+    """What is finished, one by one; raises `StudyError` for an entry that is none of a study."""
     for entry in journal.read():
+        kind = next((kind for key, kind in _FURTHER.items() if key in entry), Outcome)
         try:
-            yield BudgetOutcome(**entry) if "parameter" in entry else Outcome(**entry)
+            yield kind(**entry)
         except TypeError:
             raise StudyError(f"{journal.path}: not the journal of a study. Choose another folder with -o.") from None

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from inerter.files.common.entries import Amount
-from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
+from inerter.files.common.layouts import StrutLayout, elements_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
 from inerter.files.common.toml import read_tables, shape_of
 from inerter.files.common.vehicles import values_of, vehicle_problems
+from inerter.files.study.conditions import OVER
+from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
-from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, SweepRange, shapes
-from inerter.files.study.study import Study, Sweep, elements_used
+from inerter.files.study.own_indices import own_index, own_index_problems
+from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, shapes
+from inerter.files.study.study import POINTS, Study, elements_used
+from inerter.files.study.sweeps import conditions_of, sweeps_of
+from inerter.files.study.tolerances import tolerance_of
+from inerter.files.study.written import texts_of
 from inerter.indices.registry import index_settings, is_on_road
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
@@ -26,6 +30,7 @@ from inerter.signals.road import Road
 from inerter.units import shown
 from inerter.writing import characters
 
+_LEAST_OF_THREE = 6  # points of a front of three indices
 WHAT = "a study file"
 
 
@@ -43,13 +48,30 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
 
     Raises `StudyError` as `load_study` does.
     """
-    study = _resolve(path, shape_of(tables, path, *shapes()))
+    shape = shape_of(tables, path, *shapes())
+    study = replace(_resolve(path, shape), texts=texts_of(tables))
     problems = [
+        *elements_of(shape.elements)[1],
         *vehicle_problems(study.model, study.vehicle),
         *layout_problems(study.model, study.vehicle, study.elements, study.layouts),
-        *_road_problems(study),
-        *_sweep_problems(study),
-        *_setting_problems(study),
+        *_road_problems(study, shape),
+    ]
+    limits, limit_problems = limits_of(study, shape.study.subject_to or {})
+    study = replace(study, limits=limits)
+    swept, sweep_problems = ((), []) if shape.study.sweep is None else sweeps_of(study, shape.study.sweep)
+    study = replace(study, sweeps=swept)
+    conditions, condition_problems = conditions_of(study, shape.conditions)
+    spread, spread_problems = tolerance_of(study, shape.study.tolerance or {})
+    study = replace(study, conditions=conditions, tolerance=spread)
+    problems += [
+        *sweep_problems,
+        *condition_problems,
+        *limit_problems,
+        *spread_problems,
+        *_setting_problems(study, shape),
+        *own_index_problems(study.indices, study.own_indices, [*study.trade_off, *(limit.of for limit in limits)]),
+        *_front_problems(study, shape),
+        *_scatter_problems(study),
         *method_problems(study),
     ]
     if not problems:
@@ -72,25 +94,30 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         model=model,
         vehicle=vehicle,
         road=None if shape.road is None else Road(**shape.road.model_dump(exclude={"letter"})),
-        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
+        elements=elements_of(shape.elements)[0],
         layouts=layouts,
         indices=settings.indices,
         conventions=settings.conventions,
         optimise=settings.optimise,
         evaluate=settings.evaluate,
         baseline=baseline,
-        sweep=None if settings.sweep is None else _sweep(*next(iter(settings.sweep.items()))),
         seed=settings.seed,
         realisations=settings.realisations,
         relative_error=settings.relative_error,
         settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
+        own_indices={name: own_index(entry) for name, entry in shape.indices.items()},
+        over=settings.conditions or OVER[0],
         method_settings=_method_settings(shape),
+        trade_off=settings.trade_off,
+        points=settings.points or POINTS,
+        quantile=settings.quantile,
         budgets=settings.budgets,
     )
 
 
-def _road_problems(study: Study) -> Iterator[Problem]:
-    on_roads = [symbol for symbol in study.indices if is_on_road(symbol)]
+def _road_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    asked = [*study.indices, *study.trade_off, *(name for name in shape.study.subject_to or {} if study.knows(name))]
+    on_roads = [name for name in dict.fromkeys(asked) if is_on_road(study.symbol(name))]
     if study.road is None and on_roads:
         yield at(("road",), fault=f"missing, but {some(on_roads)} needs it", expected=ROAD_EXAMPLE)
 
@@ -103,41 +130,41 @@ def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
     return {name: table for name, table in given.items() if table}
 
 
-def _sweep(name: str, entry: SweepRange | tuple[Amount, ...]) -> Sweep:
-    if not isinstance(entry, SweepRange):
-        return Sweep(name, tuple(amount.value for amount in entry), entry[0].unit)
-    space = np.geomspace if entry.spacing == "log" else np.linspace
-    values = space(entry.lower.value, entry.upper.value, entry.points)
-    return Sweep(name, tuple(float(value) for value in values), entry.lower.unit)
-
-
-def _sweep_problems(study: Study) -> Iterator[Problem]:
-    sweep = study.sweep
-    if sweep is None:
-        return
-    place, name = ("study", "sweep", sweep.element), sweep.element
-    if name not in study.elements:
-        missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
-        yield at(place, fault=missing, hint=nearest(name, study.elements))
-        return
-    element = study.elements[name]
-    if isinstance(element.value, Free):
-        fixed = "an element with a fixed value"
-        yield at(place, fault=f"{name} is free", expected=fixed, hint="Fix it, or leave the sweep out.")
-    if element.unit != sweep.unit:
-        other = f"{name} is in {element.unit}"
-        yield at(place, got=f"values in {sweep.unit}", fault=other, expected=f"the unit of {name}")
-    if name not in elements_used(study):
-        unused = f"{name} is in no layout, so a sweep changes nothing"
-        yield at(place, fault=unused, expected="an element that a layout uses")
-
-
-def _setting_problems(study: Study) -> Iterator[Problem]:
+def _setting_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    if shape.study.conditions is not None and not study.conditions:
+        place, wanted = ("study", "conditions"), "sections [[conditions]], or no conditions in [study]"
+        yield at(place, got=shown(shape.study.conditions), fault="there are none", expected=wanted)
     if study.baseline is not None and study.baseline not in study.layouts:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
         wanted = f"a layout, one of {known}"
         yield at(("study", "baseline"), got=shown(study.baseline), expected=wanted, hint=hint)
+
+
+def _scatter_problems(study: Study) -> Iterator[Problem]:
+    if study.quantile is not None and not study.tolerance:
+        yield at(("study", "quantile"), fault="nothing scatters", expected="a tolerance, or no quantile")
+    if study.tolerance and study.sweeps:
+        yield at(("study", "tolerance"), fault="given beside a sweep", expected="one of the two")
+
+
+def _front_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    place = ("study", "trade_off")
+    if shape.study.points is not None and not study.trade_off:
+        yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
+    if not study.trade_off:
+        return
+    several = len({study.index(name) for name in study.trade_off})
+    if several not in (2, 3) or several < len(study.trade_off):
+        got = f"{len(study.trade_off)} indices" if several == len(study.trade_off) else "the same index twice"
+        yield at(place, got=got, expected="two or three that differ")
+    if several == 3 and study.points < _LEAST_OF_THREE:
+        few = f"at least {_LEAST_OF_THREE} points for three indices"
+        yield at(("study", "points"), got=str(study.points), expected=few)
+    if study.sweeps:
+        yield at(place, fault="given beside a sweep", expected="one of the two")
+    if study.optimise is None:
+        yield at(place, fault="nothing is optimised", expected="optimise, or no trade_off")
 
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:

@@ -18,20 +18,21 @@ from inerter.methods.registry import (
     needs_amplitude,
     refuses_gaps,
 )
-from inerter.networks.elements import Element
+from inerter.networks.elements import Element, Tied
 from inerter.networks.elements.roles import Statistical
 from inerter.systems.graph import switching_parts
 from inerter.units import shown
 
 
 def method_problems(study: Study) -> Iterator[Problem]:
-    """One line for each."""
+    """One line for each; a setting that is swept counts as given."""
+    yield from _budget_problems(study)
+    study = study.at([sweep.values[0] for sweep in study.sweeps])
     yield from _road_problems(study)
     yield from _index_problems(study)
     yield from _own_problems(study)
     yield from _force_problems(study)
     yield from _gap_problems(study)
-    yield from _budget_problems(study)
 
 
 def budget_method(study: Study) -> str:
@@ -60,7 +61,7 @@ def _index_problems(study: Study) -> Iterator[Problem]:
     amplitudes = {field.key for symbol in INDICES if (field := amplitude_of(symbol)) is not None}
     for key in study.settings:
         field, owners = index_settings()[key], [symbol for symbol in INDICES if key in _keys(symbol)]
-        asked = set(owners) & set(study.indices)
+        asked = set(owners) & set(map(study.symbol, study.indices))
         what, there = f"the {field.in_words} of {_either(owners, str)}", _either(owners)
         if key in amplitudes and not (asked and any(map(needs_amplitude, study.methods))):
             yield at(
@@ -97,8 +98,8 @@ def _force_problems(study: Study) -> Iterator[Problem]:
     concerned = [method for method in study.methods if needs_amplitude(method)]
     nonlinear = _layouts_with(study, lambda part: part.switch is not None)
     for symbol in study.indices if concerned and nonlinear else ():
-        field = amplitude_of(symbol)
-        if field is not None and field.key not in study.settings:
+        field = amplitude_of(study.symbol(symbol))
+        if field is not None and field.key not in study.settings_of(symbol):
             yield at(
                 ("study", field.key),
                 fault=f"missing, but {concerned[0]} takes {symbol} of {some(nonlinear)}, where friction or gaps make "
@@ -126,7 +127,7 @@ def _simulating() -> str:
 
 def _budget_problems(study: Study) -> Iterator[Problem]:
     place = ("study", "budgets")
-    if study.budgets and study.sweep is not None:
+    if study.budgets and study.sweeps:
         yield at(place, fault="given beside a sweep", expected="one of the two")
     if study.budgets and study.baseline is None:
         yield at(place, fault="there is but one layout", expected="another to compare it with, or no budgets")
@@ -136,6 +137,8 @@ def _budget_problems(study: Study) -> Iterator[Problem]:
         if name not in study.elements:
             missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
             yield at(place, fault=missing, hint=nearest(name, study.elements))
+        elif isinstance(study.elements[name].value, Tied):
+            yield at(place, fault=f"{name} is tied to others", expected="an element with a value of its own")
         elif not set(used.get(name, ())) - {study.baseline}:
             only = f"no layout but the baseline has {name}"
             yield at(place, fault=only, expected="an element of a layout that is compared")

@@ -23,7 +23,7 @@ from inerter.methods.registry import is_blind
 from inerter.networks.elements import Free
 
 Array = NDArray[np.float64]
-_OK = StatusKind.OK.value
+_OK, _INFEASIBLE = StatusKind.OK.value, StatusKind.INFEASIBLE.value
 
 
 class Gathered:
@@ -69,7 +69,10 @@ class Gathered:
             arrays[name][number] = getattr(outcome, name)
         if self._uncertain:
             self._enter_scatter(number, outcome)
-        if self.study.sweep is None:
+        for i, found in enumerate(outcome.limits):
+            for name, number_told in zip(LIMITED, found, strict=True):
+                arrays[name][number, i] = number_told
+        if not self.study.sweeps:
             self.designs[case] = outcome
 
     def dataset(self) -> xr.Dataset:
@@ -89,7 +92,7 @@ class Gathered:
             base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
             data["improvement"][:] = (100.0 * (1.0 - data["value"] / base)).transpose(*data["value"].dims).values
             self._enter_errors()
-        if study.sweep:
+        if study.sweeps:
             return data
         found = {case: outcome.parameters for case, outcome in self.designs.items() if outcome.values}
         return data.isel(point=0).merge(responses(study, found))
@@ -103,7 +106,7 @@ class Gathered:
         for m, method in enumerate(self.study.evaluate):
             values = outcome.values.get(method, {})
             value = values.get(index, np.nan)
-            arrays["value"][number, m] = value
+            arrays["value"][number, m] = np.nan if outcome.status.get(method) == _INFEASIBLE else value
             arrays["other_value"][number, m] = [values.get(other, np.nan) for other in self.study.indices]
             error = outcome.standard_errors.get(method, {}).get(index)
             arrays["standard_error"][number, m] = np.nan if error is None else error
@@ -156,7 +159,7 @@ class Pending:
 
 
 def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
-    """All outcomes, labelled: dimensions layout, index, method, the swept element if there is one, parameter.
+    """All outcomes, labelled: dimensions layout, index, the swept places if there are any, method, parameter.
 
     Improvements are per cent below the baseline's own optimum of the same index, method and swept value. Where a method
     other than the norm is used, there are standard errors and numbers of realisations too.
@@ -175,19 +178,21 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
 
 def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
-    sweep = study.sweep
-    indices = {name: study.index(name) for name in study.indices}
-    design = ("layout", "index", sweep.element if sweep else "point")
+    indices = {name: study.asked(name, next(iter(study.layouts))) for name in study.indices}
+    swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}
+    design = ("layout", "index", *swept)
     sizes = {
         "layout": len(study.layouts),
         "index": len(indices),
-        design[2]: len(sweep.values) if sweep else 1,
+        **swept,
         "method": len(study.evaluate),
         "other": len(indices),
         "parameter": len(parameters),
+        "limit": len(study.limits),
     }
     variables = {}
-    for name, (more, empty, long_name) in {**_VARIABLES, **(UNCERTAIN if is_uncertain(study) else {})}.items():
+    uncertain, limited = UNCERTAIN if is_uncertain(study) else {}, LIMITED if study.limits else {}
+    for name, (more, empty, long_name) in {**_VARIABLES, **uncertain, **limited}.items():
         dims = (*design, *more)
         array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
         variables[name] = (dims, array, {"long_name": long_name})
@@ -199,12 +204,15 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "other": list(indices),
         "parameter": list(parameters),
         "parameter_unit": ("parameter", list(parameters.values())),
-        "index_unit": ("index", [index.unit for index in indices.values()]),
+        "index_unit": ("index", [study.unit(name) for name in indices]),
         "index_title": ("index", [index.title for index in indices.values()]),
     }
-    if sweep:
-        attributes = {"units": sweep.unit, "long_name": sweep.element}
-        coords[sweep.element] = (sweep.element, list(sweep.values), attributes)
+    if study.limits:
+        coords["limit"] = [limit.label for limit in study.limits]
+        coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
+    for sweep in study.sweeps:
+        attributes = {"units": sweep.unit, "long_name": sweep.words}
+        coords[sweep.label] = (sweep.label, list(sweep.values), attributes)
     data = xr.Dataset(variables, coords)
     for name in PERCENT & set(variables):
         data[name].attrs["units"] = "percent"
@@ -237,13 +245,18 @@ _VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
 }
 
 
+LIMITED: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+    "limit_value": (("limit",), np.nan, "what is limited, where it comes closest to its limit"),
+    "limit_active": (("limit",), False, "whether the limit holds the optimum back"),
+    "limit_cost": (("limit",), np.nan, "change of the index for one per cent more of the limit"),
+}
 UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "improvement_error": (("method",), np.nan, "standard error of the improvement"),
     "realisations": (("method",), 0, "random roads that were averaged"),
     "over_linear": ((), np.nan, "improvement over the best linear design by the method of the search"),
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
 }
-PERCENT = {"improvement", "improvement_error", "over_linear", "over_linear_error"}
+PERCENT = {"limit_cost", "improvement", "improvement_error", "over_linear", "over_linear_error"}
 
 
 def _ratio_error(one: Estimate, other: Estimate) -> float:

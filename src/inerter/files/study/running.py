@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,12 +16,15 @@ import xarray as xr
 from inerter.errors import StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.study import journal as journals
-from inerter.files.study.budgets import BudgetCase, BudgetOutcome, budget_cases, budgets_csv, lost_budget, run_budget
-from inerter.files.study.cases import Outcome, lost_case, portable, run_case
+from inerter.files.study.budgets import BudgetCase, BudgetOutcome, budget_cases, budgets_csv
+from inerter.files.study.cases import Case, Outcome, lost_case, portable, run_case
 from inerter.files.study.checking import check_study, kernels
+from inerter.files.study.fronts import FrontCase, FrontOutcome, front_cases, fronts_csv, with_fronts
 from inerter.files.study.results import Gathered, Pending
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
+from inerter.files.study.tolerances import ToleranceCase, ToleranceOutcome, tolerance_cases, tolerances_csv
+from inerter.files.study.written import write_resolved
 from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
 from inerter.work.origin import versions
@@ -29,11 +32,11 @@ from inerter.work.pool import Pool, pooled
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
-BUDGETS = "budgets.csv"
-NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, VERSIONS, f"{FIGURES}/", REPORT)
-_ANSWERS = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)  # better at every value is an answer too
-Budgets = dict[BudgetCase, BudgetOutcome]
-Progress = Callable[[int, int, Outcome | BudgetOutcome | None, int], None]
+BUDGETS, FRONTS, TOLERANCES = "budgets.csv", "fronts.csv", "tolerances.csv"
+NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, FRONTS, TOLERANCES, VERSIONS, f"{FIGURES}/", REPORT)
+_FurtherCase = BudgetCase | FrontCase | ToleranceCase
+_Done = dict[_FurtherCase, journals.Further]
+Progress = Callable[[int, int, Outcome | journals.Further | None, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,9 @@ class StudyResult:
     data: xr.Dataset
     computed: int  # cases that this run computed; the others were there already
     budgets: tuple[BudgetOutcome, ...] = ()
-    failed: bool = False  # whether a case or a budget has no number at all
+    fronts: tuple[FrontOutcome, ...] = ()
+    tolerances: tuple[ToleranceOutcome, ...] = ()
+    failed: bool = False  # whether a case, a budget or a front has no number at all
 
     @property
     def failures(self) -> list[str]:
@@ -56,7 +61,12 @@ class StudyResult:
     def not_ok(self) -> int:
         """How many lines `failures` has."""
         designs = int(np.count_nonzero(self.data.status.values != StatusKind.OK.value))
-        return designs + sum(found.status not in _ANSWERS for found in self.budgets)
+        return designs + sum(not found.ok for found in self.further)
+
+    @property
+    def further(self) -> tuple[journals.Further, ...]:
+        """Budgets, fronts and tolerances."""
+        return (*self.budgets, *self.fronts, *self.tolerances)
 
     def failing(self) -> Iterator[str]:
         """The lines of `failures`, one by one."""
@@ -65,9 +75,9 @@ class StudyResult:
         for place in np.argwhere(status.values != StatusKind.OK.value):
             names = (str(column[i]) for column, i in zip(labels, place, strict=True))
             yield f"{' '.join(names)}: {status.values[tuple(place)]}"
-        for found in self.budgets:
-            if found.status not in _ANSWERS:
-                yield f"budget of {found.parameter}, {found.layout} {found.index}: {found.status}: {found.message}"
+        for found in self.further:
+            if not found.ok:
+                yield f"{found.name}: {found.status}: {found.message}"
 
 
 def run_study(
@@ -102,18 +112,25 @@ def run_study(
     """
     check_study(study)
     with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
-        gathered, budgets, computed = _computed(study, results, pool, progress, compiling)
-        found = tuple(budgets[case] for case in budget_cases(study))
-        data = gathered.dataset()
+        gathered, done, computed = _computed(study, results, pool, progress, compiling)
+        budgets = tuple(one for case in budget_cases(study) if isinstance(one := done[case], BudgetOutcome))
+        fronts = tuple(one for case in front_cases(study) if isinstance(one := done[case], FrontOutcome))
+        tolerances = tuple(one for case in tolerance_cases(study) if isinstance(one := done[case], ToleranceOutcome))
+        data = with_fronts(study, gathered.dataset(), fronts)
         write_text(results.draft / RESOLVED, write_resolved(study))
         write_text(results.draft / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
-        if found:
-            write_text(results.draft / BUDGETS, budgets_csv(found))
+        if budgets:
+            write_text(results.draft / BUDGETS, budgets_csv(budgets))
+        if fronts:
+            write_text(results.draft / FRONTS, fronts_csv(study, fronts))
+        if tolerances:
+            write_text(results.draft / TOLERANCES, tolerances_csv(tolerances))
         write_summary(results.draft / SUMMARY, study, data)
         write_netcdf(results.draft / DATASET, data)
         results.publish()
-        kinds = {*gathered.kinds, *(budget.status for budget in found)}
-        result = StudyResult(results.folder, study, data, computed, found, StatusKind.FAILED in kinds)
+        kinds = {*gathered.kinds, *(one.status for one in done.values())}
+        failed = StatusKind.FAILED in kinds
+        result = StudyResult(results.folder, study, data, computed, budgets, fronts, tolerances, failed)
         finish(result, results.draft)
     return result
 
@@ -129,19 +146,20 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
 
 def _computed(
     study: Study, results: Results, pool: Pool, progress: Progress, compiling: Told | None
-) -> tuple[Gathered, Budgets, int]:
-    """All cases and budgets, and how many cases were not in the journal."""
+) -> tuple[Gathered, _Done, int]:
+    """All cases, budgets and fronts, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
     found = Gathered(study)
-    budgets = _read(journal, found) if results.resume else {}
-    pending, further = found.pending(), budget_cases(study)
+    done = _read(journal, found) if results.resume else {}
+    further: list[_FurtherCase] = [*budget_cases(study), *front_cases(study), *tolerance_cases(study)]
+    pending = found.pending()
     if pending:
         _prepare(pool, study, compiling)
     total = len(found.cases) + len(further)
 
-    def tell(last: Outcome | BudgetOutcome | None) -> None:
-        troubled = sum(budget.status not in _ANSWERS for budget in budgets.values())
-        progress(found.count + len(budgets), total, last, found.not_ok + troubled)
+    def tell(last: Outcome | journals.Further | None) -> None:
+        troubled = sum(not one.ok for one in done.values())
+        progress(found.count + len(done), total, last, found.not_ok + troubled)
 
     tell(None)
     results.list_journal(journals.NAME)
@@ -151,22 +169,22 @@ def _computed(
             for outcome in several:
                 found.enter(outcome)
             tell(several[-1])
-        for ready in _budgets(study, found, [case for case in further if case not in budgets], pool):
-            append(*(budget.to_json() for budget in ready))
-            budgets |= {budget.case: budget for budget in ready}
+        for ready in _further(study, found, [case for case in further if case not in done], pool):
+            append(*(one.to_json() for one in ready))
+            done |= {one.case: one for one in ready}
             tell(ready[-1])
-    return found, budgets, len(pending)
+    return found, done, len(pending)
 
 
-def _read(journal: Journal, found: Gathered) -> Budgets:
-    """Enter the cases of a journal; returns its budgets."""
-    budgets: Budgets = {}
+def _read(journal: Journal, found: Gathered) -> _Done:
+    """Enter the cases of a journal; returns what else it has."""
+    done: _Done = {}
     for one in journals.outcomes(journal):
-        if isinstance(one, BudgetOutcome):
-            budgets[one.case] = one
-        else:
+        if isinstance(one, Outcome):
             found.enter(one)
-    return budgets
+        else:
+            done[one.case] = one
+    return done
 
 
 def _outcomes(study: Study, pending: Pending, pool: Pool) -> Iterator[list[Outcome]]:
@@ -176,10 +194,22 @@ def _outcomes(study: Study, pending: Pending, pool: Pool) -> Iterator[list[Outco
     return pool.batches(partial(run_case, small), pending, here, partial(lost_case, small))
 
 
-def _budgets(study: Study, found: Gathered, pending: list[BudgetCase], pool: Pool) -> Iterator[list[BudgetOutcome]]:
-    """Budgets as they are done, those that come together in one list."""
-    run = partial(run_budget, portable(study), found.designs)
-    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_budget, study))
+def _further(
+    study: Study, found: Gathered, pending: list[_FurtherCase], pool: Pool
+) -> Iterator[list[journals.Further]]:
+    """Budgets and fronts as they are done, those that come together in one list."""
+    run = partial(_run_further, portable(study), found.designs)
+    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(_lost_further, study))
+
+
+def _run_further(
+    study: Study, designs: Mapping[Case, Outcome], case: _FurtherCase, threads: int = 1
+) -> journals.Further:
+    return case.run(study, designs, threads)
+
+
+def _lost_further(study: Study, case: _FurtherCase) -> journals.Further:
+    return case.lost(study)
 
 
 def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:

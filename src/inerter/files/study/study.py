@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,25 +13,41 @@ from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
-from inerter.files.common.toml import as_toml
 from inerter.files.common.vehicles import in_si, vehicle_entry
+from inerter.files.study.conditions import OVER, StudyCondition, condition_of, what_of
+from inerter.files.study.limits import StudyLimit
+from inerter.files.study.own_indices import OwnIndex
+from inerter.files.study.places import Place, element_at, place_of, with_numbers
+from inerter.indices.names import index_names
 from inerter.indices.question import Index
 from inerter.indices.registry import index_settings, make_index
+from inerter.methods.asking import Asked
+from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
-from inerter.networks.elements import Element
+from inerter.networks.elements import Element, Tied
 from inerter.networks.parser import names
+from inerter.scatter.robust import Quantile
+from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
 from inerter.signals.road import Road
 from inerter.vehicle.vehicle import Vehicle
+
+POINTS = 25  # of a front
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """The values that one element takes in turn, in the SI unit of the element."""
+    """The values that the number at a place takes in turn, in its SI unit."""
 
-    element: str
+    place: Place
     values: tuple[float, ...]
     unit: str
+    words: str  # what is swept
+
+    @property
+    def label(self) -> str:
+        """What it is called in results."""
+        return self.place.label
 
 
 @dataclass(frozen=True)
@@ -49,12 +66,21 @@ class Study:
     optimise: str | None = None
     evaluate: tuple[str, ...] = (DEFAULT,)
     baseline: str | None = None  # the layout that the others are compared with; None if there is but one
-    sweep: Sweep | None = None
+    sweeps: tuple[Sweep, ...] = ()  # each value of one with each of the others
     seed: int = 0
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
+    limits: tuple[StudyLimit, ...] = ()  # which optima keep
+    conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
+    over: str = OVER[0]  # how
+    texts: tuple[str, ...] = field(default=(), compare=False, repr=False)  # of the file, which may be quantities
+    own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
+    trade_off: tuple[str, ...] = ()  # two or three indices, whose front of each layout is asked for
+    points: int = POINTS  # of each front
+    tolerance: dict[str, float] = field(default_factory=dict)  # by what part of itself the number at a place scatters
+    quantile: float | None = None  # of what an index becomes then, which takes its place
     budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
     @property
@@ -62,9 +88,59 @@ class Study:
         """All methods that it uses."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
 
-    def index(self, symbol: str) -> Index:
-        """The index of that symbol as the study asks it."""
-        return make_index(symbol, self.road, self.settings)
+    def knows(self, name: str) -> bool:
+        """Whether there is an index that the study can call so."""
+        return name in self.own_indices or name in index_names()
+
+    def symbol(self, name: str) -> str:
+        """The symbol of the index that the study calls so."""
+        own = self.own_indices.get(name)
+        return own.symbol if own else index_names()[name]
+
+    def index(self, name: str) -> Index:
+        """The index that the study calls so, as it asks it."""
+        return make_index(self.symbol(name), self.road, self.settings_of(name))
+
+    def asked(self, name: str, layout: str) -> Asked:
+        """What is asked of a layout for that index: it over the conditions, at its quantile if there is one."""
+        index = self.over_conditions(name)
+        if self.quantile is None or not (spread := self.spread(layout)):
+            return index
+        return Quantile(index, scatter_of(spread, DISTRIBUTIONS[0]), self.quantile, seed=self.seed)
+
+    def spread(self, layout: str) -> dict[str, float]:
+        """By what part of themselves values of a layout scatter, by their names."""
+        if not self.tolerance:
+            return {}
+        names, found = {e for e, layouts in elements_used(self).items() if layout in layouts}, {}
+        for label, part in self.tolerance.items():
+            place = place_of(label)
+            known = what_of(self, place)
+            if known is not None and element_at(place) in ("", *names):
+                found[known[1]] = part
+        return found
+
+    def over_conditions(self, name: str) -> Asked:
+        """That index over the conditions of the study, if there are any."""
+        index = self.index(name)
+        if not self.conditions:
+            return index
+        use = Conditions(condition_of(self, condition) for condition in self.conditions)
+        return use.mean(index) if self.over == OVER[0] else use.worst(index)
+
+    def in_each(self, index: Asked) -> list[Asked]:
+        """An index in each of the conditions by itself; as it is if there are none."""
+        return [Conditions([condition_of(self, c)]).mean(index) for c in self.conditions] or [index]
+
+    def unit(self, name: str) -> str:
+        """The unit of that index, which may depend on what is asked of the vehicle."""
+        index = self.index(name)
+        return index.unit or index.question(self.design(next(iter(self.layouts))).mechanism()).unit
+
+    def settings_of(self, name: str) -> dict[str, Any]:
+        """The settings of that index by their keys: its own, else those of the study; others are among them."""
+        own = self.own_indices.get(name)
+        return {**self.settings, **own.settings} if own else self.settings
 
     def method(self, name: str, threads: int = 1) -> Method:
         """The method of that name as the study asks it; one that simulates shares its roads over `threads`, which
@@ -74,24 +150,35 @@ class Study:
         shared = {**{key: getattr(self, key) for key in known}, "jobs": threads}
         return make_method(name, shared, self.method_settings.get(name, {}))
 
-    def design(self, layout: str, swept: float | None = None) -> Vehicle:
-        """The vehicle with the struts of `layout`; `swept` replaces the value of the swept element [its SI unit].
+    def at(self, swept: Sequence[float]) -> Study:
+        """The study at one point of its sweeps: with these values in the swept places [SI], in the order of the sweeps.
 
-        Raises `StudyError` for an unknown layout, or for `swept` where nothing is swept; `NetworkError` where `swept`
-        is not a possible value.
+        Raises `StudyError` unless there are as many values as sweeps; `NetworkError` and others where one of them is
+        not a possible value.
+        """
+        if not swept and not self.sweeps:
+            return self
+        if not self.sweeps:
+            values = ", ".join(map(repr, swept))
+            raise StudyError(f"Got a swept value, {values}, but this study has no sweep. Add one, or leave it out.")
+        if len(swept) != len(self.sweeps):
+            places = ", ".join(sweep.label for sweep in self.sweeps)
+            raise StudyError(f"Got {len(swept)} swept values for {places}. Give one for each.")
+        found = with_numbers(self, zip((sweep.place for sweep in self.sweeps), swept, strict=True))
+        return replace(found, sweeps=())
+
+    def design(self, layout: str, *swept: float) -> Vehicle:
+        """The vehicle with the struts of `layout`; `swept` are values of the swept places, as in `at`.
+
+        Raises `StudyError` for an unknown layout, or for values where nothing is swept; `NetworkError` where one of
+        them is not possible.
         """
         if layout not in self.layouts:
             known = ", ".join(self.layouts)
             hint = nearest(layout, self.layouts)
             raise StudyError(str(EntryError(got=f"layout {layout!r}", expected=f"one of {known}", hint=hint)))
-        elements = dict(self.elements)
-        if swept is not None:
-            if self.sweep is None:
-                raise StudyError(
-                    f"Got a swept value, {swept!r}, but this study has no sweep. Add one, or leave it out."
-                )
-            elements[self.sweep.element] = elements[self.sweep.element].with_value(swept)
-        return self.layouts[layout].design(self.model, self.vehicle, elements)
+        here = self.at(swept) if swept else self
+        return here.layouts[layout].design(here.model, here.vehicle, here.elements)
 
     def resolved(self) -> dict[str, Any]:
         """The study as a study file says it: plain tables, every default filled in, every quantity in SI units.
@@ -104,6 +191,8 @@ class Study:
             **({"road": self._road()} if self.road else {}),
             "elements": {name: entry_of(element) for name, element in self.elements.items()},
             "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
+            **({"indices": own} if (own := {n: index.entry() for n, index in self.own_indices.items()}) else {}),
+            **({"conditions": [c.entry(self) for c in self.conditions]} if self.conditions else {}),
             "study": self._settings(),
             **({"methods": own} if (own := self._of_methods()) else {}),
         }
@@ -115,30 +204,48 @@ class Study:
         return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}
 
     def _settings(self) -> dict[str, Any]:
-        sweep = self.sweep
         settings = {
             "indices": list(self.indices),
             "conventions": self.conventions,
             "optimise": self.optimise,
             "evaluate": list(self.evaluate),
             "baseline": self.baseline,
-            "sweep": None if sweep is None else {sweep.element: [f"{v!r} {sweep.unit}" for v in sweep.values]},
+            "sweep": {s.label: [f"{value!r} {s.unit}" for value in s.values] for s in self.sweeps} or None,
             "seed": self.seed,
             "realisations": self.realisations,
             "relative_error": self.relative_error,
             **in_si(index_settings().values(), self.settings),
+            "subject_to": self._limits() or None,
+            "conditions": self.over if self.conditions else None,
+            "trade_off": list(self.trade_off) or None,
+            "points": self.points if self.trade_off else None,
+            "tolerance": self.tolerance or None,
+            "quantile": self.quantile,
             "budgets": list(self.budgets) or None,
         }
         return {key: value for key, value in settings.items() if value is not None}
+
+    def _limits(self) -> dict[str, dict[str, str | float]]:
+        found: dict[str, dict[str, str | float]] = {}
+        for limit in self.limits:
+            found.setdefault(limit.of, {})[limit.sense] = limit.entry()
+        return found
 
 
 def elements_used(study: Study) -> dict[str, list[str]]:
     """The elements in layouts, each with the layouts that it is in."""
     used: dict[str, list[str]] = {}
     for layout, struts in study.layouts.items():
-        for element in dict.fromkeys(name for text in struts.struts.values() for name in _names(text)):
+        named = [name for text in struts.struts.values() for name in _names(text)]
+        for element in dict.fromkeys([*named, *(other for name in named for other in _followed(study, name))]):
             used.setdefault(element, []).append(layout)
     return used
+
+
+def _followed(study: Study, name: str) -> tuple[str, ...]:
+    """What an element follows from, if it is tied."""
+    value = study.elements[name].value if name in study.elements else None
+    return value.names if isinstance(value, Tied) else ()
 
 
 def _names(expression: str) -> tuple[str, ...]:
@@ -146,8 +253,3 @@ def _names(expression: str) -> tuple[str, ...]:
         return names(expression)
     except NetworkError:  # reported with its layout
         return ()
-
-
-def write_resolved(study: Study) -> str:
-    """`study.resolved()` as TOML. `load_study` reads an equal study from it, to the last bit of every value."""
-    return as_toml(study.resolved())

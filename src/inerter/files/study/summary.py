@@ -26,17 +26,21 @@ def write_summary(path: Path, study: Study, data: xr.Dataset) -> None:
 
 
 def _header(study: Study, data: xr.Dataset) -> list[str]:
-    sweep = study.sweep
     parameters = zip(data.parameter.values.tolist(), data.parameter_unit.values.tolist(), strict=True)
     units = zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True)
     return [
         *("layout", "index", "method"),
-        *([f"{sweep.element} [{sweep.unit}]"] if sweep else []),
+        *(f"{sweep.label} [{sweep.unit}]" for sweep in study.sweeps),
         *("value", "unit", "improvement_percent", "standard_error", "status"),
         *(f"{name}_percent" if name in PERCENT else name for name in _more(study)),
         *(f"{name} [{unit}]" for name, unit in parameters),
         *("at_bound", "starts", "agreed"),
         *(f"{name} of this design [{unit}]" for name, unit in units),
+        *(
+            text
+            for limit in study.limits
+            for text in (f"{limit.words} [{limit.unit}]", f"cost of {limit.words}_percent")
+        ),
     ]
 
 
@@ -45,7 +49,7 @@ def _more(study: Study) -> list[str]:
 
 
 def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
-    sweep, everything, more = study.sweep, cases(study), _more(study)
+    everything, more = cases(study), _more(study)
     parameters = data.parameter.values.tolist()
     units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
     by_method = {name for name in data.data_vars if "method" in data[name].dims}
@@ -64,13 +68,18 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
                     case.layout,
                     case.index,
                     method,
-                    *([_number(case.swept)] if sweep else []),
+                    *map(_number, case.swept),
                     *(_number(row["value"]), units[case.index], _number(row["improvement"])),
                     *(_number(row["standard_error"]), row["status"]),
                     *(_number(row[name]) if name in PERCENT else row[name] for name in more),
                     *map(_number, row["parameter_value"]),
                     *(at_bound, row["starts"], row["agreed"]),
                     *map(_number, row["other_value"]),
+                    *(
+                        _number(row[name][i])
+                        for i in range(len(study.limits))
+                        for name in ("limit_value", "limit_cost")
+                    ),
                 ]
 
 

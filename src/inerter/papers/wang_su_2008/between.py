@@ -49,8 +49,8 @@ def compute(name: str) -> dict[str, float]:
 
     if point == _THERE:
         return {"excess": excess(_PLACE)}
-    assert source.sweep is not None
-    low, high = source.sweep.values[int(point) : int(point) + 2]
+    (swept,) = source.sweeps
+    low, high = swept.values[int(point) : int(point) + 2]
     return {"k": float(scipy.optimize.brentq(lambda k: excess(k) - WORSE, low, high, rtol=3e-4))}
 
 

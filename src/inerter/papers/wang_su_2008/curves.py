@@ -21,8 +21,8 @@ _RIGID = 1e5  # [kg]
 def names(figure: str) -> list[str]:
     """A name for each curve and stiffness: layout, index, number of the swept value."""
     source = study("friction1")
-    assert source.sweep is not None
-    points = range(len(source.sweep.values))
+    (swept,) = source.sweeps
+    points = range(len(swept.values))
     return [f"{layout} {index} {i}" for layout in LAYOUTS[figure] for index in source.indices for i in points]
 
 
@@ -35,8 +35,8 @@ def compute(name: str, optima: dict[str, float]) -> dict[str, object]:
     """One point of a curve: the linear optimum's parameters, `optima`, with friction."""
     layout, index, point = name.split()
     source = study("friction1")
-    assert source.sweep is not None
-    design = source.design(layout, source.sweep.values[int(point)]).with_values(optima)
+    (swept,) = source.sweeps
+    design = source.design(layout, swept.values[int(point)]).with_values(optima)
     rigid = optima["b"] > _RIGID  # an inerter that does not move feels no friction
     found = evaluate(design, index_of(index, source), Norm() if rigid else ApproximateLinear(realisations=4))
     return {"value": found.value, "error": found.standard_error or 0.0, "status": str(found.status)}

@@ -1,0 +1,154 @@
+"""Maps over two swept places: how good the best designs are, and what they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+from numpy.typing import NDArray
+
+from inerter.figures.designs import IMPROVEMENT, WORST
+from inerter.figures.labels import (
+    NOTICEABLE,
+    axis_label,
+    capital,
+    compared,
+    index_title,
+    index_unit,
+    layouts,
+    scale,
+    swept_label,
+    swept_places,
+    titled,
+    typeset,
+)
+from inerter.figures.style import log_axis, suits_log_axis
+
+Array = NDArray[np.float64]
+
+_LEVELS = 8  # about so many bands of colour
+_MOST_DOTS = 400  # of designs that were found
+_NO_VALUE = "#D9D9D9"
+_OPEN: dict[str, Any] = {
+    "markerfacecolor": "white",
+    "markeredgecolor": "0.15",
+    "markeredgewidth": 0.5,
+    "clip_on": False,
+}
+
+
+def index_maps(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:
+    """The value of `index` for the baseline, and the improvement of each other layout over it, one of `axes` each.
+
+    Without a baseline, the value of every layout. The first swept place goes to the right, the second upwards.
+    """
+    data = _ordered(results.sel(index=index))
+    others = compared(results)
+    valued = [name for name in layouts(results) if name not in others]
+    unit = scale(data["value"].sel(layout=valued).values, index_unit(results, index))
+    values = data["value"].sel(layout=valued) * unit.factor
+    label = axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit)
+    for ax, name in zip(axes, valued, strict=False):
+        _draw(data, values.sel(layout=name).values, ax, _sequential(values.values), label)
+        ax.set_title(f"{name} (baseline)" if others else name)
+    better = data["improvement"].sel(layout=others).clip(min=WORST)
+    look = _diverging(better.values) if others else {}
+    for ax, name in zip(axes[len(valued) :], others, strict=True):
+        numbers = better.sel(layout=name).values
+        _draw(data, numbers, ax, look, IMPROVEMENT)
+        _draw_zero(data, numbers, ax)
+        ax.set_title(name)
+    return axes
+
+
+def parameter_panels(results: xr.Dataset, index: str, parameter: str) -> list[str]:
+    """The layouts that have the parameter."""
+    values = results["parameter_value"].sel(index=index, parameter=parameter)
+    return [name for name in layouts(results) if bool(np.isfinite(values.sel(layout=name)).any())]
+
+
+def parameter_maps(results: xr.Dataset, index: str, parameter: str, axes: Sequence[Axes]) -> Sequence[Axes]:
+    """The value of a parameter that is best for `index`, a layout on one of `axes` each; circles: at a bound."""
+    data = _ordered(results.sel(index=index, parameter=parameter))
+    unit = scale(data["parameter_value"].values, str(data["parameter_unit"].item()))
+    label = axis_label(f"Best {parameter}", unit.unit)
+    for ax, name in zip(axes, parameter_panels(results, index, parameter), strict=True):
+        row = data.sel(layout=name)
+        numbers = row["parameter_value"].values * unit.factor
+        _draw(data, numbers, ax, _sequential(numbers), label)
+        x, y = _places(data)
+        held = np.argwhere(row["at_bound"].values != "")
+        ax.plot(x[held[:, 0]], y[held[:, 1]], linestyle="", marker="o", markersize=4.5, **_OPEN)
+        ax.set_title(name)
+    return axes
+
+
+def _ordered(data: xr.Dataset) -> xr.Dataset:
+    places = swept_places(data)
+    return data.sortby(places).transpose(..., *places)
+
+
+def _places(data: xr.Dataset) -> tuple[Array, Array]:
+    """The swept values in the units of the axes."""
+    first, second = (
+        data[place].values * scale(data[place].values, data[place].attrs["units"]).factor
+        for place in swept_places(data)
+    )
+    return first, second
+
+
+def _sequential(numbers: Array) -> dict[str, Any]:
+    """How values are coloured: evenly from the least to the largest."""
+    return {"levels": _levels(numbers), "cmap": "viridis"}
+
+
+def _diverging(numbers: Array) -> dict[str, Any]:
+    """How improvements are coloured: those that are none in white, better in blue and worse in red."""
+    levels = _levels(np.append(numbers, 0.0))
+    most = max(abs(levels[0]), abs(levels[-1]))
+    return {"levels": levels, "cmap": "RdBu", "vmin": -most, "vmax": most}
+
+
+def _levels(numbers: Array) -> Array:
+    """Round numbers that divide the range of some values."""
+    known = numbers[np.isfinite(numbers)]
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        low, high = low - max(1e-3 * abs(low), 1e-9), high + max(1e-3 * abs(high), 1e-9)
+    return np.asarray(MaxNLocator(_LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high), dtype=float)
+
+
+def _draw(data: xr.Dataset, numbers: Array, ax: Axes, look: dict[str, Any], label: str) -> None:
+    """One map with its scale: bands of colour, and where designs were found."""
+    x, y = _places(data)
+    shown = np.ma.masked_invalid(numbers.T)
+    ax.set_facecolor(_NO_VALUE)
+    ax.grid(visible=False)
+    bands = ax.contourf(x, y, shown, **look)
+    bands.set_edgecolor("face")  # no hairlines between bands where the page is printed
+    if numbers.size <= _MOST_DOTS:
+        ax.plot(*(grid.ravel() for grid in np.meshgrid(x, y)), linestyle="", marker="o", markersize=2.0, **_OPEN)
+    plain = FuncFormatter(lambda value, _: typeset(f"{value:.6g}"))
+    bar = ax.figure.colorbar(bands, ax=ax, location="bottom", fraction=0.06, pad=0.02, format=plain)
+    bar.set_label(label.replace("\n", " "))
+    bar.ax.locator_params(nbins=5)
+    _label(data, ax, x, y)
+
+
+def _draw_zero(data: xr.Dataset, numbers: Array, ax: Axes) -> None:
+    """Where a layout is as good as the baseline, if that is between designs that are better and worse."""
+    known = numbers[np.isfinite(numbers)]
+    if known.size and known.min() < -NOTICEABLE < NOTICEABLE < known.max():
+        ax.contour(*_places(data), np.ma.masked_invalid(numbers.T), levels=[0.0], colors="black", linewidths=1.6)
+
+
+def _label(data: xr.Dataset, ax: Axes, x: Array, y: Array) -> None:
+    for place, which, values in zip(swept_places(data), ("x", "y"), (x, y), strict=True):
+        unit = scale(data[place].values, data[place].attrs["units"]).unit
+        ax.set(**{f"{which}label": swept_label(data, place, unit)})
+        if suits_log_axis(values):
+            log_axis(ax, which)

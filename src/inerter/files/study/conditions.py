@@ -1,0 +1,60 @@
+"""Operating conditions in a study file: `[[conditions]]`, each with its share and other numbers at some places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from inerter.fields import fields_of
+from inerter.files.common.shape import ROAD
+from inerter.files.study.places import Place, number_at, place_of
+from inerter.methods.conditions import Condition
+from inerter.units import shown
+from inerter.vehicle.registry import VEHICLES
+
+if TYPE_CHECKING:
+    from inerter.files.study.study import Study
+
+OVER = ("mean", "worst")
+
+
+@dataclass(frozen=True)
+class StudyCondition:
+    """How the vehicle goes for a part of the time: other numbers at some places, by their labels, in SI units."""
+
+    numbers: dict[str, float]
+    share: float = 1.0
+    name: str = ""
+
+    def entry(self, study: Study) -> dict[str, str | float]:
+        """How a file says it."""
+        units = {label: found.unit for label in self.numbers if (found := number_at(study, place_of(label)))}
+        given = {label: f"{number!r} {units[label]}" for label, number in self.numbers.items()}
+        return {**given, "share": self.share, **({"name": self.name} if self.name else {})}
+
+
+def what_of(study: Study, place: Place) -> tuple[str, str] | None:
+    """Whether a place is one of the vehicle or of the road, and what it is called there; None if of neither."""
+    names = {
+        "vehicle": _of_vehicle(study),
+        "road": {f.key: ("road", f.name) for f in ROAD},
+        "elements": {name: ("vehicle", name) for name in study.elements},
+    }
+    return names.get(place.section, {}).get(place.key)
+
+
+def _of_vehicle(study: Study) -> dict[str, tuple[str, str]]:
+    coordinates = {f"coordinates.{name}": ("vehicle", name) for name in study.vehicle.get("coordinates", {})}
+    fields = fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ()
+    return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates}
+
+
+def condition_of(study: Study, stated: StudyCondition) -> Condition:
+    """What a method takes."""
+    changed: dict[str, dict[str, float]] = {"vehicle": {}, "road": {}}
+    for label, number in stated.numbers.items():
+        found = what_of(study, place_of(label))
+        assert found is not None, label
+        changed[found[0]][found[1]] = number
+    name = stated.name or ", ".join(f"{label} = {shown(number)}" for label, number in stated.numbers.items())
+    return Condition(stated.share, changed["vehicle"], changed["road"], name)

@@ -1,0 +1,167 @@
+"""Limits in a study file: `subject_to`, with indices and static stiffnesses by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any, Never
+
+from pydantic import Discriminator, Field, Tag
+
+from inerter.errors import InerterError
+from inerter.files.common.entries import quantity_text
+from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.schema import NEVER, OrDeeper, checked, quantity_schema
+from inerter.files.common.suggest import nearest, some
+from inerter.files.common.tables import Shape
+from inerter.indices.names import index_names
+from inerter.methods.asking import Asked
+from inerter.methods.method import asked_of
+from inerter.methods.static_stiffness import static_stiffness
+from inerter.optimisation.held import Held
+from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each
+from inerter.units import PURE, format_quantity, parse_quantity, shown
+from inerter.vehicle.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from inerter.files.study.study import Study
+
+_STIFFNESS = "static-stiffness"
+_SENSES: dict[str, Callable[[Asked, float], Limit]] = {"at_most": at_most, "at_least": at_least, "equal": equal}
+_PLACE = ("study", "subject_to")
+
+
+@dataclass(frozen=True)
+class StudyLimit:
+    """A limit as a file says it: of what, on which side, and how much in the SI unit."""
+
+    of: str  # the name of an index, or static-stiffness.MOUNT
+    sense: str
+    value: float
+    unit: str
+
+    @property
+    def words(self) -> str:
+        """What is limited, and on which side."""
+        return f"{self.of} {self.sense.replace('_', ' ')}"
+
+    @property
+    def label(self) -> str:
+        """The limit in words."""
+        return f"{self.words} {format_quantity(self.value, self.unit, digits=12)}"
+
+    def entry(self) -> str | float:
+        """How a file says its value."""
+        return self.value if self.unit == PURE else f"{self.value!r} {self.unit}"
+
+
+def _limit_text(value: Any) -> str | float:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value)
+    return quantity_text(value)
+
+
+_Text = Annotated[str | float | None, checked(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})]
+
+
+class LimitShape(Shape):
+    """The sides on which an index is limited."""
+
+    at_most: _Text = Field(default=None, description="The most that it may be.", examples=['at_most = "3 mm"'])
+    at_least: _Text = Field(default=None, description="The least that it may be.", examples=['at_least = "1 mm"'])
+    equal: _Text = Field(default=None, description="What it has to be.", examples=['equal = "120 kN/m"'])
+
+
+def _refused(entry: Any) -> Never:
+    raise EntryError(got=shown(entry), fault="not a table", expected='such as { at_most = "600 N" }')
+
+
+LimitEntry = Annotated[
+    Annotated[LimitShape, Tag("<limit>")] | Annotated[Any, checked(_refused, lambda: NEVER), Tag("<no table>")],
+    Discriminator(lambda entry: "<limit>" if isinstance(entry, dict) else "<no table>"),
+    OrDeeper(),
+]
+
+
+def limits_of(study: Study, entries: Mapping[str, LimitShape]) -> tuple[tuple[StudyLimit, ...], list[Problem]]:
+    """The limits that a file sets, and what is wrong with them."""
+    limits, problems = [], []
+    if entries and study.optimise is None:
+        problems.append(at(_PLACE, fault="nothing is optimised", expected="optimise, or no limits"))
+    for of, entry in entries.items():
+        given = {sense: text for sense, text in entry.model_dump().items() if text is not None}
+        try:
+            if not given or ("equal" in given and len(given) > 1):
+                raise EntryError(got=shown(given) if given else "no limit", expected="at_most, at_least or equal")
+            unit = _unit(study, of)
+            found = [StudyLimit(of, sense, _value(text, unit), unit) for sense, text in given.items()]
+            if len(found) > 1 and found[0].value < found[1].value:
+                raise EntryError(got="at_most below at_least", expected="at_most above it, or equal")
+            limits += found
+        except EntryError as error:
+            problems.append(replace(error.problem, place=(*_PLACE, of)))
+        except InerterError as error:
+            problems.append(at((*_PLACE, of), str(error)))
+    return tuple(limits), problems
+
+
+def _value(text: str | float, unit: str) -> float:
+    pure = isinstance(text, float) and unit == PURE
+    value = float(text) if pure else parse_quantity(text, unit)  # type: ignore[arg-type]  # refused there
+    if value <= 0.0:
+        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}".strip())
+    return value
+
+
+def _unit(study: Study, of: str) -> str:
+    """The unit of what is limited; raises `EntryError` if there is no such thing."""
+    if of.partition(".")[0] == _STIFFNESS:
+        mounts = list(next(iter(study.layouts.values())).struts)
+        if of.partition(".")[2] not in mounts:
+            which = ", ".join(f"{_STIFFNESS}.{mount}" for mount in mounts)
+            raise EntryError(got=shown(of), fault="no strut of this vehicle", expected=which)
+        return "N/m"
+    known = [*study.own_indices, *index_names()]
+    if of not in known:
+        expected = f"an index ({some(known)}), or {_STIFFNESS} of a strut"
+        raise EntryError(got=shown(of), fault="nothing that can be limited", expected=expected, hint=nearest(of, known))
+    return study.unit(of)
+
+
+def quantity_limited(study: Study, of: str) -> Asked:
+    """What a limit is put on."""
+    section, _, mount = of.partition(".")
+    return static_stiffness(mount) if section == _STIFFNESS else study.index(of)
+
+
+def limits_in(study: Study) -> list[list[Limit]]:
+    """The limits of a study, each in all of its conditions."""
+    return [
+        [_SENSES[limit.sense](index, limit.value) for index in study.in_each(quantity_limited(study, limit.of))]
+        for limit in study.limits
+    ]
+
+
+def kept(study: Study, vehicle: Vehicle, held: tuple[Held, ...]) -> list[tuple[float, bool, float]]:
+    """Of each limit: the value that comes closest, whether it holds the optimum back, and the per cent that 1 % gives.
+
+    `held` are all limited quantities of an optimum of `vehicle`, in the order of `limits_in`.
+    """
+    found, rest = [], list(held)
+    for several in limits_in(study):
+        count = sum(len(for_each(one.of, vehicle)) for one in several)
+        own, rest = rest[:count], rest[count:]
+        worst = max(own, key=lambda one: one.excess)
+        active = [one for one in own if one.active]
+        found.append((worst.value, bool(active), float(sum(one.sensitivity for one in active))))
+    return found
+
+
+def questions_limited(study: Study, vehicle: Vehicle) -> list[Any]:
+    """The questions that limits ask of a vehicle."""
+    return [
+        index.question(case.mechanism())
+        for several in limits_in(study)
+        for limit in several
+        for case, index in asked_of(vehicle, limit.of)
+    ]

@@ -1,0 +1,155 @@
+"""Sweeps and conditions of a study file: the values that places take, or what is wrong with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from inerter.errors import InerterError
+from inerter.files.common.entries import MOST_POINTS, quantity_text
+from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.suggest import nearest, some
+from inerter.files.study.conditions import StudyCondition, what_of
+from inerter.files.study.places import Number, Place, element_at, number_at, place_of, places, with_numbers
+from inerter.files.study.shape import SweepRange
+from inerter.files.study.study import Study, Sweep, elements_used
+from inerter.networks.elements import Free, Tied
+from inerter.units import are_alike, format_quantity, parse_quantity, shown, unit_in
+
+Entry = SweepRange | tuple[str, ...]
+_MOST = 2  # places at once: what a map shows
+_PLACE, _CONDITIONS = ("study", "sweep"), "conditions"
+
+
+def sweeps_of(study: Study, entries: Mapping[str, Entry]) -> tuple[tuple[Sweep, ...], list[Problem]]:
+    """The sweeps that a file asks of the study, and what is wrong with them."""
+    if not 1 <= len(entries) <= _MOST:
+        got = f"{len(entries)} swept elements ({', '.join(map(shown, entries)) or 'none'})"
+        return (), [at(_PLACE, got=got, expected="exactly one, or two for a map")]
+    sweeps, problems = [], []
+    for name, entry in entries.items():
+        try:
+            sweep = _sweep(study, place_of(name), entry)
+            for value in (min(sweep.values), max(sweep.values)):
+                with_numbers(study, [(sweep.place, value)])
+            sweeps.append(sweep)
+        except EntryError as error:
+            problems.append(replace(error.problem, place=(*_PLACE, name)))
+        except InerterError as error:
+            problems.append(at((*_PLACE, name), str(error)))
+    if len({sweep.place for sweep in sweeps}) < len(sweeps):
+        problems.append(at(_PLACE, got=f"{sweeps[0].label} twice", expected="two places"))
+    if (points := prod(len(sweep.values) for sweep in sweeps)) > MOST_POINTS:
+        problems.append(at(_PLACE, got=f"{points} points", expected=f"at most {MOST_POINTS} in all"))
+    return tuple(sweeps), problems
+
+
+def number_of(study: Study, place: Place) -> Number:
+    """The number that is to take other values; raises `EntryError` where there is none that can."""
+    number, element = number_at(study, place), element_at(place)
+    if number is None:
+        raise unknown_place(study, place)
+    if isinstance(number.value, Free | Tied):
+        hint = "Fix it, or leave the sweep out."
+        raise EntryError(
+            fault=f"{element} is {'free' if isinstance(number.value, Free) else 'tied to others'}",
+            expected="an element with a fixed value",
+            hint=hint,
+        )
+    if element and element not in elements_used(study):
+        unused = f"{element} is in no layout, so a sweep changes nothing"
+        raise EntryError(fault=unused, expected="an element that a layout uses")
+    return number
+
+
+def unknown_place(study: Study, place: Place) -> EntryError:
+    """That nothing stands at a place, and what may be meant."""
+    if element_at(place) == place.key:
+        missing = f"{shown(place.key)} is not in [elements], where there are {some(study.elements)}"
+        return EntryError(fault=missing, hint=nearest(place.key, places(study)))
+    expected = "a place of a number, such as road.speed or vehicle.sprung_mass, or an element"
+    hint = nearest(place.label, places(study))
+    return EntryError(fault=f"this study has no number at {place.label}", expected=expected, hint=hint)
+
+
+def _sweep(study: Study, place: Place, entry: Entry) -> Sweep:
+    number = number_of(study, place)
+    texts = (entry.lower, entry.upper) if isinstance(entry, SweepRange) else entry
+    _check_units(place, number, texts)
+    values = tuple(value_of(number, text) for text in texts)
+    if isinstance(entry, SweepRange):
+        values = _spread(number, entry, *values)
+    elif len(set(values)) < len(values):
+        raise EntryError(got="the same value more than once", expected="each once")
+    return Sweep(place, values, number.unit, number.words)
+
+
+def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:
+    given = dict.fromkeys(map(unit_in, texts))
+    alike = [are_alike(unit, number.unit) for unit in given]
+    if all(alike):
+        return
+    if any(alike) or not all(are_alike(unit, next(iter(given))) for unit in given):
+        raise EntryError(got=f"values of unlike units, {', '.join(sorted(given))}", expected="one")
+    other = f"{place.label} is in {number.unit}"
+    raise EntryError(got=f"values in {', '.join(given)}", fault=other, expected=f"the unit of {place.label}")
+
+
+def value_of(number: Number, text: str) -> float:
+    """What a text stands for at the place of a number; raises `UnitError`, or `EntryError` if it is not possible."""
+    value = parse_quantity(text, number.unit)
+    if value < 0.0 or (value == 0.0 and not number.may_vanish):
+        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {number.unit}")
+    return value
+
+
+def _spread(number: Number, entry: SweepRange, low: float, high: float) -> tuple[float, ...]:
+    """Values from one end to the other."""
+    if low >= high:
+        how, remedy = ("equal", "Give them apart.") if low == high else ("reversed", "Swap them.")
+        first, last = (format_quantity(end, number.unit, digits=12) for end in (low, high))
+        ends = f'{how} ends, from = "{first}" and to = "{last}"'
+        raise EntryError(got=ends, expected="from less than to", hint=remedy)
+    if entry.spacing == "log" and low == 0.0:
+        wanted = 'from greater than zero, or spacing = "linear"'
+        raise EntryError(got='spacing = "log" from zero', expected=wanted)
+    space = np.geomspace if entry.spacing == "log" else np.linspace
+    return tuple(float(value) for value in space(low, high, entry.points))
+
+
+def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCondition, ...], list[Problem]]:
+    """The conditions that a file states, and what is wrong with them."""
+    conditions, problems = [], []
+    for i, entry in enumerate(entries, start=1):
+        numbers = {}
+        for label, given in (entry.model_extra or {}).items():
+            where = (f"{_CONDITIONS}[{i}]", label)
+            try:
+                place = place_of(label)
+                numbers[place.label] = _number(study, place, given)
+            except EntryError as error:
+                problems.append(replace(error.problem, place=where))
+            except InerterError as error:
+                problems.append(at(where, str(error)))
+        conditions.append(StudyCondition(numbers, entry.share, entry.name))
+    swept = {sweep.label for sweep in study.sweeps}
+    for i, condition in enumerate(conditions, start=1):
+        for label in condition.numbers.keys() & swept:
+            both = f"{label} is swept, and in a condition"
+            problems.append(at((f"{_CONDITIONS}[{i}]", label), fault=both, expected="one of the two"))
+    return tuple(conditions), problems
+
+
+def _number(study: Study, place: Place, given: Any) -> float:
+    number = number_of(study, place)
+    if what_of(study, place) is None:
+        raise EntryError(
+            got=place.label,
+            fault="not what a condition can change",
+            expected="a number of the vehicle or the road, or the value of an element",
+        )
+    return value_of(number, quantity_text(given))

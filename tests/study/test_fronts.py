@@ -1,0 +1,156 @@
+"""Trade-offs of study files: fronts are those of Python, in files, in words and in a figure."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from study_text import study_text
+
+import inerter as it
+from inerter.errors import StudyError
+from inerter.figures.study import study_figures
+from inerter.figures.style import styled
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import StudyResult, run_study
+from inerter.files.study.study import Study
+from inerter.files.study.written import write_resolved
+from inerter.report.fronts import front_lines, front_sentences
+from inerter.report.page import report
+
+FREE = """k = "30 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+b = { from = "1 kg", to = "2000 kg" }"""
+ASK = 'trade_off = ["J1", "tyre-load"]\noptimise = "norm"\npoints = 5\n'
+
+
+def study_of(folder: Path, settings: str, elements: str = FREE) -> Study:
+    path = folder / "study.toml"
+    path.write_text(study_text(settings, elements=elements), encoding="utf-8")
+    return load_study(path)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
+    folder = tmp_path_factory.mktemp("front")
+    return run_study(study_of(folder, ASK), folder / "out")
+
+
+def test_a_front_is_that_of_python(found: StudyResult) -> None:
+    study = found.study
+    assert study.indices == ("J1", "tyre-load")
+    for layout in study.layouts:
+        by_hand = it.pareto(
+            study.design(layout), [it.RideComfort(study.road), it.TyreLoad(study.road)], it.Norm(), points=5, seed=0
+        )
+        row = found.data.sel(layout=layout)
+        np.testing.assert_array_equal(row["front_value"].values[: len(by_hand.values)], by_hand.values)
+        assert np.flatnonzero(row["front_knee"].values).tolist() == [by_hand.knee]
+        for i, index in enumerate(study.indices):  # its ends are the single optima
+            best = float(row["value"].sel(index=index).item())
+            assert float(row["front_value"][:, i].min()) == pytest.approx(best, rel=1e-6)
+
+
+def test_the_table_has_a_row_a_point_that_is_its_design(found: StudyResult) -> None:
+    with (found.folder / "fronts.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == int(np.isfinite(found.data["front_value"].sel(criterion="J1")).sum())
+    for row in rows:
+        design = found.study.design(row["layout"])
+        values = {
+            name: float(row[f"{name} [{unit}]"])
+            for name, unit in (("c", "N s/m"), ("b", "kg"))
+            if name in design.free_values()
+        }
+        value = it.evaluate(design.with_values(values), it.TyreLoad(found.study.road), it.Norm()).value
+        assert float(row["tyre-load [N]"]) == pytest.approx(value, rel=1e-9)
+        assert row["status"] == "ok"
+    assert [row["knee"] for row in rows].count("yes") == 2
+
+
+def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
+    sentence = front_sentences(found.data)[0]
+    assert sentence.startswith("Trade-off between ride comfort and dynamic tyre load, at the knee: S1 ")
+    assert "designs of S1" in sentence
+    lines = list(front_lines(found.data, 80))
+    assert max(map(len, lines)) <= 80
+    assert [line.strip().partition(":")[0] for line in lines if ":" in line][1:4] == [
+        "least J1",
+        "knee",
+        "least tyre-load",
+    ]
+    (figure,) = [figure for figure in study_figures(found.data) if figure.name == "front"]
+    with styled():
+        figure.draw().draw_without_rendering()
+    page = report(found.data, found.study, tmp_path)
+    assert "<h2>Trade-off</h2>" in page
+    assert "S2, knee" in page
+
+
+def test_an_interrupted_front_goes_on_to_the_same_bytes(found: StudyResult, tmp_path: Path) -> None:
+    again = run_study(found.study, tmp_path / "again").folder
+    journal = again / "journal.jsonl"
+    journal.write_bytes(b"".join(journal.read_bytes().splitlines(keepends=True)[:-1]))
+    run_study(found.study, again, resume=True)
+    for name in ("fronts.csv", "summary.csv", "results.nc"):
+        assert (again / name).read_bytes() == (found.folder / name).read_bytes()
+    with xr.open_dataset(again / "results.nc") as stored:
+        np.testing.assert_array_equal(stored["front_value"], found.data["front_value"])
+
+
+def test_a_front_within_limits_that_nothing_keeps_says_so(tmp_path: Path) -> None:
+    study = study_of(tmp_path, ASK + 'subject_to = { J3 = { at_most = "1 N" } }')
+    result = run_study(study, tmp_path / "out")
+    assert [front.status for front in result.fronts] == ["infeasible"] * 2
+    assert any(line.startswith("front of S1: infeasible") for line in result.failures)
+    assert "infeasible" in "\n".join(front_lines(result.data, 80))
+    assert "front" not in [figure.name for figure in study_figures(result.data)]
+    assert report(result.data, study, tmp_path)
+
+
+def test_a_trade_off_survives_being_written(found: StudyResult, tmp_path: Path) -> None:
+    (tmp_path / "copy.toml").write_text(write_resolved(found.study), encoding="utf-8")
+    assert load_study(tmp_path / "copy.toml") == found.study
+
+
+BAD: dict[str, tuple[str, str, list[str]]] = {
+    "of one": ('trade_off = ["J1"]\noptimise = "norm"', "study.trade_off", ["1 indices", "two or three"]),
+    "of four": (
+        'trade_off = ["J1", "J3", "J5", "suspension-travel"]\noptimise = "norm"',
+        "study.trade_off",
+        ["4 indices"],
+    ),
+    "of the same": (
+        'indices = ["J1"]\ntrade_off = ["J1", "ride-comfort"]\noptimise = "norm"',
+        "study.trade_off",
+        ["the same index twice"],
+    ),
+    "of nothing": ('trade_off = ["J1", "J9"]\nindices = ["J1"]\noptimise = "norm"', "study.trade_off", ['"J9"']),
+    "a word": ('trade_off = "J1"\nindices = ["J1"]\noptimise = "norm"', "study.trade_off", ["expected a list"]),
+    "two points": (ASK.replace("points = 5", "points = 2"), "study.points", ["from 3 to 1000"]),
+    "few points of three": (
+        'trade_off = ["J1", "J3", "J5"]\noptimise = "norm"\npoints = 4',
+        "study.points",
+        ["at least 6"],
+    ),
+    "points of nothing": ('indices = ["J1"]\noptimise = "norm"\npoints = 7', "study.points", ["no front"]),
+    "over a sweep": (ASK + 'sweep = { k = ["1 N/m", "2 N/m"] }', "study.trade_off", ["beside a sweep"]),
+}
+
+
+@pytest.mark.parametrize(("settings", "place", "words"), BAD.values(), ids=BAD)
+def test_a_bad_trade_off_is_refused_with_its_place(tmp_path: Path, settings: str, place: str, words: list[str]) -> None:
+    with pytest.raises(StudyError) as caught:
+        study_of(tmp_path, settings)
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith(f"study.toml: {place}: "), line
+    assert [word for word in words if word not in line] == [], line
+
+
+def test_a_trade_off_needs_a_search(tmp_path: Path) -> None:
+    fixed = 'k = "20 kN/m"\nc = "1 kN s/m"\nb = "30 kg"'
+    with pytest.raises(StudyError, match=r"study\.trade_off: nothing is optimised"):
+        study_of(tmp_path, 'trade_off = ["J1", "J3"]', fixed)

@@ -1,0 +1,249 @@
+"""Limits and operating conditions of study files: what they ask is what Python asks, and what is said of them."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from study_text import study_text
+
+import inerter as it
+from inerter.errors import StudyError
+from inerter.files.study.cases import Outcome, cases, run_case
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import run_study
+from inerter.files.study.study import Study
+from inerter.files.study.written import write_resolved
+from inerter.report.findings import headlines
+from inerter.report.page import report
+from inerter.report.text import WIDTH, summary_table
+
+FREE = """k = { from = "10 kN/m", to = "200 kN/m" }
+c = { from = "100 N s/m", to = "100 kN s/m" }
+b = { from = "1 kg", to = "2000 kg" }"""
+TWO = """[[conditions]]
+name = "empty"
+share = 0.3
+[[conditions]]
+"road.speed" = "30 m/s"
+vehicle.sprung_mass = "320 kg"
+share = 0.7
+"""
+
+
+@pytest.fixture
+def load(tmp_path: Path) -> Callable[..., Study]:
+    def load_text(settings: str, sections: str = "", elements: str = FREE, **parts: str) -> Study:
+        path = tmp_path / "study.toml"
+        layouts = parts.pop("layouts", 'S1 = "k | c"\nS3 = "k | c - b"')
+        text = study_text(settings, elements=elements, layouts=layouts, **parts)
+        path.write_text(text.replace("[study]", f"{sections}[study]"), encoding="utf-8")
+        return load_study(path)
+
+    return load_text
+
+
+def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) -> None:
+    limits = 'subject_to = { tyre-load = { at_most = "650 N" }, static-stiffness.strut = { at_least = "25 kN/m" } }'
+    study = load(f'indices = ["J1"]\noptimise = "norm"\n{limits}')
+    result = run_study(study, tmp_path / "out")
+    car, road = study.design("S3"), study.road
+    by_hand = it.optimise(
+        car,
+        it.RideComfort(road),
+        it.Norm(),
+        subject_to=[it.at_most(it.TyreLoad(road), 650.0), it.at_least(it.static_stiffness("strut"), 25e3)],
+        seed=0,
+    )
+    best = result.data.sel(layout="S3", index="J1").squeeze("method")
+    assert float(best["value"]) == by_hand.value
+    assert best["limit"].values.tolist() == ["tyre-load at most 650 N", "static-stiffness.strut at least 25 kN/m"]
+    np.testing.assert_array_equal(best["limit_value"], [held.value for held in by_hand.limits])
+    np.testing.assert_array_equal(best["limit_cost"], [held.sensitivity for held in by_hand.limits])
+    assert best["limit_active"].values.tolist() == [held.active for held in by_hand.limits]
+    assert any(held.active for held in by_hand.limits)
+    with (tmp_path / "out" / "summary.csv").open(encoding="utf-8", newline="") as stream:
+        row = list(csv.DictReader(stream))[1]
+    assert float(row["static-stiffness.strut at least [N/m]"]) == by_hand.limits[1].value
+    assert float(row["cost of static-stiffness.strut at least_percent"]) == by_hand.limits[1].sensitivity
+    text = summary_table(result.data)
+    assert max(map(len, text.splitlines())) <= WIDTH
+    assert "at its limit: 1 % more" in text
+    assert "Every design keeps these limits" in report(result.data, study, tmp_path)
+
+
+def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., Study], tmp_path: Path) -> None:
+    study = load('indices = ["J1"]\noptimise = "norm"\nsubject_to = { J3 = { at_most = "10 N" } }')
+    result = run_study(study, tmp_path / "out")
+    assert np.isnan(result.data["value"]).all()
+    assert np.isfinite(result.data["parameter_value"].sel(layout="S3")).all()  # of the nearest design
+    assert not result.failed
+    assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
+    assert headlines(result.data) == ["Best ride comfort: no layout keeps the limits."]
+    assert "the nearest design" in report(result.data, study, tmp_path)
+
+
+def test_a_limit_is_swept_by_its_place(load: Callable[..., Study], tmp_path: Path) -> None:
+    """Tighter limits never give a better index, and each point is the study with that limit."""
+    limit = 'subject_to = { J3 = { at_most = "650 N" } }'
+    sweep = 'sweep = { "study.subject_to.J3.at_most" = ["800 N", "700 N", "650 N", "620 N"] }'
+    study = load(f'indices = ["J1"]\noptimise = "norm"\n{limit}\n{sweep}', layouts='S3 = "k | c - b"')
+    values = run_study(study, tmp_path / "out").data["value"].values.ravel()
+    assert np.all(np.diff(values) >= -1e-9)  # limits are kept to 1e-7
+    alone = run_study(
+        load(f'indices = ["J1"]\noptimise = "norm"\n{limit}', layouts='S3 = "k | c - b"'), tmp_path / "one"
+    )
+    assert float(alone.data["value"].item()) == values[2]
+
+
+@pytest.mark.parametrize("over", ["mean", "worst"])
+def test_conditions_are_those_of_python(load: Callable[..., Study], tmp_path: Path, over: str) -> None:
+    study = load(f'indices = ["J1", "J3"]\noptimise = "norm"\nconditions = "{over}"', TWO)
+    use = it.Conditions([it.Condition(0.3), it.Condition(0.7, vehicle={"sprung_mass": 320.0}, road={"speed": 30.0})])
+    found = run_study(study, tmp_path / "out").data
+    for index, plain in (("J1", it.RideComfort(study.road)), ("J3", it.TyreLoad(study.road))):
+        taken = use.mean(plain) if over == "mean" else use.worst(plain)
+        by_hand = it.optimise(study.design("S3"), taken, it.Norm(), seed=0)
+        value = float(found["value"].sel(layout="S3", index=index).item())
+        assert value == by_hand.value
+        each = [
+            it.evaluate(car.with_values(by_hand.parameters), type(plain)(road), it.Norm()).value
+            for car, road in (
+                (study.design("S3"), study.road),
+                (
+                    study.at(()).design("S3").__class__(320.0, 35.0, 150e3, study.design("S3").strut),
+                    it.Road(5e-7, 30.0),
+                ),
+            )
+        ]
+        assert value == pytest.approx(0.3 * each[0] + 0.7 * each[1] if over == "mean" else max(each), rel=1e-9)
+    page = report(found, study, tmp_path)
+    assert "Operating conditions" in page
+    assert "over conditions" in headlines(found)[0]
+
+
+def test_a_limit_holds_in_each_condition(load: Callable[..., Study]) -> None:
+    limits = 'subject_to = { J3 = { at_most = "900 N", at_least = "400 N" } }'
+    study = load(f'indices = ["J1"]\noptimise = "norm"\n{limits}', TWO)
+    (case, *_) = cases(study)
+    outcome = run_case(study, case)
+    car = study.design(case.layout).with_values(outcome.parameters)
+    loads = [
+        it.evaluate(one, it.TyreLoad(road), it.Norm()).value
+        for one, road in (
+            (car, study.road),
+            (type(car)(320.0, 35.0, 150e3, car.strut), it.Road(5e-7, 30.0)),
+        )
+    ]
+    (most, *_), (least, *_) = outcome.limits
+    assert (most, least) == pytest.approx((max(loads), min(loads)), rel=1e-9)
+    again = Outcome(**json.loads(json.dumps(outcome.to_json())))
+    assert json.dumps(again.to_json()) == json.dumps(outcome.to_json())
+
+
+def test_limits_and_conditions_survive_being_written(load: Callable[..., Study]) -> None:
+    limits = 'subject_to = { J3 = { at_most = "0.9 kN", at_least = "400 N" }, static-stiffness.strut.equal = "3 kN/m" }'
+    study = load(f'indices = ["J1"]\noptimise = "norm"\nconditions = "worst"\n{limits}', TWO)
+    copy = study.path.with_name("copy.toml")
+    copy.write_text(write_resolved(study), encoding="utf-8")
+    assert load_study(copy) == study
+    assert load_study(copy).resolved() == study.resolved()
+
+
+ASK = 'indices = ["J1"]\noptimise = "norm"\n'
+LIMIT = ASK + "subject_to = "
+BAD = {
+    "limit of nothing": (LIMIT + '{ J9 = { at_most = "1 N" } }', "", "study.subject_to.J9", ["can be limited", "J1"]),
+    "limit misspelt": (
+        LIMIT + '{ tire-load = { at_most = "1 N" } }',
+        "",
+        "study.subject_to.tire-load",
+        ['Did you mean "tyre-load"?'],
+    ),
+    "limit of no strut": (
+        LIMIT + '{ static-stiffness.front = { equal = "1 N/m" } }',
+        "",
+        'study.subject_to."static-stiffness.front"',
+        ["no strut", "static-stiffness.strut"],
+    ),
+    "limit without sides": (LIMIT + "{ J3 = {} }", "", "study.subject_to.J3", ["no limit", "at_most"]),
+    "limit on a wrong side": (
+        LIMIT + '{ J3 = { below = "1 N" } }',
+        "",
+        "study.subject_to.J3.below",
+        ["unknown key", "at_most, at_least, equal"],
+    ),
+    "limit equal and more": (
+        LIMIT + '{ J3 = { equal = "1 N", at_most = "2 N" } }',
+        "",
+        "study.subject_to.J3",
+        ["at_most, at_least or equal"],
+    ),
+    "limits crossed": (
+        LIMIT + '{ J3 = { at_least = "3 N", at_most = "2 N" } }',
+        "",
+        "study.subject_to.J3",
+        ["at_most below at_least"],
+    ),
+    "limit in another unit": (LIMIT + '{ J3 = { at_most = "3 mm" } }', "", "study.subject_to.J3", ["another kind"]),
+    "limit without unit": (LIMIT + "{ J3 = { at_most = 3 } }", "", "study.subject_to.J3", ["without a unit"]),
+    "limit of zero": (LIMIT + '{ J3 = { at_most = "0 N" } }', "", "study.subject_to.J3", ["not positive"]),
+    "limit is a text": (LIMIT + '{ J3 = "3 N" }', "", "study.subject_to.J3", ["not a table"]),
+    "limits are a text": (LIMIT + '"J3"', "", "study.subject_to", ["not a table"]),
+    "conditions but none": (ASK + 'conditions = "mean"', "", "study.conditions", ["there are none", "[[conditions]]"]),
+    "conditions otherwise": (ASK + 'conditions = "median"', TWO, "study.conditions", ['"mean", "worst"']),
+    "condition of no place": (
+        ASK,
+        '[[conditions]]\nroad.sped = "1 m/s"\n',
+        '"conditions[1]"."road.sped"',
+        ["no number", '"road.speed"'],
+    ),
+    "condition of a free element": (ASK, '[[conditions]]\nc = "1 N s/m"\n', '"conditions[1]".c', ["c is free"]),
+    "condition in another unit": (
+        ASK,
+        TWO + '[[conditions]]\nroad.speed = "1 m"\n',
+        '"conditions[3]"."road.speed"',
+        ["another kind"],
+    ),
+    "condition of zero": (
+        ASK,
+        '[[conditions]]\nroad.speed = "0 m/s"\n',
+        '"conditions[1]"."road.speed"',
+        ["not positive"],
+    ),
+    "condition of a bound": (
+        ASK,
+        '[[conditions]]\nelements.c.to = "5 kN s/m"\n',
+        '"conditions[1]"."elements.c.to"',
+        ["not what a condition can change"],
+    ),
+    "share of nothing": (ASK, "[[conditions]]\nshare = 0\n", "conditions.0.share", ["positive number"]),
+    "share in text": (ASK, '[[conditions]]\nshare = "30 %"\n', "conditions.0.share", ["without quotes"]),
+    "swept and in a condition": (
+        ASK + 'sweep = { road.speed = ["1 m/s", "2 m/s"] }',
+        TWO,
+        '"conditions[2]"."road.speed"',
+        ["swept, and in a condition"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("settings", "sections", "place", "words"), BAD.values(), ids=BAD)
+def test_what_cannot_be_is_refused_with_its_place(
+    load: Callable[..., Study], settings: str, sections: str, place: str, words: list[str]
+) -> None:
+    with pytest.raises(StudyError) as caught:
+        load(settings, sections)
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith(f"study.toml: {place}: "), line
+    assert [word for word in words if word not in line] == [], line
+
+
+def test_limits_need_a_search(load: Callable[..., Study]) -> None:
+    fixed = 'k = "20 kN/m"\nc = "1 kN s/m"\nb = "30 kg"'
+    with pytest.raises(StudyError, match="nothing is optimised"):
+        load('indices = ["J1"]\nsubject_to = { J3 = { at_most = "1 N" } }', elements=fixed)

@@ -1,0 +1,115 @@
+"""Tolerances of study files: what becomes of the best designs is what Python says of them."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+from study_text import study_text
+
+import inerter as it
+from inerter.errors import StudyError
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import StudyResult, run_study
+from inerter.files.study.study import Study, write_resolved
+from inerter.report.page import report
+from inerter.report.tolerances import tolerance_lines
+
+FREE = """k = "30 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+b = { from = "1 kg", to = "2000 kg" }"""
+ASK = 'indices = ["J1"]\noptimise = "norm"\n'
+SPREAD = 'tolerance = { c = "10 %", elements.b = 0.05, vehicle.sprung_mass = "20 %" }\n'
+
+
+def study_of(folder: Path, settings: str, elements: str = FREE) -> Study:
+    path = folder / "study.toml"
+    path.write_text(study_text(settings, elements=elements), encoding="utf-8")
+    return load_study(path)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
+    folder = tmp_path_factory.mktemp("tolerance")
+    return run_study(study_of(folder, ASK + 'tolerance = { c = "10 %", elements.b = 0.05 }\n'), folder / "out")
+
+
+def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:
+    (first, second) = found.tolerances
+    assert (first.layout, second.layout) == ("S1", "S2")
+    best = found.data.sel(layout="S2", index="J1").squeeze("method")
+    values = dict(zip(("c", "b"), best["parameter_value"].values.tolist(), strict=True))
+    by_hand = it.tolerance(
+        found.study.design("S2").with_values(values),
+        it.RideComfort(found.study.road),
+        it.Norm(),
+        spread={"c": 0.1, "b": 0.05},
+        seed=0,
+    )
+    assert second.numbers["mean"] == by_hand.mean
+    assert second.numbers["quantile"] == by_hand.quantile(0.95)
+    assert second.effects == {name: [by_hand.main[name], by_hand.total[name]] for name in ("c", "b")}
+    assert list(first.effects) == ["c"]
+    with (found.folder / "tolerances.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [row["layout"] for row in rows] == ["S1", "S2"]
+    assert float(rows[1]["quantile_0.95"]) == by_hand.quantile(0.95)
+    assert rows[0]["main effect of b"] == ""
+
+
+def test_a_tolerance_is_told(found: StudyResult, tmp_path: Path) -> None:
+    lines = list(tolerance_lines(found.tolerances, 80))
+    assert max(map(len, lines)) <= 80
+    assert "due to c" in " ".join(" ".join(lines).split())
+    page = report(found.data, found.study, tmp_path, (), found.tolerances)
+    assert "<h2>When values scatter</h2>" in page
+
+
+def test_a_tolerance_survives_being_written_and_resumed(found: StudyResult, tmp_path: Path) -> None:
+    study = study_of(tmp_path, ASK + SPREAD)
+    assert study.tolerance == {"c": 0.1, "b": 0.05, "vehicle.sprung_mass": 0.2}
+    assert study.spread("S1") == {"c": 0.1, "sprung_mass": 0.2}
+    (tmp_path / "copy.toml").write_text(write_resolved(study), encoding="utf-8")
+    assert load_study(tmp_path / "copy.toml") == study
+    again = run_study(found.study, tmp_path / "again").folder
+    journal = again / "journal.jsonl"
+    journal.write_bytes(b"".join(journal.read_bytes().splitlines(keepends=True)[:-1]))
+    run_study(found.study, again, resume=True)
+    assert (again / "tolerances.csv").read_bytes() == (found.folder / "tolerances.csv").read_bytes()
+
+
+def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
+    fixed = FREE.replace('b = { from = "1 kg", to = "2000 kg" }', 'b = "30 kg"')
+    study = study_of(tmp_path, ASK + 'tolerance = { c = "10 %" }\nquantile = 0.9\nbaseline = "S2"', fixed)
+    best = it.robust(study.design("S1"), it.RideComfort(study.road), it.Norm(), spread={"c": 0.1}, quantile=0.9, seed=0)
+    asked = study.asked("J1", "S1")
+    assert it.evaluate(best.design, asked, it.Norm()).value == best.value
+    assert "quantile" in asked.title
+
+
+BAD: dict[str, tuple[str, str, list[str]]] = {
+    "of nothing": (ASK + "tolerance = { q = 0.1 }", "study.tolerance.q", ["not in [elements]"]),
+    "of the road": (ASK + "tolerance = { road.speed = 0.1 }", 'study.tolerance."road.speed"', ["no number"]),
+    "of a bound": (ASK + "tolerance = { elements.c.to = 0.1 }", 'study.tolerance."elements.c.to"', ["expected"]),
+    "of all": (ASK + "tolerance = { c = 1.0 }", "study.tolerance.c", ["between 0 and 1"]),
+    "in a unit": (ASK + 'tolerance = { c = "10 N s/m" }', "study.tolerance.c", ['"10 %"']),
+    "no number": (ASK + 'tolerance = { c = "ten %" }', "study.tolerance.c", ['"ten %"', '"10 %"']),
+    "a truth": (ASK + "tolerance = { c = true }", "study.tolerance.c", ["got true"]),
+    "beside a sweep": (
+        ASK + 'tolerance = { c = 0.1 }\nsweep = { k = ["1 N/m", "2 N/m"] }',
+        "study.tolerance",
+        ["beside a sweep"],
+    ),
+    "quantile alone": (ASK + "quantile = 0.9", "study.quantile", ["nothing scatters"]),
+    "quantile of all": (ASK + "tolerance = { c = 0.1 }\nquantile = 1.5", "study.quantile", ["got 1.5"]),
+}
+
+
+@pytest.mark.parametrize(("settings", "place", "words"), BAD.values(), ids=BAD)
+def test_a_bad_tolerance_is_refused_with_its_place(tmp_path: Path, settings: str, place: str, words: list[str]) -> None:
+    with pytest.raises(StudyError) as caught:
+        study_of(tmp_path, settings)
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith(f"study.toml: {place}: "), line
+    assert [word for word in words if word not in line] == [], line

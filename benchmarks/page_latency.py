@@ -49,9 +49,19 @@ def main() -> None:
         listener.bind(("127.0.0.1", 0))
         port = listener.getsockname()[1]
     origin = f"http://127.0.0.1:{port}"
-    command = [sys.executable, "-c", "from inerter.cli.start import main; main()", "serve", str(EXAMPLE), "--port", str(port)]
+    command = [
+        sys.executable,
+        "-c",
+        "from inerter.cli.start import main; main()",
+        "serve",
+        str(EXAMPLE),
+        "--port",
+        str(port),
+    ]
     begun = time.perf_counter()
-    server = subprocess.Popen([*command, "--no-browser"], stdout=subprocess.PIPE, env={**os.environ, "INERTER_TOKEN": TOKEN})
+    server = subprocess.Popen(
+        [*command, "--no-browser"], stdout=subprocess.PIPE, env={**os.environ, "INERTER_TOKEN": TOKEN}
+    )
     try:
         assert server.stdout is not None
         server.stdout.readline()
@@ -77,7 +87,9 @@ def _measure(page: Any, link: str, steps: int) -> None:
     for panels in (["indices"], ["indices", "response"]):
         page.evaluate(STEP, [10, panels])
         times = [page.evaluate(STEP, [40 + (37 * i) % 320, panels]) for i in range(steps)]
-        print(f"a step to {' and '.join(panels):22} {median(times):8.1f} ms, 95 % under {quantiles(times, n=20)[-1]:.1f} ms ({steps} steps)")
+        print(
+            f"a step to {' and '.join(panels):22} {median(times):8.1f} ms, 95 % under {quantiles(times, n=20)[-1]:.1f} ms ({steps} steps)"
+        )
     page.click("#tab-history")
     page.wait_for_selector(".motion canvas")
     page.get_by_role("button", name="Play").click()

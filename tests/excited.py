@@ -8,6 +8,7 @@ import numpy as np
 from filtered import random_filter
 
 import inerter as it
+from inerter.indices.excitation import as_excitation
 from inerter.signals.road import Road
 from inerter.systems.arrivals import Arrival
 from inerter.vehicle.mechanism import Mechanism
@@ -61,9 +62,9 @@ def random_outputs(rng: np.random.Generator, mechanism: Mechanism, excitation: o
     names = [f"{mount.name}_force" for mount in mechanism.struts] + [f"{tyre.name}_load" for tyre in mechanism.tyres]
     names += [f"{c.name}_acceleration" for c in mechanism.coordinates]
     masses = [c.name for c in mechanism.coordinates if not c.angle]
-    if isinstance(excitation, it.GroundAcceleration):
+    if as_excitation(excitation, "A test").driven(mechanism).ground_moves:
         names += [f"{name}_relative_{what}" for name in masses for what in ("displacement", "velocity")]
-    elif not isinstance(excitation, it.Road | TwoSources):
+    elif isinstance(excitation, it.WhiteForce):
         names += [f"{name}_velocity" for name in masses]
     chosen = rng.choice(names, size=min(2, len(names)), replace=False)
     return {str(name): float(rng.uniform(0.5, 2.0)) for name in chosen}

@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 npm ci --no-audit --no-fund
 npx tsc --project jsconfig.json
-node --test tests/
+node --test tests/*.test.js
 built=$(mktemp -d)
 trap 'rm -rf "$built"' EXIT
 node build.mjs "$built"

@@ -36,6 +36,7 @@ from inerter.indices.excitation import Shaped as Shaped
 from inerter.indices.excitation import WhiteForce as WhiteForce
 from inerter.indices.iso2631 import iso2631 as iso2631
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
+from inerter.indices.measured_road import measured_road as measured_road
 from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.question import Combination as Combination
 from inerter.indices.question import Question as Question
@@ -123,6 +124,8 @@ from inerter.signals.transients import step as step
 from inerter.simulation.batch import Batch as Batch
 from inerter.simulation.batch import simulate_many as simulate_many
 from inerter.simulation.histories import simulate_to_files as simulate_to_files
+from inerter.simulation.peaks import LiftOff as LiftOff
+from inerter.simulation.peaks import Peak as Peak
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
 from inerter.systems.arrivals import Arrival as Arrival

@@ -47,7 +47,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Server:
 
 @pytest.fixture(scope="module")
 def client(server: Server) -> Iterator[TestClient]:
-    app = application(server, TOKEN, lambda: PORT, LIMIT, RECORD_LIMIT)
+    app = application(server, TOKEN, PORT, LIMIT, RECORD_LIMIT)
     headers = {"Authorization": f"Bearer {TOKEN}"}
     with TestClient(app, f"http://127.0.0.1:{PORT}", headers=headers) as client:  # type: ignore[arg-type]
         yield client

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import numpy as np
 import pytest
 from app.conftest import DOCUMENT, EXAMPLES
 
@@ -43,6 +44,11 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[httpx.Cli
         process.kill()
     process.wait()
     process.stdout.close()
+
+
+def children_of(process: subprocess.Popen[str]) -> list[str]:
+    """The processes that a process has started, from whichever of its threads."""
+    return [one for path in Path(f"/proc/{process.pid}/task").glob("*/children") for one in path.read_text().split()]
 
 
 def listening(port: int) -> set[str]:
@@ -127,7 +133,8 @@ def test_it_ends_and_leaves_nothing(served: Any) -> None:
     while client.get(f"/api/work/{work}").json()["done"] < 1 and time.monotonic() < deadline:
         time.sleep(0.05)
     assert client.get(f"/api/work/{work}").json()["state"] == "running"
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    children = children_of(process)
+    assert len(children) >= 2
     process.send_signal(signal.SIGTERM)
     assert process.wait(20.0) == 0
     assert list(home.glob("inerter-*")) == []
@@ -172,3 +179,32 @@ def test_the_command_line_loads_none_of_it() -> None:
     command = [sys.executable, "-c", program, str(EXAMPLES / "quarter-car.toml")]
     found = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
     assert json.loads(found.stdout.splitlines()[-1]) == []
+
+
+@pytest.mark.campaign
+def test_processes_that_die_cost_what_they_did(tmp_path: Path) -> None:
+    """Whichever process of a server is killed, at random times: it answers again, and what was done says so."""
+    random = np.random.default_rng(0)
+    command = [sys.executable, "-c", START, "serve", "--no-browser", "--folder", str(tmp_path / "kept")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        base, _, token = process.stdout.readline().strip().partition("/#token=")
+        body = {"study": DOCUMENT, "layouts": ["S3"], "methods": ["norm"]}
+        with httpx.Client(base_url=base, headers={"Authorization": f"Bearer {token}"}, timeout=60.0) as client:
+            wanted = client.post("/api/panel/indices", json=body).json()["designs"]
+            client.post("/api/panel/optimise", json=body).raise_for_status()
+            for _ in range(6):
+                work = client.post("/api/work", json={"kind": "run", "study": DOCUMENT}).json()["id"]
+                time.sleep(float(random.uniform(0.0, 1.0)))
+                os.kill(int(random.choice(children_of(process))), signal.SIGKILL)
+                deadline = time.monotonic() + 60.0
+                while (told := client.get(f"/api/work/{work}").json())["state"] in ("waiting", "running"):
+                    assert time.monotonic() < deadline
+                    time.sleep(0.05)
+                assert told["state"] in ("done", "failed")
+                assert told["state"] == "done" or "ended" in told["sentence"]
+                answers = [client.post("/api/panel/indices", json=body) for _ in range(2)]
+                assert answers[0].status_code in (200, 500)
+                assert answers[1].json()["designs"] == wanted
+        process.terminate()
+    assert (tmp_path / "kept" / "work").is_dir()

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import shutil
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, changed
+from app.conftest import DOCUMENT, changed, threads
 from starlette.testclient import TestClient
 
 from inerter.app import jobs
@@ -128,3 +130,22 @@ def test_only_so_much_work_is_kept(client: TestClient, monkeypatch: pytest.Monke
     there = [row["id"] for row in client.get("/api/work").json()["work"]]
     assert there[-1] == numbers[-1]
     assert len(there) <= 3
+
+
+def test_a_server_that_begins_again_knows_what_was_left(client: TestClient, server: Any, tmp_path: Path) -> None:
+    """What is done is there with its result; what was cut short says so, also where a line was."""
+    number = begin(client, kind="optimise", study=DOCUMENT, title="mine", wait=30)
+    result = client.get(f"/api/work/{number}/result").content
+    shutil.copytree(server.root / "work" / number, tmp_path / "work" / number)
+    cut = tmp_path / "work" / "cut"
+    shutil.copytree(server.root / "work" / number, cut)
+    text = (cut / "events.jsonl").read_bytes()
+    (cut / "events.jsonl").write_bytes(text[: text.index(b'{"event": "done"') + 9])
+    (tmp_path / "work" / "empty").mkdir()
+    with threads() as executor:
+        known = jobs.Jobs(tmp_path / "work", executor).known
+    assert {job.id: job.state for job in known.values()} == {number: "done", "cut": "stopped"}
+    assert jobs.result_of(known[number]) == result
+    assert (known[number].title, known[number].told()["done"]) == ("mine", 4)
+    assert known["cut"].sentence.endswith(".")
+    assert known["cut"].told()["state"] == "stopped"

@@ -63,6 +63,11 @@ def test_help_loads_no_library_of_numbers(arguments: tuple[str, ...]) -> None:
     assert not loaded_by(*arguments) & LIBRARIES
 
 
+@pytest.mark.parametrize("arguments", [("schema",), ("explain", "road.speed"), ("new", "-o", "-")])
+def test_what_tells_of_files_is_light(arguments: tuple[str, ...]) -> None:
+    assert not loaded_by(*arguments) & (HEAVY | {"pint"})
+
+
 @pytest.mark.parametrize("study", sampled(STUDIES, ["ball_screw.toml"]))
 def test_check_loads_nothing_that_only_the_work_needs(study: str) -> None:
     assert len(STUDIES) >= 4

@@ -93,6 +93,8 @@ SLOW = 'inerter identify friction.csv --model ball-screw --force-bandwidth "80 H
 WHOLE = "inerter reproduce wang-su-2008 -o paper"
 COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter run examples/quarter-car.toml": nothing,
+    "inerter new half-car": nothing,
+    "inerter explain road.speed": nothing,
     "inerter simulate examples/backlash_rattle.toml": nothing,
     "inerter simulate my-car.toml -o motion --force": a_car,
     "inerter simulate my-car.toml --window 2:4": a_car,
@@ -112,6 +114,8 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     WHOLE: nothing,
 }
 BRIEF = [
+    "inerter new half-car",
+    "inerter explain road.speed",
     "inerter simulate my-car.toml --window 2:4",
     "inerter rig examples/rig_fit.toml -o fit.csv",
     "inerter rig examples/rig_friction.toml -o friction.csv",

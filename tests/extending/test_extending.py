@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -166,6 +167,17 @@ def test_check_knows_rows_of_another_distribution(session: Session, study: Path)
         assert f"Note: S3: {method}: friction 'J_friction' in 'strut' left out." in said
 
 
+def test_a_start_is_made_of_the_vehicle_and_the_indices(session: Session, tmp_path: Path) -> None:
+    session.command("new", "seated-car", cwd=tmp_path)
+    text = (tmp_path / "seated-car.toml").read_text(encoding="utf-8")
+    assert 'seat_stiffness = "15 kN/m"' in text
+    assert re.search(r"^# More indices: .*T1", text, re.MULTILINE)
+    assert "ok." in session.command("check", "seated-car.toml", cwd=tmp_path)[0]
+    assert "Of the cushion." in session.command("explain", "vehicle.seat_damping", cwd=tmp_path)[0]
+    told = json.loads(session.command("schema", cwd=tmp_path)[0])
+    assert "middle" in told["$defs"]["Method_quadrature"]["properties"]
+
+
 def test_a_run_in_two_processes_values_every_index_by_every_method(results: Path) -> None:
     found = rows(results)
     assert len(found) == 2 * 3 * 3
@@ -316,7 +328,7 @@ BAD = {
     "model": ('"seated-car"', '"seeted-car"', "vehicle.model", ['"seated-car"', 'Did you mean "seated-car"?']),
     "field": ('seat_stiffness = "15 kN/m"\n', "", "vehicle.seat_stiffness", ['seat_stiffness = "15 kN/m"']),
     "unit": ('"500 N s/m"\ntyre', '"500 N/m"\ntyre', "vehicle.seat_damping", ["another kind", "N s/m"]),
-    "index": ('"T1"', '"T2"', "study.indices", ['"J5", "T1", "W1"']),
+    "index": ('"T1"', '"T2"', "study.indices", ['"element-velocity", "T1", "W1"']),
     "setting": ('["J1", "T1", "W1"]', '["J1"]', "study.weighting_corner", ["weighting filter of W1", "no weighting_c"]),
     "setting's unit": ('"0.5 Hz"', '"0.5 s"', "study.weighting_corner", ["another kind", "rad/s"]),
     "method": ('"quadrature"', '"quadrture"', "study.evaluate", ['Did you mean "quadrature"?']),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -128,11 +129,14 @@ def test_64_simulated_roads(coherence):
 
 
 @pytest.mark.campaign
-def test_64_roads_of_the_expected_value():
+def test_roads_of_the_expected_value():
+    """With friction that hardly matters, means over random roads are near the norm without it."""
     vehicle = car(np.random.default_rng(5))
+    rough = replace(vehicle, front=vehicle.front | it.Friction(2.0), rear=vehicle.rear | it.Friction(2.0))
     index = it.RideComfort(it.Road(5e-7, 22.0, coherence=it.Coherence.first_order(0.3)))
-    found = it.evaluate(vehicle, index, it.ExpectedValue(realisations=64, seed=0))
-    assert abs(found.value - it.evaluate(vehicle, index, it.Norm()).value) < 4.0 * found.standard_error
+    found = it.evaluate(rough, index, it.ExpectedValue(realisations=8, seed=0))
+    assert found.standard_error > 0.0
+    assert found.value == pytest.approx(it.evaluate(vehicle, index, it.Norm()).value, rel=0.02)
 
 
 def test_the_spectra_of_both_tracks():

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from campaigns import in_parts
-from excited import random_excitation, random_outputs
+from campaigns import in_parts, sampled
+from excited import ROAD, TwoSources, random_excitation, random_outputs
 from random_mechanisms import FAMILIES, mechanisms
 
 import inerter as it
 from inerter import Damper, Filter, Inerter, Spring, free
-from inerter.errors import LinearSystemError, PerformanceIndexError
+from inerter.errors import LinearSystemError, PerformanceIndexError, StatusKind
+from inerter.methods.forced import Forced
 from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.methods.on_roads import mean_on_roads, on_roads
 from inerter.networks.transform import map_elements
+from inerter.systems.piecewise import piecewise
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")
 
@@ -143,3 +147,202 @@ def test_motions_that_the_ground_carries_are_refused_with_the_ones_to_ask_for():
     quake = it.RandomResponse({"mass_displacement": 1.0}, it.GroundAcceleration(1.0))
     with pytest.raises(PerformanceIndexError, match=r"no bounds.*mass_relative_displacement"):
         it.evaluate(single(1.0, 0.1, 1.0), quake, it.Norm())
+
+
+def simulated(mechanism, index, roads=4):
+    """By simulation of the design as it is, though it is linear: what `ExpectedValue` does with friction."""
+    question = index.question(mechanism)
+    system = piecewise(question.drive.driven(mechanism))
+    design = on_roads(system, question, CONVENTIONS["exact"], seed=0)
+    with ThreadPoolExecutor(1) as pool:
+        return mean_on_roads(design, roads, None, pool)
+
+
+def is_quick(mechanism):
+    """Whether ten seconds of it, in steps of 0.2 ms, tell what it does."""
+    poles = np.linalg.eigvals(it.assemble(mechanism).A)
+    moving = poles[np.abs(poles) > 1e-9 * np.abs(poles).max()]
+    return bool(np.all(-moving.real > 0.3) and np.abs(moving).max() < 2500.0)
+
+
+def quick_member(seed):
+    """A random mechanism, a random excitation, and outputs whose norm is known."""
+    family = list(FAMILIES)[seed % len(FAMILIES)]
+    rng = np.random.default_rng([seed, *family.encode()])
+    for mechanism in (made for more in range(20) for made in mechanisms(family, seed + 1000 * more, 20, 1.0)):
+        try:
+            if not is_quick(mechanism):
+                continue
+        except it.MechanismError:
+            continue
+        excitation = random_excitation(rng, mechanism)
+        index = it.RandomResponse(random_outputs(rng, mechanism, excitation), excitation)
+        norm = it.evaluate(mechanism, index, it.Norm())
+        if norm.status.ok:
+            return mechanism, index, norm.value
+    raise AssertionError("none of so many is quick")
+
+
+@pytest.mark.parametrize("seed", sampled(range(300, 400), [302, 307], range(330, 400)))
+def test_simulated_responses_are_the_norms(seed):
+    """On the lines of a multisine, with what lies beyond them added; that may be a large part, and is said then."""
+    mechanism, index, norm = quick_member(seed)
+    by_time = simulated(mechanism, index)
+    assert by_time.status.kind in (StatusKind.OK, StatusKind.INACCURATE), by_time.status
+    assert by_time.standard_error < 0.1 * norm
+    assert by_time.value == pytest.approx(norm, rel=1e-6, abs=4.0 * by_time.standard_error)
+
+
+def test_friction_under_all_excitations_by_three_methods():
+    """Simulation against statistical linearisation, which is within 3 % where it says ok."""
+    mount = Spring(3e3) | Damper(20.0) | it.Friction(1.0)
+    struts = (
+        it.Strut("support", Spring(4e4) | Damper(100.0), {"primary": 1.0}, it.GROUND),
+        it.Strut("mount", mount, {"absorber": 1.0}, {"primary": 1.0}),
+    )
+    masses = (it.Coordinate("primary", 100.0), it.Coordinate("absorber", 10.0))
+    made = it.Mechanism(masses, struts, forces=(it.Force("push", {"primary": 1.0}),))
+    push, quake = it.WhiteForce("push", 100.0), it.GroundAcceleration(0.1)
+    shaped = it.Shaped(quake, Filter([100.0], [1.0, 10.0, 100.0]))
+    for name, excitation in (
+        ("primary_displacement", push),
+        ("primary_relative_displacement", quake),
+        ("primary_acceleration", shaped),
+    ):
+        index = it.RandomResponse({name: 1.0}, excitation)
+        real = it.evaluate(made, index, it.ExpectedValue(seed=1))
+        near = it.evaluate(made, index, it.StatisticalLinearisation())
+        assert real.status.ok
+        assert near.status.ok
+        assert near.value == pytest.approx(real.value, rel=0.03, abs=4.0 * real.standard_error)
+        gains = it.evaluate(
+            made, index, it.ApproximateLinear(force=it.MultisineExcitation(rms=excited_rms(excitation)))
+        )
+        assert gains.value == pytest.approx(real.value, rel=0.1)
+
+
+def excited_rms(excitation):
+    """Of the multisine of 0.1 to 500 Hz that has the density of the excitation."""
+    return excitation.size * math.sqrt(2.0 * 500.0)
+
+
+def test_gains_of_several_sources_are_refused():
+    one = single(1.0, 0.1, 1.0)
+    both = it.Mechanism(
+        one.coordinates, (replace(one.struts[0], network=one.struts[0].network | it.Friction(0.1)),),
+        roads=(it.RoadInput("a"),), forces=one.forces,
+        tyres=(it.Tyre("t", Spring(1.0), {"mass": 1.0}, "a"),),
+    )  # fmt: skip
+    two = TwoSources(ROAD, (Filter([1.0], [1.0, 1.0]), Filter([1.0], [1.0, 2.0])))
+    with pytest.raises(PerformanceIndexError, match="gains from one signal"):
+        it.evaluate(both, it.RandomResponse({"t_load": 1.0}, two), it.ApproximateLinear())
+
+
+@pytest.mark.parametrize("source", ["road", "road_velocity", "sprung_force"])
+def test_a_peak_is_where_a_simulated_sine_is_largest(source):
+    """The highest of all peaks, against the steady state under a sine of that frequency."""
+    car = it.QuarterCar(250.0, 35.0, 180e3, Spring(25e3) | Damper(1500.0)).mechanism()
+    found = it.evaluate(car, it.PeakResponse(source, "tyre_load", amplitude=0.3), it.Norm())
+    (arrival,) = it.OneInput(source).arrivals(car)
+    by_time, status = Forced(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
+    assert status.ok
+    assert by_time == pytest.approx(found.value, rel=1e-5)
+    assert found.value == found.peaks[0].gain
+
+
+def ask(outputs, excitation):
+    return it.evaluate(single(1.0, 0.1, 1.0), it.RandomResponse(outputs, excitation), it.Norm())
+
+
+def peak(source, output):
+    return it.evaluate(single(1.0, 0.1, 1.0), it.PeakResponse(source, output), it.Norm())
+
+
+def peak_on_damped_tyre():
+    car = it.QuarterCar(250.0, 35.0, 180e3, Spring(25e3) | Damper(1500.0)).mechanism()
+    damped = replace(car, tyres=(replace(car.tyres[0], network=Spring(180e3) | Damper(50.0)),))
+    return it.evaluate(damped, it.PeakResponse("road", "sprung_displacement"), it.Norm())
+
+
+BAD = {
+    "no mapping": (lambda: it.RandomResponse("a", ROAD), "map names to weights"),
+    "empty": (lambda: it.RandomResponse({}, ROAD), "map names to weights"),
+    "weight": (lambda: it.RandomResponse({"a": "1"}, ROAD), "weight of output 'a' is a number"),
+    "nothing": (lambda: it.RandomResponse({"a": 0.0}, ROAD), "other than 0"),
+    "no excitation": (lambda: it.RandomResponse({"a": 1.0}, 5.0), "needs an excitation"),
+    "a class": (lambda: it.RandomResponse({"a": 1.0}, it.WhiteForce), "needs an excitation"),
+    "one input": (lambda: ask({"a": 1.0}, it.OneInput("push")), "needs a random excitation"),
+    "filter": (lambda: it.RandomResponse({"a": 1.0}, ROAD, "Wk"), r"Filter\(numerator"),
+    "no name": (lambda: it.WhiteForce(3, 1.0), "name of a force"),
+    "intensity": (lambda: it.WhiteForce("push", -1.0), "positive number"),
+    "text": (lambda: it.GroundAcceleration("1"), "positive number"),
+    "infinite": (lambda: it.GroundAcceleration(math.inf), "positive number"),
+    "no shape": (lambda: it.Shaped(ROAD, None), "needs a filter"),
+    "shape of one input": (lambda: it.Shaped(it.OneInput("push"), Filter([1.0], [1.0, 1.0])), "for what is random"),
+    "no force": (lambda: ask({"mass_velocity": 1.0}, it.WhiteForce("shove", 1.0)), r"no force named 'shove'.*push"),
+    "no road": (lambda: ask({"mass_velocity": 1.0}, ROAD), "stands on none"),
+    "output": (lambda: ask({"mass_velocitee": 1.0}, it.WhiteForce("push", 1.0)), "Did you mean mass_velocity"),
+    "absolute": (lambda: ask({"mass_velocity": 1.0}, it.GroundAcceleration(1.0)), "mass_relative_velocity"),
+    "peak input": (lambda: it.PeakResponse(1, "a"), "by its name"),
+    "peak output": (lambda: it.PeakResponse("a", None), "by its name"),
+    "amplitude": (lambda: it.PeakResponse("a", "b", amplitude=0.0), "positive number"),
+    "no input": (lambda: peak("pull", "mass_velocity"), "no input named 'pull'"),
+    "no output": (lambda: peak("push", "mass_speed"), "no output named 'mass_speed'"),
+    "damped tyre": (peak_on_damped_tyre, r"A damper feels the velocity of road.*road_velocity"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_cannot_be_is_refused_in_a_sentence(case):
+    make, words = BAD[case]
+    with pytest.raises(it.InerterError, match=words) as caught:
+        make()
+    assert str(caught.value).endswith((".", "?"))
+    assert "\n" not in str(caught.value)
+
+
+def absorber(mu, beta, k, c):
+    return it.Absorber(1.0, 1.0, mu, Spring(k) | Damper(c), Inerter(beta) if beta else None)
+
+
+def variance(mu, beta, k, c, on_absorber):
+    """Of the primary displacement, with forces of 1 and `on_absorber` on the two masses: Crandall and Mark (1963)."""
+    m, f = mu + beta, on_absorber
+    a4, a3, a2, a1, a0 = m, c * (1.0 + m), k + m * (1.0 + k), c, k
+    b2, b1, b0 = m, c * (1.0 + f), k * (1.0 + f)
+    top = b0**2 / a0 * (a2 * a3 - a1 * a4) + a3 * (b1**2 - 2.0 * b0 * b2) + a1 * b2**2
+    return top / (2.0 * (a1 * (a2 * a3 - a1 * a4) - a0 * a3**2))
+
+
+@pytest.mark.parametrize(("mu", "beta"), [(0.02, 0.0), (0.1, 0.05), (0.03, 0.4)])
+def test_tuned_mass_dampers_in_closed_form(mu, beta):
+    """Under a force, where the masses of absorber and inerter add up; over the ground, which inerters do not feel."""
+    m = mu + beta
+    nu = math.sqrt(1.0 + 0.5 * m) / (1.0 + m)  # the optimum under a white force: Asami (2002)
+    zeta = math.sqrt(m * (4.0 + 3.0 * m) / (8.0 * (1.0 + m) * (2.0 + m)))
+    k, c, S = m * nu**2, 2.0 * zeta * m * nu, 3.0
+    made = absorber(mu, beta, k, c)
+    push = it.RandomResponse({"primary_displacement": 1.0}, it.WhiteForce("primary_force", S))
+    quake = it.RandomResponse({"primary_relative_displacement": 1.0}, it.GroundAcceleration(S))
+    least = 0.5 * math.sqrt((4.0 + 3.0 * m) / (m * (1.0 + m)))
+    assert it.evaluate(made, push, it.Norm()).value ** 2 == pytest.approx(S * least, rel=1e-8)
+    assert it.evaluate(made, quake, it.Norm()).value ** 2 == pytest.approx(S * variance(mu, beta, k, c, mu), rel=1e-8)
+    opened = it.Absorber(
+        1.0, 1.0, mu, Spring(free(0.2 * k, 5.0 * k, "k")) | Damper(free(0.2 * c, 5.0 * c, "c")),
+        Inerter(beta) if beta else None,
+    )  # fmt: skip
+    found = it.optimise(opened, push, it.Norm(), seed=0)
+    assert found.value == pytest.approx(math.sqrt(S * least), rel=1e-8)
+    assert found.parameters == pytest.approx({"k": k, "c": c}, rel=1e-4)
+
+
+def test_the_least_peak_of_a_tuned_mass_damper():
+    """The exact optimum of Nishihara and Asami (2002), with an inerter to the ground as a part of its mass."""
+    m = 0.15
+    root = math.sqrt(4.0 + 3.0 * m)
+    inside = (8.0 + 9.0 * m) ** 2 * (16.0 + 9.0 * m) - 128.0 * root**3
+    least = math.sqrt(inside / (3.0 * (32.0 + 27.0 * m))) / (3.0 * m)
+    mount = Spring(free(1e-3, 1.0, name="k")) | Damper(free(1e-4, 1.0, name="c"))
+    made = it.Absorber(primary_mass=1.0, primary_stiffness=1.0, mass=0.1, mount=mount, ground=Inerter(0.05))
+    found = it.optimise(made, it.PeakResponse("primary_force", "primary_displacement"), it.Norm(), seed=0)
+    assert found.value == pytest.approx(least, rel=1e-8)

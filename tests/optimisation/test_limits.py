@@ -214,3 +214,20 @@ def test_limits_of_what_is_simulated():
 def test_limits_that_cannot_be(given, said):
     with pytest.raises(it.InerterError, match=said):
         given()
+
+
+def test_weighted_comfort_with_a_limit_on_travel():
+    road = it.Road.iso8608("B", speed=25.0)
+    comfort, travel = it.RideComfort(road, weighting="Wk"), it.SuspensionTravel(road)
+    best = it.optimise(quarter(), comfort, NORM, subject_to=[it.at_most(travel, 0.003)])
+    assert best.limits[0].value == pytest.approx(0.003, rel=1e-7)
+    names, slopes = list(best.parameters), []
+    for index in (comfort, travel):  # at the optimum the gradients balance
+        logs = []
+        for name in names:
+            ends = [{**best.parameters, name: best.parameters[name] * factor} for factor in (1.0 + 1e-4, 1.0 - 1e-4)]
+            up, down = (it.evaluate(quarter().with_values(end), index, NORM).value for end in ends)
+            logs.append(np.log(up / down) / 2e-4)
+        slopes.append(np.array(logs))
+    assert slopes[0] == pytest.approx(best.limits[0].sensitivity * slopes[1], abs=1e-6)
+    assert best.sensitivities == {"suspension travel at most 3 mm": best.limits[0].sensitivity}

@@ -12,6 +12,7 @@ import pytest
 from campaigns import sampled
 from synthetic import LONG, designs, judged, sweep, with_value
 
+import inerter as it
 from inerter.figures.study import draw_study
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.loading import load_study
@@ -84,9 +85,11 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     endless = replace(found, layout="S3", value=None, crossings=[], status="unbounded", message="better for every f")
     results = judged(designs())
     asked = replace(study, evaluate=("norm", "expected-value"), indices=("J1",), settings={"force": 1e3})
+    asked = replace(asked, elements={**study.elements, "f": it.Friction(10.0)})
     text = Page(report(results, asked, tmp_path, [found, endless])).text.replace(SPACE, " ")
     assert "2.4447 ± 0.0098+6.00 ± 0.31 %" in text
     assert "up to 280.5 ± 6.6 N" in text
+    assert "Friction f, S3, ride comfort: better for every f." in text
     assert "J1: equally good at 280.5 N and 900 N" in text
     assert "S3 – J1: better for every f" in text
     assert "Values by expected-value are means over simulations" in text

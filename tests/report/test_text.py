@@ -181,6 +181,6 @@ def test_of_equally_good_layouts_the_simplest_is_named_and_the_others_are_told(c
     order = sorted(names, key=lambda name: counts[names.index(name)])
     assert best_layout(results, "J5") == order[0]
     sentence = next(line for line in headlines(results) if "load carrying" in line)
-    assert f": {order[0]} (equally good: {order[1]}, {order[2]} and {order[3]})" in sentence
+    assert f": {order[0]}, {order[1]}, {order[2]} and {order[3]}, equally good, " in sentence
     worse = with_value(results, value * (1.0 + 1e-8), layout=order[0], index="J5")
     assert best_layout(worse, "J5") == order[1]

@@ -16,7 +16,8 @@ from inerter.figures.study import study_figures
 from inerter.figures.style import styled
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import StudyResult, run_study
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study
+from inerter.files.study.written import write_resolved
 from inerter.report.fronts import front_lines, front_sentences
 from inerter.report.page import report
 

@@ -16,7 +16,8 @@ from inerter.errors import StudyError
 from inerter.files.study.cases import Outcome, cases, run_case
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study
+from inerter.files.study.written import write_resolved
 from inerter.report.findings import headlines
 from inerter.report.page import report
 from inerter.report.text import WIDTH, summary_table

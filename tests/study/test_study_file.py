@@ -18,7 +18,8 @@ from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.vehicle_shapes import MECHANISM
 from inerter.files.study.loading import load_study
 from inerter.files.study.places import place_of
-from inerter.files.study.study import Study, Sweep, write_resolved
+from inerter.files.study.study import Study, Sweep
+from inerter.files.study.written import write_resolved
 from inerter.indices.registry import INDICES as INDICES_TABLE
 from inerter.indices.registry import index_settings
 from inerter.methods.registry import METHODS

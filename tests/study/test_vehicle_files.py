@@ -14,7 +14,8 @@ from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import write_simulation
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study
+from inerter.files.study.written import write_resolved
 from inerter.report.question import vehicle_rows
 
 ROOT = Path(__file__).parents[2]

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+import tomllib
 from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import inerter
-from inerter.app.documents import read
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.fields import Field, fields_of, mounts_of
 from inerter.files.common.shape import ROAD
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.identification.shape import CHOOSE
+from inerter.files.study import KIND
 from inerter.identification.models import MODELS
 from inerter.indices.registry import INDICES
 from inerter.methods.linear import CONVENTIONS
@@ -60,7 +61,12 @@ def examples() -> dict[str, Path]:
     here = Path(__file__).parents[1]
     folder = next((here / place for place in _FOLDERS if (here / place).is_dir()), here / _FOLDERS[0])
     found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    return {name: path for name, path in found.items() if not read(path.read_text(encoding="utf-8"))["problems"]}
+    return {name: path for name, path in found.items() if set(KIND.sections) <= set(tables(path))}
+
+
+def tables(path: Path) -> dict[str, Any]:
+    """The tables of a file that comes with the package."""
+    return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
 def _element(kind: type[Element]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from pkgutil import resolve_name
 from typing import Any
 
@@ -15,44 +16,46 @@ from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.wire import encoded
 from inerter.errors import DesignError, Status, StatusKind, StudyError
+from inerter.fields import fields_of
+from inerter.files.common.shape import ROAD
 from inerter.files.study.cases import FAILURES, Case, Outcome, run_case
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
 from inerter.files.study.study import Study
+from inerter.indices.question import Index
+from inerter.indices.registry import INDICES
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Estimate, evaluate
+from inerter.methods.method import Estimate, Method, evaluate
 from inerter.methods.registry import DEFAULT, methods_that, searches
-from inerter.networks.elements import Element
+from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
 from inerter.optimisation.budget import budget as find_budget
 from inerter.optimisation.threads import one_blas_thread
 from inerter.scatter.tolerance import tolerance
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
+from inerter.vehicle.registry import VEHICLES
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
 
 
+_REMEMBERED = 2000  # values of designs
 _SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
-_FIRST = {
-    "vehicle": {
-        "model": "quarter-car",
-        "sprung_mass": "250 kg",
-        "unsprung_mass": "35 kg",
-        "tyre_stiffness": "150 kN/m",
-    },
-    "road": {"speed": "25 m/s", "roughness": "5e-7 m^3/cycle"},
-    "elements": {"k": "120 kN/m", "c": "2 kN s/m"},
-    "layouts": {"S1": "k | c"},
-    "study": {"indices": ["J1"]},
-}
 
 
 def first() -> None:
     """Answer once what is asked most, so that nothing is left to be loaded."""
+    model, kind = next(iter(VEHICLES.items()))
+    study = {
+        "vehicle": {"model": model, **{field.key: field.example for field in fields_of(kind)}},
+        "road": {field.key: field.example for field in ROAD},
+        "elements": {element.symbol: element.example for element in (Spring, Damper)},
+        "layouts": {"first": f"{Spring.symbol} | {Damper.symbol}"},
+        "study": {"indices": [next(iter(INDICES))]},
+    }
     for key in ("indices", "response"):
-        encoded(answered(key, {"study": _FIRST}))
+        encoded(answered(key, {"study": study}))
 
 
 def answered(key: str, body: Body) -> Answer:
@@ -90,11 +93,22 @@ def _estimate(study: Study, design: Design | None, index: str, method: str) -> E
     """The value of an index; where it cannot be had, nan with a status that says why."""
     if design is None:
         return None
-    asked, how = study.index(index), study.method(method)
+    asked: tuple[Any, ...] = design, study.index(index), study.method(method)
     try:
-        return evaluate(design.mechanism, asked, how)
+        hash(asked)
+    except TypeError:  # a mechanism, or an index with matrices
+        return _valued(*asked)
+    return _remembered(*asked)
+
+
+def _valued(design: Design, index: Index, method: Method) -> Estimate:
+    try:
+        return evaluate(design.mechanism, index, method)
     except FAILURES as error:
-        return Estimate(np.nan, asked.unit, Status(StatusKind.FAILED, str(error)))
+        return Estimate(np.nan, index.unit, Status(StatusKind.FAILED, str(error)))
+
+
+_remembered = lru_cache(_REMEMBERED)(_valued)  # a step of a slider leaves most designs as they were
 
 
 def _result(

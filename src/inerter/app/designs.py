@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from math import isfinite, sqrt
 from typing import Any
 
@@ -21,12 +22,12 @@ Values = Mapping[str, "str | float"]
 class Design:
     """A layout with numbers only."""
 
-    name: str
-    layout: str
+    name: str = field(compare=False)
+    layout: str = field(compare=False)
     vehicle: Vehicle
-    values: dict[str, float]  # of what was free, in SI units
+    values: dict[str, float] = field(compare=False)  # of what was free, in SI units
 
-    @property
+    @cached_property
     def mechanism(self) -> Mechanism:
         """What analysis takes."""
         return self.vehicle.mechanism()

@@ -12,10 +12,8 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import Problem
 from inerter.files.common.problems import FileError, refusal
 from inerter.files.common.toml import tables_of
-from inerter.files.study.checking import check_study, study_notes
 from inerter.files.study.loading import WHAT, study_of
-from inerter.files.study.study import Study, elements_used
-from inerter.networks.elements import Free
+from inerter.files.study.study import Study
 from inerter.report.json_data import json_data
 
 Document = Mapping[str, Any]
@@ -68,36 +66,6 @@ def problems_of(error: InerterError) -> list[dict[str, Any]]:
         }
         for problem in found
     ]
-
-
-def checked(document: object) -> dict[str, Any]:
-    """What `inerter check` says of a document, and of what its layouts are made."""
-    try:
-        study = study_from(document)
-        check_study(study)
-    except InerterError as error:
-        return {"problems": problems_of(error), "notes": [], "layouts": {}}
-    return {"problems": [], "notes": study_notes(study), "layouts": _layouts(study)}
-
-
-def _layouts(study: Study) -> dict[str, Any]:
-    used = elements_used(study)
-    return {
-        name: {
-            "mounts": layout.struts,
-            "elements": [element for element, layouts in used.items() if name in layouts],
-            "free": {
-                element: {"lower": value.lower, "upper": value.upper, "unit": study.elements[element].unit}
-                for element, value in study.design(name).free_values().items()
-            },
-        }
-        for name, layout in study.layouts.items()
-    }
-
-
-def free_elements(study: Study) -> dict[str, Free]:
-    """The elements that are free, by their names."""
-    return {name: value for name, e in study.elements.items() if isinstance(value := e.value, Free)}
 
 
 def _plain(tables: Any) -> Any:

@@ -37,7 +37,7 @@ class Guard:
 
     app: App
     token: str
-    port: Callable[[], int]
+    port: int
     limit: int  # bytes of a body
     record_limit: int  # of a record, which goes to disk
 
@@ -55,7 +55,7 @@ class Guard:
             await refuse(refused, send)
 
     def _check(self, scope: Scope, headers: list[tuple[bytes, bytes]]) -> None:
-        allowed = {f"{host}:{self.port()}" for host in HOSTS}
+        allowed = {f"{host}:{self.port}" for host in HOSTS}
         hosts = [value.decode("latin-1").lower() for name, value in headers if name == b"host"]
         if len(hosts) != 1 or hosts[0] not in allowed:
             raise Refused(403, "This server answers to 127.0.0.1 alone.")

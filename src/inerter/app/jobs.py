@@ -16,7 +16,7 @@ from typing import Any
 
 from inerter.app.kinds import KINDS, RESULTS
 from inerter.app.wire import Refused, encoded
-from inerter.app.working import REQUEST, RESULT, STOP, events_of, work, write_event
+from inerter.app.working import REQUEST, RESULT, STOP, events_of, work, write_last
 from inerter.work.processes import Processes
 
 _GRACE = 5.0  # seconds that work has to stop at its next check, before its process is ended
@@ -68,6 +68,12 @@ class Jobs:
     known: dict[str, Job] = field(default_factory=dict)
     _queue: asyncio.Queue[Job] = field(default_factory=asyncio.Queue)
 
+    def __post_init__(self) -> None:
+        """Know the work that an earlier server has left in the folder."""
+        for path in sorted(self.root.glob(f"*/{REQUEST}"), key=lambda path: path.stat().st_mtime):
+            with suppress(OSError, ValueError, KeyError):
+                self.known[path.parent.name] = _left(path.parent)
+
     def add(self, kind: str, request: Mapping[str, Any], title: str = "") -> Job:
         """Put work into the queue; raises `Refused` where too much is kept already."""
         for old in [job for job in self.known.values() if job.state in ENDED][: max(len(self.known) - _MOST + 1, 0)]:
@@ -77,7 +83,7 @@ class Jobs:
         name = token_hex(8)
         job = Job(name, kind, title or KINDS[kind].title, self.root / name)
         job.folder.mkdir(parents=True)
-        (job.folder / REQUEST).write_bytes(encoded({**request, "kind": kind}))
+        (job.folder / REQUEST).write_bytes(encoded({**request, "kind": kind, "title": job.title}))
         self.known[name] = job
         self._queue.put_nowait(job)
         return job
@@ -143,9 +149,22 @@ class Jobs:
 
     def _end(self, job: Job, how: dict[str, Any]) -> None:
         with suppress(OSError):
-            write_event(job.folder, how)
+            write_last(job.folder, how)
         job.state, job.ended, job.sentence = how["event"], time.time(), how.get("sentence", "")
         job.over.set()
+
+
+def _left(folder: Path) -> Job:
+    """Work that an earlier server has left: as it ended, or stopped where it was."""
+    request, (events, _) = json.loads((folder / REQUEST).read_bytes()), events_of(folder)
+    last = events[-1] if events else {}
+    if last.get("event") not in ENDED:
+        last = {"event": "stopped", "sentence": "The server ended before this was done.", "time": last.get("time")}
+        write_last(folder, last)
+    job = Job(folder.name, request["kind"], request["title"], folder, last["event"], sentence=last.get("sentence", ""))
+    job.begun, job.ended = (events[0]["time"] if events else None), last.get("time")
+    job.over.set()
+    return job
 
 
 def result_of(job: Job) -> bytes:

@@ -9,6 +9,10 @@ Tell = Callable[[int, int, str], None]  # how much is done, of how much, and wha
 RESULTS = "results"  # the folder of results in that of the work
 
 
+class Stopped(Exception):  # noqa: N818 -- nothing is wrong
+    """Somebody asked that the work stops."""
+
+
 @dataclass(frozen=True)
 class WorkKind:
     """A kind of work: what it is, the keys of its request beside `study`, and the function that does it.

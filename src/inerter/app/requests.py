@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from inerter.app import about, bodies, documents, parts
-from inerter.app.calls import panel
+from inerter.app.calls import call, panel
 from inerter.app.described import Endpoint, openapi
 from inerter.app.designs import designs_of
 from inerter.app.fixed import fixed
 from inerter.app.jobs import Job, as_event, result_of, with_result
 from inerter.app.kinds import KINDS
+from inerter.app.lanes import Waiting
 from inerter.app.panels import PANELS, at_once
 from inerter.app.responses import as_events, as_json, media_type
 from inerter.app.server import Server
@@ -38,7 +38,7 @@ async def _start(server: Server, request: Request) -> dict[str, Any]:
 
 async def _examples(server: Server, request: Request) -> dict[str, Any]:
     found = await asyncio.to_thread(about.examples)
-    return {"examples": [{"name": name, **_opened(path)} for name, path in found.items()]}
+    return {"examples": [{"name": n, "title": about.tables(p).get("title", n)} for n, p in found.items()]}
 
 
 async def _example(server: Server, request: Request) -> dict[str, Any]:
@@ -46,18 +46,12 @@ async def _example(server: Server, request: Request) -> dict[str, Any]:
     name = request.path_params["name"]
     if name not in found:
         raise Refused(404, f"There is no such example; there are {', '.join(found)}.")
-    return opened(found[name])
+    return opened(f"{name}.toml", found[name].read_text(encoding="utf-8"))
 
 
-def opened(path: Path) -> dict[str, Any]:
+def opened(name: str, text: str) -> dict[str, Any]:
     """A study file as a page opens it."""
-    text = path.read_text(encoding="utf-8")
-    return {"name": path.name, "text": text, **documents.read(text, path.name)}
-
-
-def _opened(path: Path) -> dict[str, Any]:
-    study = opened(path)["study"]
-    return {"title": study.get("title", path.stem)}
+    return {"name": name, "text": text, **documents.read(text, name)}
 
 
 async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dict[str, Any]:
@@ -68,8 +62,9 @@ async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dic
     return {"study": body.study, "problems": await asyncio.to_thread(documents.problems, body.study)}
 
 
-async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> dict[str, Any]:
-    return await asyncio.to_thread(documents.checked, body.study)
+async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> Response:
+    checking = Waiting((call, "inerter.app.checked:checked", body.study))
+    return as_json(await server.lanes["quick"].answer(checking))
 
 
 async def _write(server: Server, request: Request, body: bodies.WriteStudy) -> dict[str, Any]:
@@ -104,8 +99,8 @@ async def _panel(server: Server, request: Request, body: bodies.PanelRequest) ->
     lane = "quick" if at_once(key, asked) else "slow"
     if lane == "slow" or key == "optimise":
         await server.warming.wait()
-    call = panel, "inerter.app.answers:answered", key, asked
-    found = await server.newest.ask(server.lanes[lane], (body.client, key), body.sequence, call)
+    asking = panel, "inerter.app.answers:answered", key, asked
+    found = await server.newest.ask(server.lanes[lane], (body.client, key), body.sequence, asking)
     return as_json(found)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable
+from concurrent.futures import Executor
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from starlette.routing import Route
 
 from inerter.app.described import Endpoint
 from inerter.app.guard import App, Guard
-from inerter.app.requests import ENDPOINTS
+from inerter.app.requests import ENDPOINTS, opened
 from inerter.app.responses import as_json, media_type
 from inerter.app.server import Server
 from inerter.app.wire import Refused, decoded, encoded, refusal_of
@@ -25,7 +26,22 @@ from inerter.errors import InerterError
 WEB = Path(__file__).with_name("web")
 
 
-def application(server: Server, token: str, port: Callable[[], int], limit: int, record_limit: int) -> App:
+_NOTHING: dict[str, Any] = {"name": "", "text": "", "study": {}, "problems": []}
+
+
+def of_file(
+    file: tuple[str, str] | None,
+    root: Path,
+    quick: Executor,
+    token: str,
+    port: int,
+    limits: tuple[int, int],
+) -> App:
+    """The application that begins with a study file, its name and text; `root` is where it keeps its things."""
+    return application(Server(root, opened(*file) if file else _NOTHING, quick=quick), token, port, *limits)
+
+
+def application(server: Server, token: str, port: int, limit: int, record_limit: int) -> App:
     """The application that a server of the web runs."""
 
     @asynccontextmanager

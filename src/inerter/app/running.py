@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import signal
 import socket
@@ -10,26 +11,25 @@ import sys
 import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from tempfile import TemporaryDirectory
 from threading import Thread, current_thread, main_thread
 from typing import Any
 
 import uvicorn
 
-from inerter.app.requests import opened
-from inerter.app.routes import application
-from inerter.app.server import Server
 from inerter.errors import StudyError, WorkError
+from inerter.work.processes import Processes
 
 ADDRESS, PORT, TOKEN = "127.0.0.1", 8722, "INERTER_TOKEN"
 _TRIED = 20  # ports, where none is asked for
-_NOTHING: dict[str, Any] = {"name": "", "text": "", "study": {}, "problems": []}
 _BACKLOG = 2048  # connections that wait to be taken
 
 
 def run(
-    study: str | Path | None,
+    study: object,
     *,
     port: int | None,
     browser: bool,
@@ -40,20 +40,23 @@ def run(
     """Serve until an interrupt: see `serve`."""
     if min(limits) < 1:
         raise StudyError(f"A limit is a number of bytes from 1 on, got {min(limits)}.")
-    start = _NOTHING if study is None else _started(Path(study))
+    file, token = _text_of(study), _token()
     with _listening(port) as listening, _folder(folder) as root, _ended_gently():
         _many_connections()
-        token = os.environ.get(TOKEN) or secrets.token_urlsafe(24)
+        quick = Processes(1)
+        begun = Thread(target=_begin, args=(quick,), daemon=True)
+        begun.start()
         number = int(listening.getsockname()[1])
         link = f"http://{ADDRESS}:{number}/#token={token}"
-        app = application(Server(root, start), token, lambda: number, *limits)
+        tell(link)
+        if browser:
+            Thread(target=webbrowser.open, args=(link,), daemon=True).start()
+        app = import_module("inerter.app.routes").of_file(file, root, quick, token, number, limits)
+        begun.join()
         settings: dict[str, Any] = {"ws": "none", "proxy_headers": False, "server_header": False, "access_log": False}
         config = uvicorn.Config(
             app, log_level="warning", lifespan="on", timeout_graceful_shutdown=2, backlog=_BACKLOG, **settings
         )
-        tell(link)
-        if browser:
-            Thread(target=webbrowser.open, args=(link,), daemon=True).start()
         with suppress(KeyboardInterrupt):
             uvicorn.Server(config).run(sockets=[listening])
 
@@ -75,13 +78,36 @@ def _ended_gently() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _started(path: Path) -> dict[str, Any]:
+def _begin(process: Processes) -> None:
+    """Have a process begin while this one loads what it needs, and load what answers first."""
+    with suppress(Exception):  # what fails is begun again when it is needed
+        process.submit(resolve_name, "inerter.app.answers:first")
+
+
+def _text_of(study: object) -> tuple[str, str] | None:
+    """The name and the text of a study file, from its path or from a study."""
+    if study is None:
+        return None
+    if not isinstance(study, str | Path):
+        text: str = resolve_name("inerter.files.study.study:write_resolved")(study)
+        return "study.toml", text
+    path = Path(study)
     try:
-        return opened(path)
+        return path.name, path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror}). Check the path.") from None
     except UnicodeDecodeError:
         raise StudyError(f"{path}: not UTF-8 text; expected a study file.") from None
+
+
+def _token() -> str:
+    """The token that the environment gives, or a new one."""
+    given = os.environ.get(TOKEN)
+    if given is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,200}", given):
+        raise StudyError(
+            f"{TOKEN} has 16 to 200 letters, digits, hyphens and underscores; leave it out for a new token."
+        )
+    return given or secrets.token_urlsafe(24)
 
 
 @contextmanager

@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from inerter.errors import StudyError
+
+if TYPE_CHECKING:
+    from inerter.files.study.study import Study
 
 LIMIT, RECORD_LIMIT = 10_000_000, 2_000_000_000  # bytes
 _EXTRA = {"starlette", "uvicorn", "anyio", "h11"}
 
 
 def serve(
-    study: str | Path | None = None,
+    study: str | Path | Study | None = None,
     *,
     port: int | None = None,
     browser: bool = True,
@@ -24,9 +28,10 @@ def serve(
 ) -> None:
     """Serve the workbench on this machine, and open it in the browser; returns when it is interrupted.
 
-    `port` is chosen if it is left out. Bodies of requests have `limit` bytes at most, measured records `record_limit`.
-    Long work and records are kept in `folder`, or until the end if none is given. `tell` is given the link. A script
-    that calls this needs the line `if __name__ == "__main__":`, because processes are started afresh and import it.
+    `study` is the path of a study file, or a study. `port` is chosen if it is left out. Bodies of requests have `limit`
+    bytes at most, measured records `record_limit`. Long work and records are kept in `folder`, or until the end if none
+    is given. `tell` is given the link. A script that calls this needs the line `if __name__ == "__main__":`, because
+    processes are started afresh and import it.
 
     Raises `StudyError` for a study file that cannot be read, for a port that is not free, and where the extra `web` is
     not installed.

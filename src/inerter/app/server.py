@@ -31,6 +31,7 @@ class Server:
     root: Path  # the folder of long work and records
     start: dict[str, Any]  # the study of the command line
     process: Callable[[], Executor] = lambda: Processes(1)  # what lanes and long work are done by
+    quick: Executor | None = None  # one that has begun already, for the first lane
     newest: Newest = field(default_factory=Newest)
     lanes: dict[str, Lane] = field(init=False)
     jobs: Jobs = field(init=False)
@@ -39,6 +40,7 @@ class Server:
 
     def __post_init__(self) -> None:
         self.lanes = {name: Lane(homes, self.process()) for name, homes in _LANES.items()}
+        self.lanes["quick"].worker = self.quick or self.lanes["quick"].worker
         self.jobs, self.records = Jobs(self.root / "work", self.process()), Records(self.root / "records")
         self.warming = Warming(self.root / "kernels.jsonl")
 
@@ -58,8 +60,7 @@ class Server:
                 await asyncio.to_thread(worker.shutdown, wait=False, cancel_futures=True)
 
     async def _get_ready(self) -> None:
-        await self.lanes["quick"].begin()
-        await self.warming.run(self.jobs.worker)
+        await asyncio.gather(self.lanes["quick"].begin(), self.warming.run(self.jobs.worker))
         await self.lanes["slow"].begin()
 
     async def aside(self, home: str, *args: Any) -> bytes:

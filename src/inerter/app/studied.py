@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 from inerter.app.answers import optimum
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
-from inerter.app.kinds import RESULTS, Tell
+from inerter.app.kinds import RESULTS, Stopped, Tell
 from inerter.errors import DesignError, StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
@@ -75,13 +76,17 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         done[0] = count
         tell(count, total, f"{last.layout} {last.index}" if last else "")
 
+    def compiling(title: str, number: int, total: int) -> None:
+        with suppress(Stopped):  # other threads tell this too; the next design will stop
+            tell(0, 0, f"compiling kernels {number} of {total}: {title}")
+
     done = [0]
     result = run_study(
         study,
         folder / RESULTS,
         jobs=max((os.cpu_count() or 2) - 1, 1),
         progress=told,
-        compiling=lambda title, number, total: tell(0, 0, f"compiling kernels {number} of {total}: {title}"),
+        compiling=compiling,
         finish=show,
     )
     return json.loads("".join(as_text(result)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,16 +11,12 @@ from pkgutil import resolve_name
 from typing import Any
 
 from inerter.app.calls import called
-from inerter.app.kinds import KINDS
+from inerter.app.kinds import KINDS, Stopped
 from inerter.app.wire import decoded, encoded
 from inerter.writing import whole
 
 REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "stop"
 _OFTEN = 0.05  # seconds between two lines about progress
-
-
-class Stopped(Exception):  # noqa: N818 -- nothing is wrong
-    """Somebody asked that the work stops."""
 
 
 @dataclass
@@ -64,6 +61,14 @@ def write_event(folder: Path, event: dict[str, Any]) -> None:
     """Append an event to those of a piece of work."""
     with (folder / EVENTS).open("ab") as stream:
         stream.write(encoded({**event, "time": time.time()}) + b"\n")
+
+
+def write_last(folder: Path, event: dict[str, Any]) -> None:
+    """Append the event with which work ends; a line that a process began, and did not end, is taken away."""
+    path = folder / EVENTS
+    if path.exists():
+        os.truncate(path, events_of(folder)[1])
+    write_event(folder, event)
 
 
 def events_of(folder: Path, start: int = 0) -> tuple[list[dict[str, Any]], int]:

@@ -16,15 +16,16 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.options import OWN, Cluster
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
+from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
+from inerter.report.answers import answers
 from inerter.report.budgets import budget_lines
-from inerter.report.findings import headlines
-from inerter.report.fronts import front_lines, front_sentences
+from inerter.report.fronts import front_lines
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table, wrapped
@@ -50,6 +51,7 @@ def run(
 
     def show(result: StudyResult, into: Path) -> None:
         draw_study(result.data, into / FIGURES)
+        draw_layouts(loaded, into / FIGURES)
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
 
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
@@ -76,9 +78,7 @@ def run(
         for text in as_text(result):
             print(text, end="")
     else:
-        answers = (loaded.title, *headlines(result.data), *front_sentences(result.data))
-        print("\n".join(line for text in answers for line in wrapped(text)))
-        print(f"\n{summary_table(result.data)}")
+        print("\n".join([*wrapped(loaded.title), "", summary_table(result.data)]))
         lines = (
             *front_lines(result.data, WIDTH),
             *tolerance_lines(result.tolerances, WIDTH),
@@ -87,6 +87,8 @@ def run(
         print("".join(f"{line}\n" for line in lines), end="")
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
+        told = answers(result.data, loaded, result.budgets)
+        print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
     return _judge(result)
 
 

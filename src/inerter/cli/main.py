@@ -98,6 +98,64 @@ def check(study: Path, /) -> int:
 
 @app.command(
     help_epilogue="""Examples:
+  inerter new                          writes quarter-car.toml
+  inerter new half-car -o my-car.toml
+  inerter new full-car -o -            prints it"""
+)
+def new(
+    vehicle: str = "quarter-car",
+    /,
+    *,
+    output: Annotated[
+        Path | None,
+        Parameter(name=["--output", "-o"], allow_leading_hyphen=True, help="The file to write, or - to print it."),
+    ] = None,
+) -> int:
+    """Write a study file to start from, with a remark beside every key. It never replaces a file.
+
+    Parameters
+    ----------
+    vehicle
+        The model of the vehicle, such as quarter-car or half-car; inerter explain vehicle.model has all.
+    """
+    from inerter.cli.new import new as command
+
+    return command(vehicle, output)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter explain                      all keys
+  inerter explain road.speed
+  inerter explain sweep"""
+)
+def explain(key: str | None = None, /) -> int:
+    """Tell what a key of study files means: its unit, its default, an example.
+
+    Parameters
+    ----------
+    key
+        Its place, such as road.speed, or the end of that; a section; a word such as J1. All keys if left out.
+    """
+    from inerter.cli.describing import explain as command
+
+    return command(key)
+
+
+@app.command(help_epilogue="Example: inerter schema > study.schema.json")
+def schema() -> int:
+    """Print the JSON Schema of study files, with which editors complete and check them.
+
+    An editor that knows TOML (those with Taplo do) reads it where the first line
+    of a study file is  #:schema ./study.schema.json
+    """
+    from inerter.cli.describing import schema as command
+
+    return command()
+
+
+@app.command(
+    help_epilogue="""Examples:
   inerter simulate examples/backlash_rattle.toml
   inerter simulate my-car.toml -o motion --force
   inerter simulate my-car.toml --window 2:4    zooms the figure to 2 to 4 s"""

@@ -32,6 +32,8 @@ _SHADES: dict[Guard, Any] = {
     Guard.FORCE: {"facecolor": "#DCDCDC", "edgecolor": "none"},
     Guard.ELONGATION: {"facecolor": "#F8DCB8", "edgecolor": "none"},
 }
+_TYRES = "tyre load"
+_LIFTED: Any = {"facecolor": "#E9A3A3", "edgecolor": "#B03030", "linewidth": 0.6}
 _OVER_GAPS: Any = {"facecolor": "none", "edgecolor": "#8C8C8C", "hatch": "//////"}
 
 
@@ -78,7 +80,7 @@ def panels(result: SimulationResult) -> list[Panel]:
         found.append(Panel("body acceleration", "m/s^2", body if len(body) > 1 else (Curve(body[0].output),)))
     found += [Panel(name.replace("_", " "), outputs[name].unit, (Curve(name),)) for name in result.displacements]
     if result.tyre_loads:
-        found.append(Panel("tyre load", "N", _curves(result.tyre_loads)))
+        found.append(Panel(_TYRES, "N", _curves(result.tyre_loads)))
     for strut in struts:
         shaded = tuple(n for n in result.nonlinear if n.strut == strut)
         inerters = result.inerters(strut)
@@ -144,6 +146,9 @@ def draw_panel(result: SimulationResult, panel: Panel, inside: NDArray[np.bool_]
     for curve, value in zip(panel.curves, values, strict=True):
         ax.plot(*thinned(time, value * unit.factor), **_style(curve))
     _shade(result, panel.shaded, (float(time[0]), float(time[-1])), ax)
+    for one in result.run.lift_offs if panel.title == _TYRES else ():
+        if one.begin < time[-1] and one.end > time[0]:
+            ax.axvspan(one.begin, max(one.end, one.begin + 1e-9), label="a tyre would lift off", zorder=0.5, **_LIFTED)
     ax.set_ylabel(fill(axis_label(capital(panel.title), unit.unit), _LONGEST_TITLE, break_long_words=False))
     return ax
 

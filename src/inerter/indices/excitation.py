@@ -65,8 +65,8 @@ class RoadVelocity:
         return self.road.velocity_intensity
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same, with both sides on one track."""
-        return mechanism.on_one_track()
+        """The same; where both tracks are alike, with both sides on one."""
+        return mechanism.on_one_track() if self.road.coherence is None else mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """One at each road input; with a coherence two, from the mean of the tracks and half of their difference."""

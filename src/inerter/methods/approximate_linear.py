@@ -90,6 +90,7 @@ class ApproximateLinear:
     conventions: str = "exact"
     name = "approximate-linear"
     words = "norms of gains that the design as it is shows on random inputs, output over input, frequency by frequency"
+    brief = "measured gains"
     sees = Sees.BOTH
     needs_amplitude = False
     searches = True

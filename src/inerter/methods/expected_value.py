@@ -82,6 +82,7 @@ class ExpectedValue:
         "means over simulations of the design as it is, with friction, gaps and elasticity, on random roads; for a "
         "peak gain the largest response to a sinusoidal force"
     )
+    brief = "simulation"
     sees = Sees.BOTH
     needs_amplitude = True
     searches = True

@@ -33,6 +33,7 @@ class Norm:
     conventions: str = "exact"
     name = "norm"
     words = "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
+    brief = "exact norms"
     sees = Sees.NEITHER
     needs_amplitude = False
     searches = True

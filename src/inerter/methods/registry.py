@@ -48,6 +48,16 @@ def words_of(name: str) -> str:
     return str(_kind(name).words)
 
 
+def brief_words_of(name: str) -> str:
+    """What it is in a word or two, to go after "by": its `brief`, or else its name."""
+    return str(getattr(_kind(name), "brief", name))
+
+
+def what_is_seen(name: str) -> Sees:
+    """What it sees of a design that is not linear."""
+    return Sees(_kind(name).sees)
+
+
 def averages(name: str) -> bool:
     """Whether its values are means over random inputs, as many as it is asked for."""
     return "realisations" in _settings(_kind(name))

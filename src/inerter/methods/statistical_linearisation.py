@@ -50,6 +50,7 @@ class StatisticalLinearisation:
         "norms of a linear model in which each friction is the damper that it resembles most under the motion that "
         "results; for a peak gain at each frequency under a sinusoidal force"
     )
+    brief = "linearisation"
     sees = Sees.FRICTION
     needs_amplitude = True
     searches = True

@@ -32,7 +32,7 @@ def budget_tables(budgets: Sequence[BudgetOutcome], study: Study) -> list[Table]
             own = [outcome for outcome in found if outcome.layout == layout]
             remarks = [f"{outcome.index}: {text}" for outcome in own if (text := _remark(outcome, printed))]
             rows.append(
-                Row(layout, [Cell(_end(outcome, printed) or "–") for outcome in own], status="; ".join(remarks))
+                Row(layout, [Cell(end_of_range(outcome, printed) or "–") for outcome in own], status="; ".join(remarks))
             )
         tables.append(Table(_caption(name, found[0], study), ["Layout", *study.indices], rows))
     return tables
@@ -48,11 +48,11 @@ def _caption(name: str, found: BudgetOutcome, study: Study) -> str:
 
 
 def _answer(found: BudgetOutcome, write: Writer) -> str:
-    end, remark = _end(found, write), _remark(found, write)
+    end, remark = end_of_range(found, write), _remark(found, write)
     return f"{end} ({remark})" if end and remark else end or remark
 
 
-def _end(found: BudgetOutcome, write: Writer) -> str:
+def end_of_range(found: BudgetOutcome, write: Writer) -> str:
     """The end of the range; empty if there is none."""
     if found.value is None:
         return ""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -31,17 +32,35 @@ from inerter.methods.ties import equally_least
 
 Writer = Callable[[float, str, float], str]
 
+_STATIC = "the static limit, which no damper or inerter lowers"
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
 
-def headlines(results: xr.Dataset, write: Writer = with_unit) -> list[str]:
-    """One sentence for each index: which layout is best, how good it is, and how much better than the baseline.
+@dataclass(frozen=True)
+class Telling:
+    """How findings are told: `write` turns a number, its unit and its error into text.
 
-    `write` turns a number and its unit into text.
+    `ways` are words for methods, such as "with friction"; `static` are indices and layouts whose largest gain is that
+    under a steady force.
     """
+
+    write: Writer = with_unit
+    ways: Mapping[str, str] = field(default_factory=dict)
+    static: frozenset[tuple[str, str]] = frozenset()
+
+    def way(self, results: xr.Dataset, method: str) -> str:
+        """Words for a method of these results; empty where there is but one and nothing to tell of it."""
+        return self.ways.get(method, f"by {method}" if len(methods(results)) > 1 else "")
+
+
+PLAIN = Telling()
+
+
+def headlines(results: xr.Dataset, telling: Telling = PLAIN) -> list[str]:
+    """One sentence for each index: which layout is best, how good it is, and how much better than the baseline."""
     if not swept_places(results):
-        return [_of_designs(results, index, write) for index in indices(results)]
-    return [_of_sweep(one_method(results), index, write) for index in indices(results)]
+        return [_of_designs(results, index, telling) for index in indices(results)]
+    return [_of_sweep(results, index, telling) for index in indices(results)]
 
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
@@ -51,9 +70,34 @@ def best_layout(results: xr.Dataset, index: str) -> str | None:
 
 def best_layouts(results: xr.Dataset, index: str) -> list[str]:
     """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
-    values = one_method(results)["value"].sel(index=index).squeeze()
+    row = one_method(results).sel(index=index).squeeze()
+    values = np.atleast_1d(row["value"].values).tolist()
+    least = equally_least(values)
+    if not least:
+        return []
+    margins = _margins(row, least[0])
     names = results["layout"].values.tolist()
-    return _simplest_first(results, [names[i] for i in equally_least(values.values.reshape(-1).tolist())])
+    best = [i for i, value in enumerate(values) if i in least or value - values[least[0]] <= margins[i]]
+    return _simplest_first(results, [names[i] for i in best])
+
+
+def _margins(row: xr.Dataset, best: int) -> list[float]:
+    """How much larger than that of the `best` each value may be by chance, with 95 % confidence; zero without errors.
+
+    Where there is a baseline, errors are those of differences from it on the same roads.
+    """
+    if "standard_error" not in row or "realisations" not in row:
+        return [0.0] * row.sizes.get("layout", 1)
+    names, baseline = np.atleast_1d(row["layout"].values).tolist(), row.attrs["baseline"]
+    errors = np.atleast_1d(row["standard_error"].values)
+    if baseline and "improvement_error" in row:
+        own = np.atleast_1d(row["improvement_error"].values) / 100.0 * float(row["value"].sel(layout=baseline))
+        known = [names.index(baseline) == i or np.isfinite(own[i]) for i in range(len(names))]
+        errors = np.where(known, np.where(np.array(names) == baseline, 0.0, own), errors)
+    freedom = np.maximum(np.atleast_1d(row["realisations"].values) - 1, 1)
+    student = scipy.special.stdtrit(np.minimum(freedom, freedom[best]), 0.975)
+    found = student * np.hypot(errors, errors[best])
+    return [float(margin) for margin in np.nan_to_num(found)]
 
 
 def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
@@ -63,8 +107,8 @@ def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: int(results["elements"].sel(layout=name)))
 
 
-def _as_good(names: list[str]) -> str:
-    return f" (equally good: {_listed(names[1:])})" if len(names) > 1 else ""
+def _alike(names: list[str]) -> str:
+    return f"{_listed(names)}, equally good" if len(names) > 1 else names[0]
 
 
 Extreme = tuple[float, dict[str, float]]  # a number, and the swept values where it is
@@ -168,36 +212,59 @@ def _listed(words: list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def _of_designs(results: xr.Dataset, index: str, write: Writer) -> str:
-    every, results = results, one_method(results)
-    title, baseline = index_title(results, index), results.attrs["baseline"]
+def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
+    title = f"Best {index_title(results, index)}"
     names = best_layouts(results, index)
     if not names:
-        return f"Best {title}: {_none(results, index)}."
-    best = names[0]
-    design = results.sel(layout=best, index=index)
-    value = write(float(design["value"]), index_unit(results, index), error_of(design))
-    answer = f"Best {title}: {best}{_as_good(names)}, {value}"
-    if best == baseline:
-        return f"{answer}; no other layout is better than this baseline."
+        return f"{title}: {_none(results, index)}."
+    ways = {method: telling.way(results, method) for method in methods(results)} or {"": ""}
+    parts: list[str] = []
+    for method, way in ways.items():
+        one = by_method(results, method) if method else results
+        if not parts:
+            parts.append(f"{' '.join(filter(None, (title, way)))}: {_verdict(one, index, telling)}")
+        elif best_layouts(one, index)[:1] == names[:1]:
+            parts.append(f"{way} still {_still(one, index, names[0])}")
+        else:
+            parts.append(f"{way} {_verdict(one, index, telling)}")
+    return f"{'; '.join(parts)}."
+
+
+def _verdict(results: xr.Dataset, index: str, telling: Telling) -> str:
+    """By one method: the best layouts, the value, and how it compares with the baseline."""
+    names, baseline = best_layouts(results, index), results.attrs["baseline"]
+    if not names:
+        return _none(results, index)
+    design = results.sel(layout=names[0], index=index)
+    value = telling.write(float(design["value"]), index_unit(results, index), error_of(design))
+    limit = f", {_STATIC}" if (index, names[0]) in telling.static else ""
+    answer = f"{_alike(names)}, {value}{limit}"
+    if names[0] == baseline:
+        return f"{answer}; no other layout is better than this baseline"
     improvement = float(design["improvement"])
     if not np.isfinite(improvement):
-        return f"{answer}; {_without(results, index, baseline)}." if baseline else f"{answer}."
+        return f"{answer}; {_without(results, index, baseline)}" if baseline else answer
     if improvement < NOTICEABLE:
-        return f"{answer}, no better than {baseline}."
-    better = percent(improvement, error_of(design, "improvement")).removeprefix("+")
-    if len(methods(every)) < 2:
-        return f"{answer}, {better} better than {baseline}."
-    first, *others = methods(every)
-    further = []
-    for method in others:
-        by = by_method(every, method).sel(layout=best, index=index)
-        text = percent(float(by["improvement"]), error_of(by, "improvement")).removeprefix("+")
-        further.append(f"{text} by {method}")
-    return f"{answer}, {better} better than {baseline} by {first}, {_listed(further)}."
+        return f"{answer}, no better than {baseline}"
+    return f"{answer}, {_better(design)} better than {baseline}"
 
 
-def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
+def _still(results: xr.Dataset, index: str, name: str) -> str:
+    """The same layout by another method."""
+    design = results.sel(layout=name, index=index)
+    if name == results.attrs["baseline"] or not np.isfinite(float(design["improvement"])):
+        return name
+    return f"{name}, {_better(design)} better"
+
+
+def _better(design: xr.Dataset) -> str:
+    return percent(float(design["improvement"]), error_of(design, "improvement")).removeprefix("+")
+
+
+def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
+    results, write = one_method(every), telling.write
+    way = next((telling.way(every, method) for method in methods(every)), "")
+    by = f", {way}" if way else ""
     swept, title, baseline = swept_words(results), index_title(results, index), results.attrs["baseline"]
     layouts = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
@@ -210,16 +277,16 @@ def _of_sweep(results: xr.Dataset, index: str, write: Writer) -> str:
         value, at = found[names[0]][0]
         text = write(value, index_unit(results, index), np.nan)
         where = place_text(results, at, write, named=True)
-        return f"Best {title}: {names[0]}{_as_good(names)}, {text} at {where}."
+        return f"Best {title}: {_alike(names)}, {text} at {where}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]
     if largest < NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
     where = place_text(results, at, write, named=True)
-    best = f"{names[0]}{_as_good(names)}, {largest:.1f} % better at {where}"
+    best = f"{_alike(names)}, {largest:.1f} % better at {where}"
     return (
-        f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by_which(results)}: {best}; its "
+        f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
         f"improvement over the sweep lies {_range(least, largest)}."
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 
 import xarray as xr
@@ -12,15 +13,18 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from inerter.figures.labels import printed, swept_places, typeset
+from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.running import RESOLVED
-from inerter.files.study.study import Study, Sweep, write_resolved
+from inerter.files.study.study import Study, Sweep
 from inerter.files.study.tolerances import ToleranceOutcome
+from inerter.files.study.written import write_resolved
+from inerter.report.answers import answers
 from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
-from inerter.report.findings import headlines, over_the_sweep
-from inerter.report.fronts import front_sentences, front_tables
+from inerter.report.findings import over_the_sweep
+from inerter.report.fronts import front_tables
 from inerter.report.limits import limit_tables
 from inerter.report.question import computation, condition_rows, element_rows, index_rows, layout_rows, vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
@@ -31,6 +35,8 @@ _SPACE = "\N{NO-BREAK SPACE}"
 _MOST_SWEPT = 1000  # values of a sweep on a page
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
+_WIDTH = re.compile(r'viewBox="0 0 ([\d.]+) ')
+_PART = re.compile(r"<h2>(.*?)</h2>")
 _REFERENCE = re.compile(r'(\bid="|href="#|url\(#)')
 
 
@@ -64,20 +70,18 @@ def report(
 ) -> str:
     """The page as text."""
     swept = swept_places(results)
-    return (
+    return with_contents(
         environment()
         .get_template("report.html")
         .render(
             title=results.attrs["title"],
             swept=bool(swept),
             searched=study.optimise is not None,
-            headlines=[
-                printed_sentence(sentence)
-                for sentence in (*headlines(results, printed), *front_sentences(results, printed))
-            ],
+            headlines=[printed_sentence(sentence) for sentence in answers(results, study, budgets, printed)],
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
             layouts=layout_rows(study),
+            drawings=dict(_layout_drawings(study, figures)),
             indices=index_rows(results),
             tables=tables_of(results),
             by_method=method_tables(results),
@@ -94,6 +98,15 @@ def report(
             study_file=_study_file(study),
         )
     )
+
+
+def _layout_drawings(study: Study, folder: Path) -> Iterator[tuple[str, Markup]]:
+    """The networks of each layout, in the size in which they are drawn."""
+    for layout in study.layouts:
+        path = folder / f"{layout_figure(layout)}.svg"
+        if path.exists():
+            name = layout_figure(layout)
+            yield layout, inline(path.read_text(encoding="utf-8"), name, f"Networks of {layout}", natural=True)
 
 
 def _remarks(results: xr.Dataset) -> list[str]:
@@ -153,9 +166,22 @@ def breakable(name: str) -> Markup:
     return Markup("<wbr>").join(re.split(r"(?<=[-_.+])(?=.)", name))
 
 
-def inline(svg: str, name: str, caption: str) -> Markup:
-    """An SVG file as an element of a page: names are made unique by `name`, and the page decides on the size."""
+def inline(svg: str, name: str, caption: str, *, natural: bool = False) -> Markup:
+    """An SVG file as an element of a page: names are made unique by `name`, and the page decides on the size unless it
+    is to have its `natural` one.
+    """
     body = _METADATA.sub("", svg[svg.index("<svg") :])
     opening, _, rest = body.partition(">")
     rest = _REFERENCE.sub(rf"\g<1>{name}-", rest)
-    return Markup(f'{_SIZE.sub("", opening)} role="img" aria-label="{escape(caption)}">{rest}')
+    width = _WIDTH.search(opening)
+    size = f' style="width: {float(width[1]):.0f}pt"' if natural and width else ""
+    return Markup(f'{_SIZE.sub("", opening)}{size} role="img" aria-label="{escape(caption)}">{rest}')
+
+
+def with_contents(page: str) -> str:
+    """A page with a list of its parts below its header, and a mark at each part."""
+    titles = _PART.findall(page)
+    links = " ".join(f'<a href="#part-{i}">{title}</a>' for i, title in enumerate(titles, 1))
+    numbers = count(1)
+    marked = _PART.sub(lambda found: f'<h2 id="part-{next(numbers)}">{found[1]}</h2>', page)
+    return marked.replace("</header>", f'<nav class="contents" aria-label="Contents">{links}</nav>\n</header>', 1)

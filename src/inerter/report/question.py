@@ -15,6 +15,7 @@ from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
 from inerter.files.study.study import Study
+from inerter.files.study.written import as_written
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import is_blind, method_settings, words_of
@@ -41,7 +42,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     rows = [("Model", study.model.replace("-", " "))]
     swept = {sweep.words for sweep in study.sweeps}
     told = [row for row in vehicle_words(study.model, study.vehicle) if row[0] not in swept]
-    rows += [(capital(name), unit if value is None else _given(value, unit)) for name, value, unit in told]
+    rows += [(capital(name), unit if value is None else _given(study, value, unit)) for name, value, unit in told]
     rows += [(capital(s.words), _told(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
     if study.road is not None:
         rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
@@ -49,12 +50,12 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
-        rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
+        rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
         texts = [one for one in index_choices(symbol) if one.key in settings]
         rows += [(f"{capital(one.key.replace('_', ' '))} of {name}", settings[one.key]) for one in texts]
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
-        rows += [(f"{capital(f.in_words)} of {name}", _given(settings[f.key], f.unit)) for f in given]
+        rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
     return rows
 
 
@@ -68,7 +69,7 @@ def condition_rows(study: Study) -> list[tuple[str, str, str]]:
     total, known = sum(condition.share for condition in study.conditions), places(study)
     rows = []
     for i, condition in enumerate(study.conditions, start=1):
-        numbers = [f"{label} = {_given(value, known[label].unit)}" for label, value in condition.numbers.items()]
+        numbers = [f"{label} = {_given(study, value, known[label].unit)}" for label, value in condition.numbers.items()]
         told = ", ".join(numbers) or "as above"
         rows.append((condition.name or f"{i}", f"{100.0 * condition.share / total:.3g} %", told))
     return rows
@@ -130,7 +131,8 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
     for name in asked or amplitudes:
         field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
         if field is not None and field.key in settings:
-            yield f"The sinusoidal force of {name} has an amplitude of {_given(settings[field.key], field.unit)}."
+            amplitude = _given(study, settings[field.key], field.unit)
+            yield f"The sinusoidal force of {name} has an amplitude of {amplitude}."
 
 
 def _told(study: Study, place: str) -> str:
@@ -138,17 +140,18 @@ def _told(study: Study, place: str) -> str:
     number = places(study)[place]
     for sweep in study.sweeps:
         if sweep.label == place:
-            ends = _given(min(sweep.values), sweep.unit), _given(max(sweep.values), sweep.unit)
+            ends = _given(study, min(sweep.values), sweep.unit), _given(study, max(sweep.values), sweep.unit)
             return f"swept, {len(sweep.values)} values from {ends[0]} to {ends[1]}"
     value = number.value
     if isinstance(value, Free):
-        return f"free, {_given(value.lower, number.unit)} to {_given(value.upper, number.unit)}"
+        return f"free, {_given(study, value.lower, number.unit)} to {_given(study, value.upper, number.unit)}"
     if isinstance(value, Tied):
         return f"tied, {value}"
-    return "" if value is None else _given(value, number.unit)
+    return "" if value is None else _given(study, value, number.unit)
 
 
-def _given(value: float, unit: str) -> str:
-    """A value with all digits that the study file gives it, on the line of its unit."""
-    text = format_quantity(value, unit, digits=12).replace(" ", "\N{NO-BREAK SPACE}")
-    return text + _ALSO[unit](value) if unit in _ALSO else text
+def _given(study: Study, value: float, unit: str) -> str:
+    """A value as the study file writes it, else with all digits that it gives it, on the line of its unit."""
+    text = as_written(study, value, unit) or format_quantity(value, unit, digits=12)
+    also = _ALSO[unit](value) if unit in _ALSO and text.endswith(f" {unit}") else ""
+    return text.replace(" ", "\N{NO-BREAK SPACE}") + also

@@ -11,6 +11,7 @@ from inerter.figures.simulation import Window
 from inerter.files.simulation.running import SimulationResult
 from inerter.report.json_data import json_data
 from inerter.report.text import WIDTH
+from inerter.simulation.peaks import LiftOff, Peak
 from inerter.units import shown
 
 _SHARES = {"stick": "stuck", "open": "in the gap", "upper contact": "upper end", "lower contact": "lower end"}
@@ -32,6 +33,13 @@ def simulation_data(result: SimulationResult) -> dict[str, Any]:
         "time": [float(run.time[0]), float(run.time[-1])],
         "status": str(run.status),
         "rms": {name: {"value": result.rms(name), "unit": run.unit(name)} for name in result.main_outputs},
+        "peaks": {name: {**vars(run.peak(name)), "unit": run.unit(name)} for name in result.main_outputs},
+        "tyres": {
+            name: {"static_load": load, "least": vars(run.least_tyre_loads[name])}
+            for name, load in run.static_loads.items()
+        },
+        "lift_offs": [vars(one) for one in run.lift_offs],
+        "notes": list(run.notes),
         "nonlinear": {
             n.name: {"kind": n.kind, "strut": n.strut, "events": n.events, "shares": n.shares} for n in result.nonlinear
         },
@@ -61,10 +69,20 @@ def _word(value: object) -> str:
 
 def _values(result: SimulationResult) -> Iterator[str]:
     run = result.run
-    width = max(map(len, result.main_outputs))
-    yield "r.m.s. values"
-    for name in result.main_outputs:
-        yield f"  {name.replace('_', ' '):<{width}}  {with_unit(result.rms(name), run.unit(name))}"
+    pressed = {tyre: f"{tyre} on the road".replace("_", " ") for tyre in run.static_loads}
+    width = max(map(len, (*result.main_outputs, *pressed.values())))
+    sizes = {name: with_unit(result.rms(name), run.unit(name)) for name in result.main_outputs}
+    column = max(14, *map(len, sizes.values()))
+    yield f"  {'':<{width}}  {'r.m.s.':<{column}}  largest"
+    for name, size in sizes.items():
+        yield f"  {name.replace('_', ' '):<{width}}  {size:<{column}}  {_when(run.peak(name), run.unit(name))}"
+    for tyre, least in run.least_tyre_loads.items():
+        pressing = f"least {_when(least, 'N')}, of {with_unit(run.static_loads[tyre], 'N')} at rest"
+        yield f"  {pressed[tyre]:<{width}}  {pressing}"
+
+
+def _when(peak: Peak, unit: str) -> str:
+    return f"{with_unit(peak.value, unit)} at {peak.time:.4g} s"
 
 
 def _elements(result: SimulationResult) -> Iterator[str]:
@@ -108,4 +126,16 @@ def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
         yield f"Steady state: after {r.periods} periods the state repeats to {r.mismatch:.1e} of its size."
     if window is not None and window != (begin, end):
         yield f"The figure shows {window[0]:g} to {window[1]:g} s; another part with --window FROM:TO."
+    if window is not None and run.lift_offs:
+        yield from _elsewhere(run.lift_offs, window, (begin, end))
+    for note in run.notes:
+        yield from wrap(f"Note: {note}", WIDTH)
     yield from wrap(f"Status: {run.status}", WIDTH)
+
+
+def _elsewhere(found: tuple[LiftOff, ...], window: Window, whole: Window) -> Iterator[str]:
+    """Where in the run the first tyre lifts off, if none does in the window of the figure."""
+    if not any(one.end > window[0] and one.begin < window[1] for one in found):
+        half, at = 0.5 * (window[1] - window[0]), found[0].begin
+        around = f"{max(whole[0], at - half):.4g}:{min(whole[1], at + half):.4g}"
+        yield f"No tyre lifts off in that part; the first one does within --window {around}."

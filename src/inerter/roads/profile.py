@@ -103,7 +103,8 @@ class Profile:
         """
         velocity = positive("The speed over a profile", speed, "m/s")
         if track not in self.tracks:
-            raise SignalError(f"{self.source!r} has no track {track!r}: {_tracks_there(self.tracks)}.")
+            which = f"no track {track!r}" if track else "two tracks"
+            raise SignalError(f"{self.source!r} has {which}: {_tracks_there(self.tracks)}.")
         label = " ".join(filter(None, ("profile", self.source, track)))
         return Signal.sampled(
             (self.distance - self.distance[0]) / velocity, self.tracks[track], speed=velocity, label=label
@@ -119,4 +120,4 @@ class Profile:
 
 
 def _tracks_there(tracks: Mapping[str, Matrix]) -> str:
-    return "it is one track, with the name ''" if "" in tracks else "there are 'left' and 'right'"
+    return "it is a single one, without a name" if "" in tracks else 'say which, track = "left" or "right"'

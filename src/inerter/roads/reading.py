@@ -71,15 +71,15 @@ def read_profile(
     return _from_table(name, source, _checked_units(units), interval, named)
 
 
-def profile(path: str | os.PathLike[str], speed: float) -> Sampled:
+def profile(path: str | os.PathLike[str], speed: float, track: str = "") -> Sampled:
     """A measured road of one track, driven at `speed` [m/s] from its first point at t = 0, by a cubic spline.
 
-    `path` is a file as `read_profile` reads it without being told more.
+    `path` is a file as `read_profile` reads it without being told more; of two tracks, `track` is "left" or "right".
 
-    Raises `SignalError` for a file that cannot be read as such, or has two tracks.
+    Raises `SignalError` for a file that cannot be read as such, or a track that it does not have.
     """
     try:
-        return read_profile(path).driven(speed)
+        return read_profile(path).driven(speed, track)
     except RecordError as problem:
         raise SignalError(str(problem)) from None
 

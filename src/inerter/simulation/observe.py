@@ -35,6 +35,7 @@ def trajectory_of(integration: Integration, steady: Repetition | None, label: st
         final_state=integration.state,
         end=integration.now,
         label=label,
+        _mechanism=system.mechanism,
         _ending=integration.ending if integration.status.ok else None,
         _evaluate=partial(_evaluate, integration, reached),
         _list_events=partial(_listed, system, rows),

@@ -70,6 +70,7 @@ def run(
         final_state=_state_at(system, history, given, reached - 1),
         end=end,
         label="; ".join(dict.fromkeys(s.label for s in signals if s is not None)),
+        _mechanism=system.mechanism,
         _ending=Stepped(system.mechanism, history.stop) if history.status.ok else None,
         _evaluate=partial(_evaluate, given, roads, history),
     )

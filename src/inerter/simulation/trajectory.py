@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.errors import SimulationError, Status
+from inerter.errors import MechanismError, SimulationError, Status
+from inerter.simulation.peaks import LiftOff, Peak, lift_off_note, lift_offs_of, peak_of
 from inerter.systems.outputs import Output, find
+from inerter.systems.static_loads import static_tyre_loads
 from inerter.vehicle.mechanism import Mechanism
 from inerter.writing import export
 
@@ -94,6 +97,7 @@ class Trajectory:
     final_state: Matrix = field(default_factory=lambda: np.zeros(0))  # to go on from: simulate(..., initial=...)
     end: float = 0.0  # [s] when that is
     label: str = ""  # of the signals
+    _mechanism: Mechanism | None = field(repr=False, default=None)
     _ending: object = field(repr=False, default=None)  # what the integrator that made it needs to go on from here
     _evaluate: Callable[[Output], Matrix] = field(repr=False, default=lambda output: np.zeros(0))
     _list_events: Callable[[], tuple[Event, ...]] = field(repr=False, default=tuple)
@@ -119,6 +123,49 @@ class Trajectory:
     def rms(self, name: str) -> float:
         """Root of the mean square of an output over all samples."""
         return float(np.sqrt(np.mean(self[name] ** 2)))
+
+    def peak(self, name: str) -> Peak:
+        """The sample of an output that is farthest from zero, and when it was."""
+        return peak_of(self.time, self[name])
+
+    @cached_property
+    def static_loads(self) -> dict[str, float]:
+        """The weight that each tyre carries at rest [N], by its name; empty where that is not known, as `notes` say."""
+        try:
+            return {} if self._mechanism is None else static_tyre_loads(self._mechanism)
+        except MechanismError:
+            return {}
+
+    @property
+    def least_tyre_loads(self) -> dict[str, Peak]:
+        """The least force with which each tyre presses on the road [N], and when; negative where it would lift off."""
+        found = {}
+        for tyre, static in self.static_loads.items():
+            pressing = static - self[_load(tyre)]
+            at = int(np.argmin(pressing))
+            found[tyre] = Peak(float(pressing[at]), float(self.time[at]))
+        return found
+
+    @cached_property
+    def lift_offs(self) -> tuple[LiftOff, ...]:
+        """Where a tyre pulls by more than its static load, so that a real one would have lifted off; by time."""
+        found = [
+            one
+            for tyre, static in self.static_loads.items()
+            for one in lift_offs_of(tyre, self.time, self[_load(tyre)], static)
+        ]
+        return tuple(sorted(found, key=lambda one: one.begin))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of the motion, one sentence each: tyres that would have lifted off."""
+        if self._mechanism is not None and self._mechanism.tyres and not self.static_loads:
+            try:
+                static_tyre_loads(self._mechanism)
+            except MechanismError as problem:
+                return (f"Whether a tyre would lift off cannot be told. {problem}",)
+        by_tyre = {tyre: tuple(one for one in self.lift_offs if one.tyre == tyre) for tyre in self.static_loads}
+        return tuple(lift_off_note(found, self.static_loads[tyre]) for tyre, found in by_tyre.items() if found)
 
     def unit(self, name: str) -> str:
         """Unit of an output."""
@@ -201,3 +248,8 @@ class Trajectory:
         }
         with export(path, SimulationError, overwrite=overwrite) as draft:
             scipy.io.savemat(draft, data, oned_as="column", long_field_names=True)
+
+
+def _load(tyre: str) -> str:
+    """The output that is the force of a tyre."""
+    return f"{tyre}_load"

@@ -96,11 +96,14 @@ export function partAt(tree, path) {
   return part ?? null;
 }
 
+/** @param {Tree[]} parts @param {number} i @param {Tree} part */
+const changedAt = (parts, i, part) => parts.map((each, j) => (j === i ? part : each));
+
 /** The tree with another part at a place. @param {Tree} tree @param {Path} path @param {Tree} part @returns {Tree} */
 export function replaceAt(tree, path, part) {
   if (path.length === 0 || tree.kind === "element") return part;
   const [i, ...rest] = path;
-  return join(tree.kind, tree.parts.with(i, replaceAt(tree.parts[i], rest, part)));
+  return join(tree.kind, changedAt(tree.parts, i, replaceAt(tree.parts[i], rest, part)));
 }
 
 /** The tree without the part at a place; null where nothing is left. @param {Tree} tree @param {Path} path @returns {Tree | null} */
@@ -108,7 +111,7 @@ export function removeAt(tree, path) {
   if (path.length === 0 || tree.kind === "element") return null;
   const [i, ...rest] = path;
   const left = removeAt(tree.parts[i], rest);
-  return join(tree.kind, left === null ? tree.parts.toSpliced(i, 1) : tree.parts.with(i, left));
+  return join(tree.kind, left === null ? tree.parts.filter((_, j) => j !== i) : changedAt(tree.parts, i, left));
 }
 
 /**
@@ -151,7 +154,7 @@ export function shiftAt(tree, path, step) {
   const group = partAt(tree, above);
   const i = path[path.length - 1];
   if (group === null || group.kind === "element" || group.parts[i + step] === undefined) return tree;
-  const parts = group.parts.with(i, group.parts[i + step]).with(i + step, group.parts[i]);
+  const parts = changedAt(changedAt(group.parts, i, group.parts[i + step]), i + step, group.parts[i]);
   return replaceAt(tree, above, { kind: group.kind, parts });
 }
 

@@ -63,6 +63,7 @@ const CHANGES = {
     return { ...document, ranges, values, study: placed(document.study, ["elements", name], text) };
   },
   drawn: (document, { text, added = {} }) => {
+    if (document.layout === "") return document;
     const study = { ...document.study, elements: { ...document.study.elements, ...added } };
     const place = document.strut === null ? [document.layout] : [document.layout, document.strut];
     return { ...document, study: placed(study, ["layouts", ...place], text) };
@@ -77,6 +78,7 @@ const CHANGES = {
   layoutRenamed: (document, { name }) => {
     const old = document.layout;
     const { study, values } = document;
+    if (!(old in (study.layouts ?? {})) || name in (study.layouts ?? {})) return document;
     const settings = study.study?.baseline === old ? { ...study.study, baseline: name } : study.study;
     const renamedStudy = { ...study, layouts: keyRenamed(study.layouts ?? {}, old, name), ...(settings && { study: settings }) };
     return { ...document, layout: name, values: keyRenamed(values, old, name), study: renamedStudy };
@@ -168,6 +170,7 @@ export const nextElement = (study, symbol) => freshName(symbol, Object.keys(stud
 /** @param {Document} document @param {string} old @param {string} name @returns {Document} */
 function elementRenamed(document, old, name) {
   const { study } = document;
+  if (name in (study.elements ?? {})) return document;
   /** @param {LayoutEntry} entry @returns {LayoutEntry} */
   const changed = (entry) =>
     typeof entry === "string"

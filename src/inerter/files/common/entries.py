@@ -9,6 +9,7 @@ from pydantic import PlainValidator, ValidationInfo
 
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
+from inerter.files.common.schema import checked, list_schema, quantity_schema, words_schema
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
@@ -17,6 +18,15 @@ from inerter.units import format_quantity, parse_quantity, shown, unit_in
 MOST_POINTS = 10_000_000
 _LONGEST_EXPRESSION = 500
 _MOST_BRACKETS = 50  # far from the depth at which Python's stack ends
+TEXT_SCHEMA: dict[str, Any] = {"type": "string", "minLength": 1, "maxLength": 200}
+SHARE_SCHEMA: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+EXPRESSION_SCHEMA: dict[str, Any] = {
+    "type": "string",
+    "minLength": 1,
+    "maxLength": _LONGEST_EXPRESSION,
+    "description": "A network: | puts parts side by side, - end to end and binds tighter.",
+    "examples": ['S3 = "k | c - b"'],
+}
 _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")
 
 
@@ -36,12 +46,12 @@ def positive(unit: str) -> PlainValidator:
             raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
         return value
 
-    return PlainValidator(check)
+    return checked(check, lambda: quantity_schema(unit, least="positive"))
 
 
 def any_quantity(unit: str) -> PlainValidator:
     """A quantity of `unit` of either sign."""
-    return PlainValidator(lambda text: parse_quantity(text, unit))
+    return checked(lambda text: parse_quantity(text, unit), lambda: quantity_schema(unit))
 
 
 def not_negative(unit: str) -> PlainValidator:
@@ -53,7 +63,7 @@ def not_negative(unit: str) -> PlainValidator:
             raise EntryError(got=shown(text), fault="negative", expected=f"0 {unit} or more")
         return value
 
-    return PlainValidator(check)
+    return checked(check, lambda: quantity_schema(unit, least="not negative"))
 
 
 def positive_number(value: Any) -> float:
@@ -91,6 +101,17 @@ def quantity_text(text: Any) -> str:
     return str(text)
 
 
+AMOUNT = checked(
+    amount,
+    lambda: {
+        **quantity_schema(*kinds_by_unit(), least="not negative"),
+        "description": "An element, which the unit tells, with its value; or a table with the ends of a free value.",
+        "examples": [f'{kind.symbol} = "{kind.example}"' for kind in kinds_by_unit().values()],
+    },
+)
+SWEPT = checked(quantity_text, quantity_schema)
+
+
 def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
     unit, value = parse_element(text, known)
     if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
@@ -106,6 +127,9 @@ def text(value: Any) -> str:
     return value
 
 
+TEXT = checked(text, lambda: TEXT_SCHEMA)
+
+
 def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
     """One of the words that this version knows, or a key of a table; `what` says what it is, with its article."""
 
@@ -118,9 +142,14 @@ def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
     return check
 
 
+def word(what: str, known: Collection[str]) -> PlainValidator:
+    """An entry that is `one_of` some words."""
+    return checked(one_of(what, known), lambda: words_schema(known))
+
+
 def some_of(what: str, known: Collection[str]) -> PlainValidator:
     """A list of at least one of `known`, none of them twice."""
-    return _list_of(one_of(what, known), lambda: next(iter(known)))
+    return _list_of(one_of(what, known), lambda: next(iter(known)), lambda: words_schema(known))
 
 
 def some_of_file(what: str, known: Callable[[Mapping[str, Any]], Collection[str]]) -> PlainValidator:
@@ -130,27 +159,29 @@ def some_of_file(what: str, known: Callable[[Mapping[str, Any]], Collection[str]
         words = known(info.context or {})
         return _check_list(values, one_of(what, words), lambda: next(iter(words)))
 
-    return PlainValidator(check)
+    return checked(check, lambda: list_schema({"anyOf": [words_schema(known({})), TEXT_SCHEMA]}))
 
 
 def some_names(example: str) -> PlainValidator:
     """A list of at least one name, none of them twice; whether they are known is seen later."""
-    return _list_of(text, lambda: example)
+    return _list_of(text, lambda: example, lambda: TEXT_SCHEMA)
 
 
-def _list_of(one: Callable[[Any], str], example: Callable[[], str]) -> PlainValidator:
-    return PlainValidator(lambda values: _check_list(values, one, example))
+def _list_of(
+    one: Callable[[Any], str], example: Callable[[], str], schema: Callable[[], dict[str, Any]]
+) -> PlainValidator:
+    return checked(lambda values: _check_list(values, one, example), lambda: list_schema(schema()))
 
 
 def _check_list(values: Any, one: Callable[[Any], str], example: Callable[[], str]) -> tuple[str, ...]:
     if not isinstance(values, list) or not values:
         got = "an empty list" if values == [] else shown(values)
         raise EntryError(got=got, expected=f"a list of one or more, such as [{shown(example())}]")
-    checked = tuple(one(value) for value in values)
-    twice = next((value for value in checked if checked.count(value) > 1), None)
+    listed = tuple(one(value) for value in values)
+    twice = next((value for value in listed if listed.count(value) > 1), None)
     if twice is not None:
         raise EntryError(got=f"{shown(twice)} more than once", expected="each at most once")
-    return checked
+    return listed
 
 
 def whole(lower: int, upper: int) -> PlainValidator:
@@ -161,7 +192,7 @@ def whole(lower: int, upper: int) -> PlainValidator:
             raise EntryError(got=shown(value), expected=f"a whole number from {lower} to {upper}, without quotes")
         return value
 
-    return PlainValidator(check)
+    return checked(check, lambda: {"type": "integer", "minimum": lower, "maximum": upper})
 
 
 def share(value: Any) -> float:
@@ -169,6 +200,9 @@ def share(value: Any) -> float:
     if not isinstance(value, float) or not 0.0 < value < 1.0:
         raise EntryError(got=shown(value), expected="a number between 0 and 1 without quotes, such as 0.01")
     return value
+
+
+SHARE = checked(share, lambda: SHARE_SCHEMA)
 
 
 def expression(value: Any) -> str:
@@ -184,6 +218,7 @@ def expression(value: Any) -> str:
     return value
 
 
+EXPRESSION = checked(expression, lambda: EXPRESSION_SCHEMA)
 _TAKEN = frozenset(
     (
         "layout index method other parameter point omega value standard_error improvement other_value parameter_value "
@@ -234,3 +269,15 @@ def quantity_list(values: Any) -> tuple[str, ...]:
         example = 'k = { from = "10 kN/m", to = "300 kN/m", points = 30 } or k = ["10 kN/m", "20 kN/m"]'
         raise EntryError(got=got, expected=f"2 to {MOST_POINTS} values, as in {example}")
     return tuple(map(quantity_text, values))
+
+
+SWEEP_LIST = checked(
+    quantity_list,
+    lambda: {
+        **list_schema(quantity_schema()),
+        "description": "Its values, one by one, or from one end to the other.",
+        "examples": ['k = ["60 kN/m", "120 kN/m", "240 kN/m"]'],
+        "minItems": 2,
+        "maxItems": MOST_POINTS,
+    },
+)

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from inerter.errors import UnitError
 from inerter.fields import Field
 from inerter.files.common.problem import EntryError
+from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest
 from inerter.files.common.ties import TIED, tie_text
 from inerter.networks.elements import Element, Free, Tied
@@ -66,6 +67,27 @@ def kind_entry(entry: dict[str, Any], *, free: bool = True) -> KindEntry:
         ends = f"equal or reversed ends of {value.name}"
         raise EntryError(got=ends, expected="from less than to", hint="Swap them.")
     return KindEntry(named, (lower, upper), amounts)
+
+
+def kind_schema() -> dict[str, Any]:
+    """What a JSON Schema says of an entry that names its kind."""
+    return {"anyOf": [_schema_of(name, kind) for name, kind in ELEMENTS.items()]}
+
+
+def _schema_of(name: str, kind: type[Element]) -> dict[str, Any]:
+    least = "not negative" if kind.may_vanish else "positive"
+    value, *more = kind.fields()
+    one = quantity_schema(value.unit, least=least)
+    ends = {"type": "object", "properties": {"from": one, "to": one}, "required": ["from", "to"]}
+    texts = {
+        field.name: {**quantity_schema(field.unit, least="positive"), "description": field.sentence} for field in more
+    }
+    keys = {
+        KIND: {"const": name, "description": "What it is, where its unit does not tell."},
+        value.name: {"anyOf": [one, {**ends, "additionalProperties": False}], "description": value.sentence},
+        **texts,
+    }
+    return {"type": "object", "properties": keys, "required": list(keys), "additionalProperties": False}
 
 
 def _amount(field: Field, text: Any, may_vanish: bool) -> float:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
+from inspect import getdoc
 from operator import or_
 from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
+    ConfigDict,
     Discriminator,
     Field,
-    PlainValidator,
     Tag,
     create_model,
     model_validator,
@@ -21,19 +22,20 @@ from inerter.errors import RowError
 from inerter.fields import Choice, fields_of, mounts_of, needed_mounts_of
 from inerter.fields import Field as Quantity
 from inerter.files.common.entries import (
+    AMOUNT,
+    EXPRESSION,
+    TEXT,
     Amount,
-    amount,
     check_order,
     element_name,
-    expression,
     layout_name,
     not_negative,
-    one_of,
     positive,
-    text,
+    word,
 )
-from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
+from inerter.files.common.kind_entry import KindEntry, kind_entry, kind_schema, names_kind
 from inerter.files.common.problem import EntryError
+from inerter.files.common.schema import NEVER, Says, checked
 from inerter.files.common.tables import Shape, Shapes
 from inerter.files.common.vehicle_shapes import (
     MECHANISM,
@@ -58,8 +60,9 @@ ANY = "<any>"  # the shape of what does not say its kind
 class RoadTable(Shape):
     """A table [road] may say the class of a road in place of its roughness."""
 
-    letter: Annotated[str | None, PlainValidator(one_of("a class of ISO 8608", ROAD_CLASSES))] = Field(
-        default=None, alias="class", examples=['class = "C"']
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("roughness"))
+    letter: Annotated[str | None, word("a class of ISO 8608", ROAD_CLASSES)] = Field(
+        default=None, alias="class", description="Of ISO 8608, in place of a roughness.", examples=['class = "C"']
     )
 
     @model_validator(mode="before")
@@ -73,14 +76,14 @@ class RoadTable(Shape):
         return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
 
 
-AmountText = Annotated[Amount, PlainValidator(amount)]
+AmountText = Annotated[Amount, AMOUNT]
 
 
 class Range(Shape):
     """A free value: an optimiser chooses it between two bounds."""
 
-    lower: AmountText = Field(alias="from", examples=['from = "100 N s/m"'])
-    upper: AmountText = Field(alias="to", examples=['to = "100 kN s/m"'])
+    lower: AmountText = Field(alias="from", description="The least it may be.", examples=['from = "100 N s/m"'])
+    upper: AmountText = Field(alias="to", description="The most it may be.", examples=['to = "100 kN s/m"'])
 
     @model_validator(mode="after")
     def _ordered(self) -> Range:
@@ -94,8 +97,13 @@ def of_quantities(fields: Iterable[Quantity]) -> dict[str, Any]:
     for field in fields:
         check = not_negative(field.unit) if field.default == 0.0 else positive(field.unit)
         default = ... if field.default is None else field.default
-        keys[field.key] = (Annotated[float, check], Field(default, examples=[f'{field.key} = "{field.example}"']))
+        keys[field.key] = (Annotated[float, check], Field(default, **of_field(field)))
     return keys
+
+
+def of_field(field: Quantity | Choice) -> dict[str, Any]:
+    """What its key says of a quantity or a text: a sentence, and an example."""
+    return {"description": field.sentence, "examples": [f'{field.key} = "{field.example}"']}
 
 
 def if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
@@ -103,7 +111,7 @@ def if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
     return {
         field.key: (
             Annotated[float | None, positive(field.unit)],
-            Field(default=None, examples=[f'{field.key} = "{field.example}"']),
+            Field(default=None, **of_field(field)),
         )
         for field in fields
     }
@@ -113,9 +121,8 @@ def of_choices(choices: Iterable[Choice]) -> dict[str, Any]:
     """Keys for texts, some of which may be left out."""
     keys = {}
     for one in choices:
-        check = PlainValidator(one_of(f"a {one.key.replace('_', ' ')}", one.options) if one.options else text)
-        examples = [f'{one.key} = "{one.example}"']
-        needed, optional = Field(examples=examples), Field(default=None, examples=examples)
+        check = word(f"a {one.key.replace('_', ' ')}", one.options) if one.options else TEXT
+        needed, optional = Field(**of_field(one)), Field(default=None, **of_field(one))
         keys[one.key] = (Annotated[str, check], needed) if one.needed else (Annotated[str | None, check], optional)
     return keys
 
@@ -140,13 +147,21 @@ def _vehicle_shape(model: str) -> type[Shape]:
     if model == MECHANISM:
         return MechanismTable
     keys = of_quantities(fields_of(VEHICLES[model]))
-    own: dict[str, Any] = {"model": (Literal[model], ...)}
+    own: dict[str, Any] = {"model": (Literal[model], _what(model))}
     if VEHICLES[model].moved == "road":
         own[SEAT] = (SeatTable | None, MechanismTable.model_fields[SEAT])
     taken = sorted(own.keys() & keys.keys())
     if taken:
         raise RowError(f"{model} has a quantity {taken[0]!r}, a key that [vehicle] has already. Choose another name.")
-    return create_model(f"Vehicle {model}", __base__=Shape, **{**keys, **own})
+    return create_model(f"Vehicle {model}", __base__=Shape, __doc__=_about(model), **{**own, **keys})
+
+
+def _what(model: str) -> Any:
+    return Field(description="The kind of vehicle.", examples=[f'model = "{model}"'])
+
+
+def _about(model: str) -> str:
+    return (getdoc(VEHICLES[model]) or model).partition("\n\n")[0]
 
 
 class WithVehicle(Shape):
@@ -193,13 +208,14 @@ class _Mounted(dict[str, Any]):
 
 def one_of_shapes(shapes: Mapping[str, Any], tag: Callable[[Any], str]) -> Any:
     """What has the shape whose tag it has."""
-    return Annotated[reduce(or_, (Annotated[shape, Tag(name)] for name, shape in shapes.items())), Discriminator(tag)]
+    known = {**shapes, **({ANY: Annotated[shapes[ANY], Says(lambda: NEVER)]} if ANY in shapes else {})}
+    return Annotated[reduce(or_, (Annotated[shape, Tag(name)] for name, shape in known.items())), Discriminator(tag)]
 
 
 ElementEntry = Annotated[
     Annotated[Range, Tag("<range>")]
-    | Annotated[Amount, PlainValidator(amount), Tag("<fixed>")]
-    | Annotated[KindEntry, PlainValidator(kind_entry), Tag("<kind>")],
+    | Annotated[Amount, AMOUNT, Tag("<fixed>")]
+    | Annotated[KindEntry, checked(kind_entry, kind_schema), Tag("<kind>")],
     Discriminator(lambda value: "<kind>" if names_kind(value) else "<range>" if isinstance(value, dict) else "<fixed>"),
 ]
 
@@ -223,17 +239,21 @@ def layouts() -> tuple[Any, Shapes]:
             return "<mounted>"
         return max(tables, key=lambda name: len(set(entry) & set(tables[name].model_fields)))
 
-    strut = Annotated[str, PlainValidator(expression)]
+    strut = Annotated[str, EXPRESSION]
     each: Any = one_of_shapes({**tables, "<strut>": strut, "<mounted>": dict[str, strut]}, tag)
     every: Any = dict.__class_getitem__((LayoutName, each))
     example = 'a section [layouts] with lines such as S1 = "k | c"'
-    entry = Annotated[every, Field(min_length=1, examples=[example])]
+    entry = Annotated[every, Field(min_length=1, examples=[example], description="How elements are joined.")]
     return entry, {("layouts", "*", name): shape for name, shape in tables.items()}
 
 
 def _mounts_shape(mounts: tuple[str, ...], needed: tuple[str, ...]) -> type[Shape]:
-    text = Annotated[str, PlainValidator(expression)]
+    text = Annotated[str, EXPRESSION]
     keys: dict[str, Any] = {
-        mount: (text, Field(... if mount in needed else None, examples=[f'{mount} = "k | c"'])) for mount in mounts
+        mount: (text, Field(... if mount in needed else None, **_of_mount(mount))) for mount in mounts
     }
     return create_model(f"Mounts {' '.join(mounts)}", __base__=Shape, **keys)
+
+
+def _of_mount(mount: str) -> dict[str, Any]:
+    return {"description": f"The network at {mount}.", "examples": [f'{mount} = "k | c"']}

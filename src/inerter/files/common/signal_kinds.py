@@ -17,6 +17,7 @@ from inerter.signals.records import held_noise, recorded
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
 from inerter.signals.transients import bump, chirp, step
+from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
 
 NEEDED: Any = ...
@@ -138,7 +139,11 @@ _OWN = (
         given=("speed", "unit"),
     ),
     SignalKind(
-        "profile", lambda file, speed: profile(path=file, speed=speed), {"file": _FILE}, needs=("speed",), of_roads=True
+        "profile",
+        lambda file, track, speed: profile(path=file, track=track, speed=speed),
+        {"file": _FILE, "track": SignalKey("", 'track = "left"', "", _plain(one_of("a track", TRACKS)))},
+        needs=("speed",),
+        of_roads=True,
     ),
 )
 SIGNALS: Rows[SignalKind] = Rows("kind of signal", "key", ("make", "keys"), _OWN)

@@ -89,17 +89,22 @@ def _syntax_problem(message: str, data: bytes) -> Problem:
 
 def as_toml(tables: Mapping[str, Any]) -> str:
     """TOML text: keys that hold a value, then a section for each dictionary."""
-    lines = [f"{key} = {_toml(value)}" for key, value in tables.items() if not isinstance(value, dict)]
+    lines = [as_line(key, value) for key, value in tables.items() if not isinstance(value, dict)]
     for section, table in tables.items():
         if isinstance(table, dict):
-            lines += ["", f"[{section}]", *(f"{_key(key)} = {_toml(value)}" for key, value in table.items())]
+            lines += ["", f"[{section}]", *(as_line(key, value) for key, value in table.items())]
     return "\n".join(lines) + "\n"
+
+
+def as_line(key: str, value: object) -> str:
+    """A key and its value as TOML."""
+    return f"{_key(key)} = {_toml(value)}"
 
 
 def _toml(value: object) -> str:
     match value:
         case dict():
-            return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+            return "{ " + ", ".join(as_line(key, item) for key, item in value.items()) + " }"
         case list():
             return "[" + ", ".join(_toml(item) for item in value) + "]"
         case bool():

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, PlainValidator
+from pydantic import AfterValidator, Field
 
 from inerter.checks import is_number
 from inerter.errors import UnitError
-from inerter.files.common.entries import expression, not_negative, one_of, positive, text
+from inerter.files.common.entries import EXPRESSION, TEXT, not_negative, positive, word
 from inerter.files.common.problem import EntryError
+from inerter.files.common.schema import checked, quantity_schema
 from inerter.files.common.tables import Shape, Shapes
 from inerter.networks.elements import NAME
 from inerter.units import parse_one_of, parse_quantity, shown
@@ -57,81 +58,130 @@ def part_name(name: Any) -> str:
     return str(name)
 
 
+LEVER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, quantity_schema("m")]}
 PartName = Annotated[str, AfterValidator(part_name)]
-Port = dict[PartName, Annotated[float, PlainValidator(lever)]]
-NetworkText = Annotated[str | None, PlainValidator(expression)]
+Port = dict[PartName, Annotated[float, checked(lever, lambda: LEVER_SCHEMA)]]
+NetworkText = Annotated[str | None, EXPRESSION]
 
 
 class StrutTable(Shape):
     """Between two ports; without a lower one it is on the ground."""
 
-    upper: Port = Field(min_length=1, examples=['upper = { body = 1, pitch = "1.2 m" }'])
-    lower: Port = Field(default_factory=dict, examples=["lower = { wheel = 1 }"])
-    network: NetworkText = Field(default=None, examples=['network = "k | c"'])
+    upper: Port = Field(
+        min_length=1,
+        description="The port at its upper end: coordinates with their levers.",
+        examples=['upper = { body = 1, pitch = "1.2 m" }'],
+    )
+    lower: Port = Field(
+        default_factory=dict,
+        description="The port at its lower end; the ground if left out.",
+        examples=["lower = { wheel = 1 }"],
+    )
+    network: NetworkText = Field(
+        default=None, description="A network that all layouts have there.", examples=['network = "k | c"']
+    )
 
 
 class TyreTable(Shape):
     """Between a port and a road."""
 
-    port: Port = Field(min_length=1, examples=["port = { wheel = 1 }"])
-    road: Annotated[str, PlainValidator(text)] = Field(examples=['road = "road"'])
-    network: NetworkText = Field(default=None, examples=['network = "kt"'])
+    port: Port = Field(
+        min_length=1, description="What it carries: coordinates with their levers.", examples=["port = { wheel = 1 }"]
+    )
+    road: Annotated[str, TEXT] = Field(description="The road below it.", examples=['road = "road"'])
+    network: NetworkText = Field(
+        default=None, description="A network that all layouts have there.", examples=['network = "kt"']
+    )
 
 
 class RoadPlace(Shape):
     """Where the mechanism meets the road."""
 
-    distance: Annotated[float, not_negative("m")] = Field(default=0.0, examples=['distance = "2.5 m"'])
-    track: Annotated[str, PlainValidator(one_of("a track", TRACKS))] = Field(default="", examples=['track = "left"'])
+    distance: Annotated[float, not_negative("m")] = Field(
+        default=0.0, description="Behind the first axle.", examples=['distance = "2.5 m"']
+    )
+    track: Annotated[str, word("a track", TRACKS)] = Field(
+        default="", description="Left or right, where there are two.", examples=['track = "left"']
+    )
 
 
 class MeasureTable(Shape):
     """Which outputs answer the questions of indices."""
 
-    comfort: dict[PartName, Annotated[float, PlainValidator(lever)]] = Field(
-        default_factory=dict, examples=["comfort = { body_acceleration = 1 }"]
+    comfort: dict[PartName, Annotated[float, checked(lever, lambda: LEVER_SCHEMA)]] = Field(
+        default_factory=dict,
+        description="Outputs that ride comfort is about, with their weights.",
+        examples=["comfort = { body_acceleration = 1 }"],
     )
-    tyre_load: dict[PartName, Annotated[float, PlainValidator(lever)]] | None = Field(
-        default=None, examples=["tyre_load = { wheel_load = 1 }"]
+    tyre_load: dict[PartName, Annotated[float, checked(lever, lambda: LEVER_SCHEMA)]] | None = Field(
+        default=None,
+        description="Outputs that tyre load is about, with their weights.",
+        examples=["tyre_load = { wheel_load = 1 }"],
     )
-    load_input: Annotated[str | None, PlainValidator(text)] = None
-    load_output: Annotated[str | None, PlainValidator(text)] = None
+    load_input: Annotated[str | None, TEXT] = Field(
+        default=None, description="The force of load carrying.", examples=['load_input = "load"']
+    )
+    load_output: Annotated[str | None, TEXT] = Field(
+        default=None, description="What it moves.", examples=['load_output = "body_displacement"']
+    )
 
 
 class SeatTable(Shape):
     """A seat with its occupant, on any vehicle."""
 
-    mass: Annotated[float, positive("kg")] = Field(examples=['mass = "60 kg"'])
-    network: Annotated[str, PlainValidator(expression)] = Field(examples=['network = "ks | cs"'])
-    place: Port | None = Field(default=None, min_length=1, examples=['place = { sprung = 1, pitch = "0.3 m" }'])
+    mass: Annotated[float, positive("kg")] = Field(
+        description="The occupant, with what moves along of the seat.", examples=['mass = "60 kg"']
+    )
+    network: Annotated[str, EXPRESSION] = Field(
+        description="Between floor and occupant.", examples=['network = "ks | cs"']
+    )
+    place: Port | None = Field(
+        default=None,
+        min_length=1,
+        description="Where it stands: coordinates with their levers.",
+        examples=['place = { sprung = 1, pitch = "0.3 m" }'],
+    )
 
 
 class MechanismTable(Shape):
     """A vehicle of masses, levers, networks and roads."""
 
-    model: Literal["mechanism"]
-    coordinates: dict[PartName, Annotated[float, PlainValidator(inertia)]] = Field(
-        min_length=1, examples=['a section [vehicle.coordinates] with lines such as body = "250 kg"']
+    model: Literal["mechanism"] = Field(description="The kind of vehicle.", examples=['model = "mechanism"'])
+    coordinates: dict[
+        PartName, Annotated[float, checked(inertia, lambda: quantity_schema("kg", "kg m^2", least="positive"))]
+    ] = Field(
+        min_length=1,
+        description="What moves: each with its mass, or its moment of inertia.",
+        examples=['a section [vehicle.coordinates] with lines such as body = "250 kg"'],
     )
     struts: dict[PartName, StrutTable] = Field(
         default_factory=dict,
+        description="What is between two ports.",
         examples=["a section [vehicle.struts] with lines such as s = { upper = { body = 1 }, lower = { wheel = 1 } }"],
     )
     tyres: dict[PartName, TyreTable] = Field(
         default_factory=dict,
+        description="What is between a port and a road.",
         examples=['a section [vehicle.tyres] with lines such as tyre = { port = { wheel = 1 }, road = "road" }'],
     )
     roads: dict[PartName, RoadPlace] = Field(
-        default_factory=dict, examples=['a section [vehicle.roads] with lines such as rear = { distance = "2.5 m" }']
+        default_factory=dict,
+        description="Where the roads are met.",
+        examples=['a section [vehicle.roads] with lines such as rear = { distance = "2.5 m" }'],
     )
     forces: dict[PartName, Port] = Field(
-        default_factory=dict, examples=["a section [vehicle.forces] with lines such as load = { body = 1 }"]
+        default_factory=dict,
+        description="External forces and moments, by where they act.",
+        examples=["a section [vehicle.forces] with lines such as load = { body = 1 }"],
     )
     measures: MeasureTable = Field(
         default_factory=MeasureTable,
+        description="Which outputs answer which index.",
         examples=["a section [vehicle.measures] with comfort = { body_acceleration = 1 }"],
     )
-    seat: SeatTable | None = Field(default=None, examples=['a section [vehicle.seat] with mass = "60 kg"'])
+    seat: SeatTable | None = Field(
+        default=None, description="A seat with its occupant.", examples=['a section [vehicle.seat] with mass = "60 kg"']
+    )
 
 
 def mechanism_shapes() -> Shapes:

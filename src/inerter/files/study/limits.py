@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Never
 
-from pydantic import Discriminator, Field, PlainValidator, Tag
+from pydantic import Discriminator, Field, Tag
 
 from inerter.errors import InerterError
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.schema import NEVER, OrDeeper, checked, quantity_schema
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
 from inerter.indices.names import index_names
@@ -60,15 +61,15 @@ def _limit_text(value: Any) -> str | float:
     return quantity_text(value)
 
 
-_Text = Annotated[str | float | None, PlainValidator(_limit_text)]
+_Text = Annotated[str | float | None, checked(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})]
 
 
 class LimitShape(Shape):
     """The sides on which an index is limited."""
 
-    at_most: _Text = Field(default=None, examples=['at_most = "3 mm"'])
-    at_least: _Text = Field(default=None, examples=['at_least = "1 mm"'])
-    equal: _Text = Field(default=None, examples=['equal = "120 kN/m"'])
+    at_most: _Text = Field(default=None, description="The most that it may be.", examples=['at_most = "3 mm"'])
+    at_least: _Text = Field(default=None, description="The least that it may be.", examples=['at_least = "1 mm"'])
+    equal: _Text = Field(default=None, description="What it has to be.", examples=['equal = "120 kN/m"'])
 
 
 def _refused(entry: Any) -> Never:
@@ -76,8 +77,9 @@ def _refused(entry: Any) -> Never:
 
 
 LimitEntry = Annotated[
-    Annotated[LimitShape, Tag("<limit>")] | Annotated[Any, PlainValidator(_refused), Tag("<no table>")],
+    Annotated[LimitShape, Tag("<limit>")] | Annotated[Any, checked(_refused, lambda: NEVER), Tag("<no table>")],
     Discriminator(lambda entry: "<limit>" if isinstance(entry, dict) else "<no table>"),
+    OrDeeper(),
 ]
 
 

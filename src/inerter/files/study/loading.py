@@ -22,6 +22,7 @@ from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, shapes
 from inerter.files.study.study import POINTS, Study, elements_used
 from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.files.study.tolerances import tolerance_of
+from inerter.files.study.written import texts_of
 from inerter.indices.registry import index_settings, is_on_road
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
@@ -48,7 +49,7 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     Raises `StudyError` as `load_study` does.
     """
     shape = shape_of(tables, path, *shapes())
-    study = _resolve(path, shape)
+    study = replace(_resolve(path, shape), texts=texts_of(tables))
     problems = [
         *elements_of(shape.elements)[1],
         *vehicle_problems(study.model, study.vehicle),

@@ -80,7 +80,8 @@ def index_shapes() -> tuple[Any, Shapes]:
         keys = {**if_given(fields_of(INDICES[symbol])), **of_choices(index_choices(symbol))}
         if _KIND in keys:
             raise RowError(f"{symbol} has a setting {_KIND!r}, a key that [indices.NAME] has already. Choose another.")
-        shapes[f"<{name}>"] = create_model(f"Index {name}", __base__=Shape, **{**keys, _KIND: (Literal[name], ...)})
+        what = Field(description="Which index it is.", examples=[f'{_KIND} = "{name}"'])
+        shapes[f"<{name}>"] = create_model(f"Index {name}", __base__=Shape, **{_KIND: (Literal[name], what), **keys})
     shapes[ANY] = _AnyIndex
 
     def tag(entry: Any) -> str:

@@ -21,9 +21,10 @@ from inerter.files.study.cases import Case, Outcome, lost_case, portable, run_ca
 from inerter.files.study.checking import check_study, kernels
 from inerter.files.study.fronts import FrontCase, FrontOutcome, front_cases, fronts_csv, with_fronts
 from inerter.files.study.results import Gathered, Pending
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.files.study.tolerances import ToleranceCase, ToleranceOutcome, tolerance_cases, tolerances_csv
+from inerter.files.study.written import write_resolved
 from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
 from inerter.work.origin import versions

@@ -19,17 +19,19 @@ from inerter.errors import RowError
 from inerter.fields import fields_of
 from inerter.files.common.entries import (
     MOST_POINTS,
+    SHARE,
+    SWEEP_LIST,
+    SWEPT,
+    TEXT,
     one_of,
     positive_number,
-    quantity_list,
-    quantity_text,
-    share,
     some_names,
     some_of,
     some_of_file,
-    text,
     whole,
+    word,
 )
+from inerter.files.common.schema import OrDeeper, checked, words_schema
 from inerter.files.common.shape import (
     ROAD,
     ElementEntry,
@@ -43,7 +45,7 @@ from inerter.files.common.shape import (
     vehicle_shapes,
 )
 from inerter.files.common.tables import Shape, Shapes
-from inerter.files.common.ties import TieEntry, is_tie, tie_entry
+from inerter.files.common.ties import TieEntry, is_tie, tie_entry, tie_schema
 from inerter.files.common.vehicles import models
 from inerter.files.study.conditions import OVER
 from inerter.files.study.limits import LimitEntry, LimitShape
@@ -61,21 +63,24 @@ _MOST_OF_FRONT = 1000
 SPACINGS = ("linear", "log")
 
 
-SweptText = Annotated[str, PlainValidator(quantity_text)]
+SweptText = Annotated[str, SWEPT]
 
 
 class SweepRange(Shape):
     """Values of a number from one end to the other."""
 
-    lower: SweptText = Field(alias="from", examples=['from = "10 kN/m"'])
-    upper: SweptText = Field(alias="to", examples=['to = "300 kN/m"'])
-    points: Annotated[int, whole(2, MOST_POINTS)] = Field(examples=["points = 30"])
-    spacing: Annotated[str, PlainValidator(one_of("a spacing", SPACINGS))] = "linear"
+    lower: SweptText = Field(alias="from", description="The first value.", examples=['from = "10 kN/m"'])
+    upper: SweptText = Field(alias="to", description="The last value.", examples=['to = "300 kN/m"'])
+    points: Annotated[int, whole(2, MOST_POINTS)] = Field(description="How many values.", examples=["points = 30"])
+    spacing: Annotated[str, word("a spacing", SPACINGS)] = Field(
+        default="linear", description="Equal steps, or equal ratios.", examples=['spacing = "log"']
+    )
 
 
 SweepEntry = Annotated[
-    Annotated[SweepRange, Tag("<range>")] | Annotated[tuple[str, ...], PlainValidator(quantity_list), Tag("<list>")],
+    Annotated[SweepRange, Tag("<range>")] | Annotated[tuple[str, ...], SWEEP_LIST, Tag("<list>")],
     Discriminator(lambda value: "<range>" if isinstance(value, dict) else "<list>"),
+    OrDeeper(),
 ]
 
 
@@ -87,16 +92,18 @@ class ConditionTable(Shape):
     """Numbers by their places, and how much of the time they are so."""
 
     model_config = ConfigDict(extra="allow")
-    share: Annotated[float, PlainValidator(positive_number)] = Field(default=1.0, examples=["share = 0.3"])
-    name: Annotated[str, PlainValidator(text)] = Field(default="", examples=['name = "loaded"'])
+    share: Annotated[float, checked(positive_number, lambda: {"type": "number", "exclusiveMinimum": 0})] = Field(
+        default=1.0, description="How much of the time it is so, beside the others.", examples=["share = 0.3"]
+    )
+    name: Annotated[str, TEXT] = Field(default="", description="What it is called.", examples=['name = "loaded"'])
 
 
 ConditionShape = Annotated[ConditionTable, BeforeValidator(_by_place)]
-Over = Annotated[str | None, PlainValidator(one_of("a way to take an index over conditions", OVER))]
+Over = Annotated[str | None, word("a way to take an index over conditions", OVER)]
 
 
 def _car(value: Any) -> str:
-    cars = tuple(_cars())
+    cars = tuple(judged_models())
     if isinstance(value, str) and value in VEHICLES and value not in cars:
         raise ValueError(
             f"Got {shown(value)}, which has no road to be judged on; expected {' or '.join(map(shown, cars))}. "
@@ -105,7 +112,7 @@ def _car(value: Any) -> str:
     return one_of("a vehicle model", cars)(value)
 
 
-def _cars() -> list[str]:
+def judged_models() -> list[str]:
     """The models that are judged, on a road or under a force."""
     return [model for model in models() if model not in VEHICLES or VEHICLES[model].moved != "displacement"]
 
@@ -128,6 +135,8 @@ def _search(value: Any) -> str:
 class Settings(Shape):
     """What is asked of the layouts, and how it is answered; beside these there are the settings of indices."""
 
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("indices"))  # of a trade-off
+
     @model_validator(mode="before")
     @classmethod
     def _of_a_trade_off(cls, table: Any) -> Any:
@@ -136,33 +145,81 @@ class Settings(Shape):
         return {**table, "indices": table["trade_off"]} if alone else table
 
     indices: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = Field(
-        examples=['indices = ["J1", "J3", "J5"]']
+        description="What is asked of each layout.", examples=['indices = ["J1", "J3", "J5"]']
     )
-    conventions: Annotated[str, PlainValidator(one_of("a set of conventions", CONVENTIONS))] = "exact"
-    optimise: Annotated[str | None, PlainValidator(_search)] = None
-    evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = (DEFAULT,)
-    baseline: Annotated[str | None, PlainValidator(text)] = None
+    conventions: Annotated[str, word("a set of conventions", CONVENTIONS)] = Field(
+        default="exact",
+        description="How numbers are made: exactly, or as in the paper of 2008.",
+        examples=['conventions = "paper2008"'],
+    )
+    optimise: Annotated[str | None, checked(_search, lambda: words_schema(methods_that(searches)))] = Field(
+        default=None,
+        description="The method whose value is made smallest; needed if anything is free.",
+        examples=['optimise = "norm"'],
+    )
+    evaluate: Annotated[tuple[str, ...], some_of("a method", METHODS)] = Field(
+        default=(DEFAULT,),
+        description="The methods that judge the designs; tables and figures are about the first.",
+        examples=['evaluate = ["norm", "expected-value"]'],
+    )
+    baseline: Annotated[str | None, TEXT] = Field(
+        default=None,
+        description="The layout that the others are compared with; the first if left out.",
+        examples=['baseline = "S1"'],
+    )
     sweep: Annotated[dict[str, SweepEntry], BeforeValidator(by_place)] | None = Field(
-        default=None, examples=['sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }']
+        default=None,
+        description="Numbers of this file, by their places, that take these values in turn; two make a map.",
+        examples=['sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }'],
     )
-    seed: Annotated[int, whole(0, 2**63 - 1)] = 0
-    realisations: Annotated[int | None, whole(2, _MOST_ROADS)] = None
-    relative_error: Annotated[float | None, PlainValidator(share)] = None
+    seed: Annotated[int, whole(0, 2**63 - 1)] = Field(
+        default=0, description="Of the search and of the random roads.", examples=["seed = 1"]
+    )
+    realisations: Annotated[int | None, whole(2, _MOST_ROADS)] = Field(
+        default=None,
+        description="Random roads of the methods that average; their own choice if left out.",
+        examples=["realisations = 20"],
+    )
+    relative_error: Annotated[float | None, SHARE] = Field(
+        default=None,
+        description="As many roads as make the standard error that part of the value.",
+        examples=["relative_error = 0.002"],
+    )
+    budgets: Annotated[tuple[str, ...], some_names("f")] = Field(
+        default=(),
+        description="Elements: for which values of each is a layout better than the baseline?",
+        examples=['budgets = ["f"]'],
+    )
     subject_to: Annotated[dict[str, LimitEntry], BeforeValidator(by_place)] | None = Field(
-        default=None, examples=['subject_to = { tyre-load = { at_most = "600 N" } }']
+        default=None,
+        description="Limits on other indices: what is best is the best that keeps them.",
+        examples=['subject_to = { tyre-load = { at_most = "600 N" } }'],
     )
-    conditions: Over = None
-    trade_off: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = ()
-    points: Annotated[int | None, whole(3, _MOST_OF_FRONT)] = None
+    conditions: Over = Field(
+        default=None,
+        description="What an index is over the [[conditions]].",
+        examples=['conditions = "worst"'],
+    )
+    trade_off: Annotated[tuple[str, ...], some_of_file("an index", indices_of)] = Field(
+        default=(), description="Two indices whose front is sought.", examples=['trade_off = ["J1", "J3"]']
+    )
+    points: Annotated[int | None, whole(3, _MOST_OF_FRONT)] = Field(
+        default=None, description="How many designs of a front.", examples=["points = 25"]
+    )
     tolerance: Annotated[dict[str, Any], BeforeValidator(_by_place)] | None = Field(
-        default=None, examples=['tolerance = { c = "10 %", b = "5 %" }']
+        default=None,
+        description="By what part values scatter: what the index then is, and what matters.",
+        examples=['tolerance = { c = "10 %", b = "5 %" }'],
     )
-    quantile: Annotated[float | None, PlainValidator(share)] = None
-    budgets: Annotated[tuple[str, ...], some_names("f")] = ()
+    quantile: Annotated[float | None, SHARE] = Field(
+        default=None,
+        description="The part of all scattered designs that is to be at least as good.",
+        examples=["quantile = 0.95"],
+    )
 
 
 _AnyElement = Annotated[
-    Annotated[ElementEntry, Tag("<own>")] | Annotated[TieEntry, PlainValidator(tie_entry), Tag("<tied>")],
+    Annotated[ElementEntry, Tag("<own>")] | Annotated[TieEntry, checked(tie_entry, tie_schema), Tag("<tied>")],
     Discriminator(lambda value: "<tied>" if is_tie(value) else "<own>"),
 ]
 
@@ -170,15 +227,25 @@ _AnyElement = Annotated[
 class StudyFile(WithVehicle):
     """The whole file, but for what is made of quantities and rows."""
 
-    title: Annotated[str | None, PlainValidator(text)] = None
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("road"))  # where it needs none
+    title: Annotated[str | None, TEXT] = Field(
+        default=None, description="A line for reports; the name of the file if left out.", examples=['title = "My car"']
+    )
     vehicle: Any
     road: Any
     elements: dict[ElementName, _AnyElement] = Field(
-        min_length=1, examples=['a section [elements] with lines such as k = "120 kN/m"']
+        min_length=1,
+        description="What struts are made of, by names of your own. The unit tells the element: N/m spring, "
+        "N s/m damper, kg inerter, N dry friction, m gap. A value is fixed, or free between two bounds.",
+        examples=['a section [elements] with lines such as k = "120 kN/m"'],
     )
     layouts: Any
     indices: Any
-    conditions: list[ConditionShape] = Field(default=[], examples=['[[conditions]] with "road.speed" = "15 m/s"'])
+    conditions: list[ConditionShape] = Field(
+        default=[],
+        description="Numbers of this file, by their places, as they are in one operating condition.",
+        examples=['[[conditions]] with "road.speed" = "15 m/s"'],
+    )
     study: Any
 
 
@@ -194,20 +261,39 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     settings = create_model("Settings", __base__=Settings, **if_given(index_settings().values()))
     method, own = _method_shapes()
     index, kinds = index_shapes()
-    vehicle, vehicles = vehicle_shapes(_cars(), AnyCar)
-    *others, last = map(shown, _cars())
+    vehicle, vehicles = vehicle_shapes(judged_models(), AnyCar)
+    *others, last = map(shown, judged_models())
     cars = f"{', '.join(others)} or {last}"
-    layout, tables = layouts()
     some_road: Any = RoadShape | None
-    section: dict[str, Any] = {"methods": (method, Field(default_factory=method))} if own else {}
+    layout, tables = layouts()
+    section: dict[str, Any] = (
+        {"methods": (method, Field(default_factory=method, description="Settings of methods, a table for each."))}
+        if own
+        else {}
+    )
     file = create_model(
         "StudyFile",
         __base__=StudyFile,
-        vehicle=(vehicle, Field(examples=[f"a section [vehicle] with model = {cars}"])),
-        road=(some_road, Field(examples=[ROAD_EXAMPLE])),
-        layouts=(layout, ...),
-        indices=(index, Field(default_factory=dict)),
-        study=(settings, Field(examples=['a section [study] with indices = ["J1", "J3", "J5"]'])),
+        vehicle=(
+            vehicle,
+            Field(
+                description="What the struts are mounted in: its model decides which other keys there are.",
+                examples=[f"a section [vehicle] with model = {cars}"],
+            ),
+        ),
+        road=(
+            some_road,
+            Field(description="What the vehicle drives on, and how fast.", examples=[ROAD_EXAMPLE]),
+        ),
+        layouts=(layout, Field(description="How elements are joined: | side by side, - end to end.")),
+        indices=(index, Field(default_factory=dict, description="Indices of your own: a kind, with its settings.")),
+        study=(
+            settings,
+            Field(
+                description="What is asked of the layouts, and how it is answered.",
+                examples=['a section [study] with indices = ["J1", "J3", "J5"]'],
+            ),
+        ),
         **section,
     )
     return file, {

@@ -13,7 +13,6 @@ from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
-from inerter.files.common.toml import as_toml
 from inerter.files.common.vehicles import in_si, vehicle_entry
 from inerter.files.study.conditions import OVER, StudyCondition, condition_of, what_of
 from inerter.files.study.limits import StudyLimit
@@ -75,6 +74,7 @@ class Study:
     limits: tuple[StudyLimit, ...] = ()  # which optima keep
     conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
     over: str = OVER[0]  # how
+    texts: tuple[str, ...] = field(default=(), compare=False, repr=False)  # of the file, which may be quantities
     own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
     trade_off: tuple[str, ...] = ()  # two or three indices, whose front of each layout is asked for
@@ -253,8 +253,3 @@ def _names(expression: str) -> tuple[str, ...]:
         return names(expression)
     except NetworkError:  # reported with its layout
         return ()
-
-
-def write_resolved(study: Study) -> str:
-    """`study.resolved()` as TOML. `load_study` reads an equal study from it, to the last bit of every value."""
-    return as_toml(study.resolved())

@@ -1,0 +1,124 @@
+"""What `inerter schema` and `inerter explain` do, in calls of the library: only what it needs is loaded."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from inspect import getdoc
+from textwrap import wrap
+from typing import Any
+
+from inerter.errors import StudyError
+from inerter.files.common.keys import ANY_NAME, Key, below, found, keys_of
+from inerter.files.common.kinds import kind_with
+from inerter.files.common.suggest import nearest
+from inerter.files.common.toml import as_line
+from inerter.files.study.schema import study_schema
+from inerter.indices.names import index_names
+from inerter.indices.registry import INDICES
+from inerter.methods.registry import METHODS
+from inerter.networks.elements.registry import ELEMENTS
+from inerter.units import shown
+from inerter.vehicle.registry import VEHICLES
+
+_WIDTH = 80
+_ROWS: dict[str, Any] = {"vehicle": VEHICLES, "index": INDICES, "method": METHODS, "element": ELEMENTS}
+_PLACE, _UNIT = 32, 11  # columns of the table of keys
+
+
+def schema() -> int:
+    """Print the JSON Schema of study files; returns the exit code."""
+    print(json.dumps(study_schema(), indent=2, ensure_ascii=False))
+    return 0
+
+
+def explain(wanted: str | None) -> int:
+    """Tell a key of study files, or all; returns the exit code.
+
+    Raises `StudyError` for one that there is not.
+    """
+    keys = keys_of(study_schema())
+    if wanted is None:
+        print("\n".join(_table(keys)))
+        return 0
+    told = [list(_told(key, keys)) for key in found(keys, wanted)]
+    told += [list(_row(what, wanted, rows[wanted])) for what, rows in _words().items() if wanted in rows]
+    if not told:
+        raise StudyError(_unknown(wanted, keys))
+    print("\n\n".join("\n".join(lines) for lines in told))
+    return 0
+
+
+def _words() -> dict[str, Mapping[str, Any]]:
+    """What keys may be called, by what it is: the keys of rows, and indices by their names too."""
+    return {**_ROWS, "index": {name: INDICES[symbol] for name, symbol in index_names().items()}}
+
+
+def _unknown(wanted: str, keys: Sequence[Key]) -> str:
+    other = kind_with(wanted.partition(".")[0])
+    if other is not None:
+        return f"{shown(wanted)} is a key of {other.plural}, for: inerter {other.command}."
+    known = (
+        [key.place for key in keys] + [key.name for key in keys] + [word for rows in _words().values() for word in rows]
+    )
+    return f"There is no key {shown(wanted)} in study files.{nearest(wanted, known)} All keys: inerter explain"
+
+
+def _told(key: Key, keys: Sequence[Key]) -> Iterator[str]:
+    """A key, and those that it holds if it is a section."""
+    where = f"{key.place}, of a {key.of}" if key.of else key.place
+    yield from _wrapped(f"{where}: {key.sentence}", "")
+    if key.unit:
+        others = f", or another of its kind such as {' or '.join(key.other_units[:2])}" if key.other_units else ""
+        yield from _wrapped(f"unit     {key.unit}{others}")
+    if key.words:
+        yield from _wrapped(f"one of   {', '.join(key.words)}")
+    if key.default not in (None, []):
+        yield from _wrapped(f"default  {as_line(key.name, key.default)}")
+    elif ANY_NAME not in key.place:
+        yield from _wrapped("default  none: it has to be given" if key.needed else "default  left out")
+    if key.example is not None:
+        name = "k" if key.name == ANY_NAME else key.name
+        section = key.place.rpartition(".")[0]
+        place = f"    in [{section}]" if section and ANY_NAME not in section else ""
+        yield from _wrapped(f"example  {as_line(name, key.example)}{place}")
+    if key.section and (held := below(keys, key)):
+        yield ""
+        yield from _table(held)
+
+
+def _row(what: str, name: str, row: Any) -> Iterator[str]:
+    """A word that a key may be."""
+    sentence = " ".join((getdoc(row) or "").partition("\n\n")[0].split())
+    yield from _wrapped(f"{name}, {'an' if what[0] in 'aeiou' else 'a'} {what}: {sentence}", "")
+
+
+def _table(keys: Sequence[Key]) -> Iterator[str]:
+    yield f"{'key':<{_PLACE}}  {'unit':<{_UNIT}}meaning"
+    indent = " " * (_PLACE + 2 + _UNIT)
+    for place in dict.fromkeys(key.place for key in keys):
+        alike = [key for key in keys if key.place == place]
+        sentences = dict.fromkeys(key.sentence for key in alike)
+        text = " ".join(sentences) if len(sentences) == 1 else _by_model(alike)
+        units = dict.fromkeys(key.unit for key in alike if key.unit)
+        lines = wrap(text, _WIDTH - len(indent), break_on_hyphens=False)
+        yield f"{place:<{_PLACE}}  {' or '.join(units):<{_UNIT}}{lines[0]}"
+        yield from (indent + line for line in lines[1:])
+
+
+def _by_model(keys: Sequence[Key]) -> str:
+    """The sentences of a key that several models have, each with its own."""
+    return " ".join(f"{key.of}: {key.sentence}" for key in keys)
+
+
+def _wrapped(text: str, indent: str = "  ") -> list[str]:
+    further = " " * 11 if indent else "  "
+    return wrap(
+        text,
+        _WIDTH,
+        initial_indent=indent,
+        subsequent_indent=further,
+        drop_whitespace=True,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

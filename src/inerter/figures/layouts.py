@@ -1,0 +1,37 @@
+"""The networks of the layouts of a study, each layout drawn by itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from inerter.errors import NetworkError
+from inerter.figures.networks import draw_networks
+from inerter.files.study.study import Study
+from inerter.networks.parser import network
+
+
+def layout_figure(layout: str) -> str:
+    """The name of the files of its figure."""
+    return f"layout-{layout}"
+
+
+def draw_layouts(study: Study, folder: Path) -> list[Path]:
+    """Write the networks of each layout into `folder`, as SVG and as PNG; returns the files.
+
+    Mounts with the same network share one drawing.
+    """
+    files = []
+    for name, layout in study.layouts.items():
+        mounts: dict[str, list[str]] = {}
+        for mount, text in layout.struts.items():
+            mounts.setdefault(text, []).append(mount)
+        alone = len(mounts) == 1
+        try:
+            networks = {
+                "" if alone else ", ".join(at).replace("_", " "): network(text, **study.elements)
+                for text, at in mounts.items()
+            }
+        except NetworkError:  # a distribution's element that cannot be mounted by itself
+            continue
+        files += draw_networks(networks, folder, layout_figure(name))
+    return files

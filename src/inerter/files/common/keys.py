@@ -1,0 +1,123 @@
+"""The keys of a kind of file, each with what its JSON Schema says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from inerter.files.common.schema import UNIT, USUAL
+
+ANY_NAME = "NAME"  # stands in a place for a name of the author's own
+_DECIDES = ("model", "kind")  # keys whose value decides which others there are
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key, by the path to it with points between; empty or None is what it does not have."""
+
+    place: str
+    sentence: str = ""
+    unit: str = ""
+    words: tuple[str, ...] = ()  # all that it may be
+    example: Any = None
+    default: Any = None
+    needed: bool = False
+    section: bool = False  # whether it holds other keys
+    of: str = ""  # the model or kind that has it, where not all have
+
+    @property
+    def name(self) -> str:
+        """The last part of its place."""
+        return self.place.rpartition(".")[2]
+
+    @property
+    def other_units(self) -> tuple[str, ...]:
+        """Units in which it is often written, but its own."""
+        return tuple(unit for unit in USUAL.get(self.unit, ()) if unit != self.unit)
+
+
+def keys_of(schema: Mapping[str, Any]) -> list[Key]:
+    """All keys below a JSON Schema of a file that it has a sentence for, sections before what they hold."""
+    return [key for key in _Walk(schema.get("$defs", {})).below(schema, "") if key.sentence]
+
+
+def below(keys: Iterable[Key], section: Key) -> list[Key]:
+    """The keys that a section holds."""
+    return [key for key in keys if key.place.startswith(f"{section.place}.")]
+
+
+def found(keys: Iterable[Key], wanted: str) -> list[Key]:
+    """The keys that `wanted` may mean: a place, the end of one, or a place with a name of the author's own in it."""
+    parts = wanted.strip().strip("[]").split(".")
+    return _merged(key for key in keys if _ends(key, parts))
+
+
+def _merged(keys: Iterable[Key]) -> list[Key]:
+    """Keys of several models as one where they say the same."""
+    alike: dict[tuple[str, ...], list[Key]] = {}
+    for key in keys:
+        alike.setdefault((key.place, key.sentence, key.unit), []).append(key)
+    return [
+        replace(
+            same[0], of=" or ".join(key.of for key in same), words=tuple(word for key in same for word in key.words)
+        )
+        for same in alike.values()
+    ]
+
+
+def _ends(key: Key, parts: list[str]) -> bool:
+    own = key.place.split(".")[-len(parts) :]
+    named = any(one != ANY_NAME for one in own)
+    return len(own) == len(parts) and named and all(a in (ANY_NAME, b) for a, b in zip(own, parts, strict=True))
+
+
+@dataclass(frozen=True)
+class _Walk:
+    shapes: Mapping[str, Any] = field(repr=False)
+
+    def below(self, schema: Mapping[str, Any], place: str, of: str = "") -> Iterator[Key]:
+        """The keys that a table has."""
+        for one in self.alternatives(schema):
+            own = _decided(one) or of
+            needed = one.get("required", ())
+            for name, key in one.get("properties", {}).items():
+                yield from self.key(key, f"{place}.{name}" if place else name, name in needed, own)
+            if isinstance(more := one.get("additionalProperties"), dict):
+                yield from self.key(more, f"{place}.{ANY_NAME}", False, own)
+
+    def key(self, schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterator[Key]:
+        """A key, and those that it holds."""
+        every = list(self.alternatives(schema))
+        said = {**next((one for one in every if "properties" not in one), {}), **schema}
+        held = list(self.below(schema, place, of))
+        words = said.get("enum") or said.get("items", {}).get("enum") or ([said["const"]] if "const" in said else [])
+        yield Key(
+            place=place,
+            sentence=said.get("description", ""),
+            unit=said.get(UNIT, ""),
+            words=tuple(words),
+            example=next(iter(said.get("examples", ())), None),
+            default=said.get("default"),
+            needed=needed,
+            section=bool(held),
+            of=of,
+        )
+        yield from held
+
+    def alternatives(self, schema: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+        """What an entry may be: the schema itself, or each of several."""
+        if "$ref" in schema:
+            schema = {**self.shapes[schema["$ref"].rpartition("/")[2]], **schema}
+            del schema["$ref"]
+        several = [*schema.get("oneOf", ()), *schema.get("anyOf", ())]
+        if not several:
+            yield schema
+        for one in several:
+            yield from self.alternatives(one)
+
+
+def _decided(schema: Mapping[str, Any]) -> str:
+    """The model or kind that alone has this shape."""
+    decided = (schema.get("properties", {}).get(key, {}).get("const", "") for key in _DECIDES)
+    return next(filter(None, decided), "")

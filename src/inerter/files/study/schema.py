@@ -1,0 +1,17 @@
+"""The JSON Schema of study files, with which editors complete and check them as they are typed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from inerter.files.common.schema import json_schema
+from inerter.files.study.shape import shapes
+from inerter.rows import made_of_rows
+
+
+@made_of_rows
+def study_schema() -> dict[str, Any]:
+    """The schema, with what other distributions add."""
+    file, _ = shapes()
+    about = "Vehicle, road, elements, layouts and what is asked of them. Every quantity is text with its unit."
+    return json_schema(file, "A study file of inerter", about)

@@ -1,0 +1,175 @@
+"""A study file to start from, for any vehicle that files know: made of the rows, with a sentence beside every key."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from inerter.errors import InerterError, StudyError
+from inerter.fields import Field, fields_of, needed_mounts_of
+from inerter.files.common.keys import keys_of
+from inerter.files.common.shape import ROAD
+from inerter.files.common.suggest import nearest
+from inerter.files.common.toml import as_line
+from inerter.files.common.vehicle_shapes import MECHANISM
+from inerter.files.study.schema import study_schema
+from inerter.files.study.shape import judged_models
+from inerter.indices.registry import INDICES, make_index
+from inerter.methods.registry import DEFAULT
+from inerter.networks.elements import Damper, Inerter, Network, Spring
+from inerter.networks.elements.registry import ELEMENTS
+from inerter.signals.road import Road
+from inerter.units import shown
+from inerter.vehicle.quarter_car import QuarterCar
+from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.vehicle import VehicleModel
+
+_COLUMN = 42  # where remarks begin
+_FREE = {Spring: ("1 kN/m", "1 MN/m"), Damper: ("100 N s/m", "100 kN s/m"), Inerter: ("1 kg", "2000 kg")}
+_LAYOUTS = {
+    "S1": ("k | c", "the usual one: spring and damper"),
+    "S2": ("k | c | b", "with an inerter beside the damper"),
+    "S3": ("k | c - b", "with an inerter in series with the damper"),
+}
+_JOINED = "# How they are joined: | side by side (parallel), - end to end (series, binds tighter), brackets group."
+_MOST_ASKED = 3
+_PARTS = (  # a quarter car, part by part
+    "",
+    "[vehicle.coordinates]                     # What moves, each with its mass",
+    'body = "250 kg"',
+    'wheel = "35 kg"',
+    "",
+    "[vehicle.struts]                          # What is between two ports; without a lower one, on the ground",
+    "strut = { upper = { body = 1 }, lower = { wheel = 1 } }",
+    "",
+    "[vehicle.tyres]                           # What is between a port and a road",
+    'tyre = { port = { wheel = 1 }, road = "road", network = "kt" }',
+    "",
+    "[vehicle.roads]                           # Where the roads are met",
+    "road = {}",
+    "",
+    "[vehicle.forces]                          # External forces, by where they act",
+    "load = { body = 1 }",
+    "",
+    "[vehicle.measures]                        # Which outputs answer which index",
+    "comfort = { body_acceleration = 1 }",
+    'load_input = "load"',
+    'load_output = "body_displacement"',
+)
+_ELEMENTS = (
+    "# What networks are made of, by names of your own. The unit of a value tells what it is:",
+    "# A value is fixed, or free between two bounds; then the optimiser chooses it, for each layout and index anew.",
+)
+
+
+def starting_text(model: str, name: str = "STUDY.toml") -> str:
+    """A whole study file of that vehicle, which runs; `name` is that of the file, for its remarks.
+
+    Raises `StudyError` for a vehicle that study files do not know.
+    """
+    if model not in judged_models():
+        hint = nearest(model, judged_models()) or " It is for: inerter simulate." * (model in VEHICLES)
+        known = " or ".join(map(shown, judged_models()))
+        raise StudyError(f"{shown(model)} is no vehicle of study files; expected {known}.{hint}")
+    kind = _Quarter if model == MECHANISM else VEHICLES[model]
+    car = model.replace("-", " ")
+    blocks = [
+        [
+            f"# A study of {_a(car)}: which values make each layout best, and which layout is the best of all?",
+            "#",
+            f"# Run it: inerter run {name}",
+            "# What a key means: inerter explain road.speed",
+        ],
+        [as_line("title", f"{car.capitalize()}: with an inerter and without")],
+        ["[vehicle]", as_line("model", model), *(_PARTS if kind is _Quarter else _quantities(fields_of(kind)))],
+        *([["[road]", *_quantities(ROAD)]] if _moved_by_road(kind) else []),
+        [*_elements(kind)],
+        [_JOINED, *_mounts(kind), "[layouts]", *(_line(as_line(n, text), why) for n, (text, why) in _LAYOUTS.items())],
+        [*_settings(kind)],
+    ]
+    return "\n\n".join("\n".join(block) for block in blocks) + "\n"
+
+
+class _Quarter(QuarterCar):
+    """What a mechanism begins as."""
+
+    key = MECHANISM
+
+
+def _line(text: str, remark: str) -> str:
+    return f"{text:<{_COLUMN - 1}} # {remark.rstrip('.')}"
+
+
+def _a(word: str) -> str:
+    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
+
+
+def _quantities(fields: Iterable[Field]) -> Iterator[str]:
+    """A line for each; one that may be left out is a remark."""
+    for field in fields:
+        text = as_line(field.key, field.example or f"1 {field.unit}")
+        yield _line(text if field.default is None else f"# {text}", field.sentence)
+
+
+def _moved_by_road(kind: type[VehicleModel]) -> bool:
+    return bool(_made(kind).mechanism().roads)
+
+
+def _elements(kind: type[VehicleModel]) -> Iterator[str]:
+    """A spring, a damper and an inerter; a spring that carries a car is fixed by the load, not by what is best."""
+    first, second = _ELEMENTS
+    told = ", ".join(f"{element.unit} {element.key}" for element in ELEMENTS.values())
+    yield from (first, f"# {told}.", second, "[elements]")
+    yield from [_line(as_line("kt", "150 kN/m"), "spring, fixed: the tyre")] if kind is _Quarter else []
+    for element, ends in _FREE.items():
+        fixed = element is Spring and _moved_by_road(kind)
+        value = element.example if fixed else dict(zip(("from", "to"), ends, strict=True))
+        yield _line(as_line(element.symbol, value), f"{element.key}, {'fixed' if fixed else 'free'}")
+
+
+def _mounts(kind: type[VehicleModel]) -> Iterator[str]:
+    """How to give each mount a network of its own."""
+    mounts = needed_mounts_of(kind)
+    if len(mounts) > 1:
+        table = ", ".join(f'{mount} = "k | c"' for mount in mounts)
+        yield f"# One text is for {' and '.join(mounts)} alike; a table has one for each: S1 = {{ {table} }}"
+
+
+def _settings(kind: type[VehicleModel]) -> Iterator[str]:
+    """What is asked, and below it what else can be."""
+    possible = [symbol for symbol in INDICES if _answers(kind, symbol)]
+    asked = possible[:_MOST_ASKED]
+    titles = ", ".join(f"{symbol} {INDICES[symbol].title}" for symbol in asked)
+    given = {"indices": asked, "optimise": DEFAULT, "baseline": next(iter(_LAYOUTS))}
+    keys = [key for key in keys_of(study_schema()) if key.place.startswith("study.") and key.place.count(".") == 1]
+    sentences = {key.name: key.sentence for key in keys}
+    yield from ("[study]", f"# {titles}")
+    for name, value in given.items():
+        yield _line(as_line(name, value), sentences[name])
+    yield from ("", "# What else can be asked (take the # away):")
+    yield from [f"# More indices: {', '.join(possible[_MOST_ASKED:])}"] if possible[_MOST_ASKED:] else []
+    for key in keys:
+        if key.name not in given and key.example is not None:
+            yield f"# {key.sentence}"
+            yield f"# {as_line(key.name, key.example)}"
+
+
+def _made(kind: type[VehicleModel]) -> VehicleModel:
+    """Such a vehicle, of any size."""
+    network: Network = Spring(1.0) | Damper(1.0)
+    values: dict[str, Any] = {field.name: 1.0 for field in fields_of(kind)}
+    return kind(**values, **dict.fromkeys(needed_mounts_of(kind), network))
+
+
+def _answers(kind: type[VehicleModel], symbol: str) -> bool:
+    """Whether the vehicle can be asked for the index, without any setting of it."""
+    index: Any = INDICES[symbol]
+    bare = {f.name for f in dataclasses.fields(index) if f.default is f.default_factory is dataclasses.MISSING}
+    if bare - {"road"}:
+        return False
+    try:
+        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).question(_made(kind).mechanism())
+    except InerterError:
+        return False
+    return True

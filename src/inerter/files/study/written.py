@@ -1,0 +1,68 @@
+"""Quantities as the author of a study file wrote them: a person looks for the numbers that the file has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+from inerter.errors import UnitError
+from inerter.files.common.toml import as_toml
+from inerter.files.study.study import Study
+from inerter.units import parse_quantity
+
+
+def texts_of(tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """The texts of a file that may be quantities: those that stand for themselves, and not in a list."""
+    return tuple(dict.fromkeys(_texts(tables)))
+
+
+def _texts(tables: Mapping[str, Any]) -> Iterator[str]:
+    for entry in tables.values():
+        if isinstance(entry, Mapping):
+            yield from _texts(entry)
+        elif isinstance(entry, str) and any(map(str.isdigit, entry)):
+            yield " ".join(entry.split())
+
+
+def as_written(study: Study, value: float, unit: str) -> str | None:
+    """How the file writes this quantity, which is its value to the last bit; None if it does not."""
+    return _values(study.texts, unit).get(value)
+
+
+@lru_cache(maxsize=64)
+def _values(texts: tuple[str, ...], unit: str) -> dict[float, str]:
+    found: dict[float, str] = {}
+    for text in texts:
+        try:
+            found.setdefault(parse_quantity(text, unit), text)
+        except UnitError:
+            continue
+    return found
+
+
+def write_resolved(study: Study) -> str:
+    """`study.resolved()` as TOML, with its quantities as the file wrote them.
+
+    `load_study` reads an equal study from it, to the last bit of every value.
+    """
+    return as_toml(_rewritten(study, study.resolved()))
+
+
+def _rewritten(study: Study, entry: Any) -> Any:
+    match entry:
+        case dict():
+            return {key: _rewritten(study, one) for key, one in entry.items()}
+        case str():
+            return _quantity(study, entry) or entry
+        case _:
+            return entry
+
+
+def _quantity(study: Study, text: str) -> str | None:
+    """How the file writes a number and its SI unit; None for a text that is none, such as a title."""
+    number, _, unit = text.partition(" ")
+    try:
+        return as_written(study, float(number), unit) if parse_quantity(text, unit) == float(number) else None
+    except ValueError:  # no number, or no unit
+        return None

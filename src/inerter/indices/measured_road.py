@@ -1,0 +1,67 @@
+"""A measured road as what drives an index: white velocity through a filter that gives it the measured waviness."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.checks import check_positive
+from inerter.errors import PerformanceIndexError
+from inerter.indices.excitation import Shaped
+from inerter.roads.spectrum import N0, RoadSpectrum
+from inerter.signals.road import Road
+from inerter.systems.filters import Filter
+
+Array = NDArray[np.float64]
+DEVIATION = 5e-3  # of the density from that of the line
+_BEYOND = 10.0  # how much further than the line the filter follows its slope, as a factor at each end
+_MOST = 24  # poles
+_SLOPES = (0.0, 4.0)  # of wavinesses that a filter of this kind can have, without its ends
+
+
+def measured_road(spectrum: RoadSpectrum, speed: float) -> Shaped:
+    """The road whose density is the line of a spectrum, Gd(n0) (n / n0)^-waviness, driven at `speed` [m/s].
+
+    An index takes it in the place of a road. The filter has poles and zeros in turn, evenly over the logarithm of
+    frequency; within the wavenumbers of the line the density deviates by half a per cent at most, and ten times further
+    on each side the road has a waviness of 2. Source: Oustaloup et al. (2000).
+
+    Raises `PerformanceIndexError` unless `speed` is positive and the waviness lies between 0 and 4.
+    """
+    if not isinstance(spectrum, RoadSpectrum):
+        raise PerformanceIndexError(f"A measured road is that of road_spectrum(profile), got {spectrum!r}.")
+    check_positive(PerformanceIndexError, "The speed over a measured road", speed, "m/s")
+    if not _SLOPES[0] < spectrum.waviness < _SLOPES[1]:
+        raise PerformanceIndexError(
+            f"The waviness of the spectrum is {spectrum.waviness:.3g}; a road for an index has one between 0 and 4. "
+            f"Is the profile in the unit that was named?"
+        )
+    road = Road(0.5 * spectrum.unevenness * N0**2, speed)
+    ends = (2.0 * math.pi * speed * spectrum.lowest, 2.0 * math.pi * speed * spectrum.highest)
+    return Shaped(road, _power_law(0.5 * (2.0 - spectrum.waviness), ends, 2.0 * math.pi * speed * N0))
+
+
+def _power_law(power: float, ends: tuple[float, float], unit: float) -> Filter:
+    """A filter whose size is (omega / unit)^power between the ends [rad/s], by as few poles as will do."""
+    omega = np.geomspace(*ends, 400)
+    wanted = (omega / unit) ** (2.0 * power)
+    for count in range(1, _MOST + 1):
+        found = _alternating(power, (ends[0] / _BEYOND, ends[1] * _BEYOND), unit, count)
+        ratio = np.abs(found.response(omega)) ** 2 / wanted
+        level = math.sqrt(float(ratio.max() * ratio.min()))
+        if max(ratio.max() / level, level / ratio.min()) <= 1.0 + DEVIATION:
+            break
+    return Filter([float(c) / math.sqrt(level) for c in found.numerator], found.denominator)
+
+
+def _alternating(power: float, ends: tuple[float, float], unit: float, count: int) -> Filter:
+    """Poles and zeros in turn between the ends, with the right size in their middle."""
+    step = math.log(ends[1] / ends[0]) / count
+    middle = math.log(ends[0]) + step * (np.arange(count) + 0.5)
+    zeros, poles = np.exp(middle - 0.5 * power * step), np.exp(middle + 0.5 * power * step)
+    centre = math.sqrt(ends[0] * ends[1])
+    raw = Filter(*(tuple(map(float, np.poly(-roots))) for roots in (zeros, poles)))
+    size = (centre / unit) ** power / float(np.abs(raw.response(np.array([centre])))[0])
+    return Filter([size * float(c) for c in raw.numerator], raw.denominator)

@@ -1,0 +1,43 @@
+"""The methods of a study in words of the trade: with friction, without."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from inerter.files.study.study import Study, elements_used
+from inerter.methods.method import Sees
+from inerter.methods.registry import brief_words_of, what_is_seen
+from inerter.networks.elements.roles import Guard
+from inerter.systems.graph import switching_parts
+
+_LOSSES = {Guard.FORCE: "friction", Guard.ELONGATION: "play"}
+_SEEN = {Sees.NEITHER: (), Sees.FRICTION: (Guard.FORCE,), Sees.BOTH: tuple(Guard)}
+
+
+def ways(study: Study) -> dict[str, str]:
+    """Words for each method that judges the designs, such as "with friction"; empty where there is nothing to tell.
+
+    Two methods that see the same are told apart by what they are.
+    """
+    there = _losses(study)
+    told = {method: _told(there, _SEEN[what_is_seen(method)]) for method in study.evaluate}
+    count = Counter(told.values())
+    return {method: words if count[words] == 1 else _apart(words, method) for method, words in told.items()}
+
+
+def _losses(study: Study) -> list[Guard]:
+    """What there is in the layouts that a linear analysis does not see."""
+    used = [study.elements[name] for name in elements_used(study) if name in study.elements]
+    guards = {part.switch.guard for element in used for part in switching_parts(element) if part.switch is not None}
+    return [guard for guard in _LOSSES if guard in guards]
+
+
+def _told(there: list[Guard], seen: tuple[Guard, ...]) -> str:
+    with_, without = ([_LOSSES[guard] for guard in there if (guard in seen) == wanted] for wanted in (True, False))
+    words = [f"with {' and '.join(with_)}"] * bool(with_) + [f"without {' or '.join(without)}"] * bool(without)
+    return ", ".join(words)
+
+
+def _apart(words: str, method: str) -> str:
+    by = f"by {brief_words_of(method)}"
+    return f"{words} {by}" if words else by

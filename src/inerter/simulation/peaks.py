@@ -1,0 +1,65 @@
+"""The extremes of a motion: peaks with their times, and tyres that are pulled where real ones would lift off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The sample of an output that is farthest from zero, with its sign, and when it was."""
+
+    value: float
+    time: float  # [s]
+
+
+@dataclass(frozen=True)
+class LiftOff:
+    """A span in which a tyre pulls by more than its static load, as no real one does: it would have lifted off.
+
+    `beyond` is the largest force beyond the static load.
+    """
+
+    tyre: str
+    begin: float  # [s]
+    end: float  # [s]
+    beyond: float  # [N]
+
+
+def peak_of(time: Matrix, values: Matrix) -> Peak:
+    """The peak of samples; nan where one of them is."""
+    at = int(np.argmax(np.abs(values)))
+    return Peak(float(values[at]), float(time[at]))
+
+
+def lift_offs_of(tyre: str, time: Matrix, load: Matrix, static: float) -> Iterator[LiftOff]:
+    """The spans in which a dynamic load [N], pulling positive, exceeds a static one, by lines between samples."""
+    over = load - static
+    above = np.concatenate([[False], over > 0.0, [False]])
+    edges = np.flatnonzero(above[1:] != above[:-1])
+    for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
+        begin = time[first] if first == 0 else _crossing(time, over, first - 1)
+        end = time[last] if last == time.size - 1 else _crossing(time, over, last)
+        yield LiftOff(tyre, float(begin), float(end), float(over[first : last + 1].max()))
+
+
+def lift_off_note(found: tuple[LiftOff, ...], static: float) -> str:
+    """What to say of the spans of one tyre."""
+    count, total = len(found), sum(one.end - one.begin for one in found)
+    times = "once" if count == 1 else f"{count} times, {total:.3g} s together"
+    return (
+        f"{found[0].tyre} pulls at the road by more than its static load of {static:.4g} N, {times}, first from "
+        f"{found[0].begin:.4g} to {found[0].end:.4g} s: a real tyre would have lifted off there, and from then on the "
+        f"motion would be another one."
+    )
+
+
+def _crossing(time: Matrix, over: Matrix, i: int) -> float:
+    """When a line between the samples i and i + 1 passes zero."""
+    return float(time[i] + (time[i + 1] - time[i]) * over[i] / (over[i] - over[i + 1]))

@@ -1,0 +1,83 @@
+"""What tells of study files: `inerter explain`, of every key."""
+
+import tomllib
+
+import pytest
+
+from inerter.cli.main import call
+from inerter.files.common.keys import ANY_NAME, found, keys_of
+from inerter.files.study.schema import study_schema
+from inerter.indices.registry import INDICES
+
+KEYS = keys_of(study_schema())
+PLACES = list(dict.fromkeys(key.place for key in KEYS))
+
+
+def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    assert call(["explain", *arguments]) == 0
+    out = capsys.readouterr().out
+    assert all(len(line) <= 80 and line == line.rstrip() for line in out.split("\n"))
+    return out
+
+
+def words(text: str) -> str:
+    return " ".join(text.split())
+
+
+def test_every_key_is_told_by_its_place_and_by_its_end(capsys):
+    assert len(PLACES) > 40
+    for place in PLACES:
+        out = told(capsys, place.replace(ANY_NAME, "front_spring"))
+        for key in KEYS:
+            if key.place == place:
+                assert key.sentence in words(out)
+                assert key.unit in out
+        name = place.rpartition(".")[2]
+        if name != ANY_NAME:
+            assert place in {key.place for key in found(KEYS, name)}
+
+
+def test_an_example_is_a_line_of_the_file(capsys):
+    lines = [line for place in PLACES for line in told(capsys, place).split("\n") if line.startswith("  example  ")]
+    assert len(lines) > 30
+    for line in lines:
+        assert tomllib.loads(line.removeprefix("  example  ").partition("    in [")[0])
+
+
+def test_all_keys_in_a_table(capsys):
+    out = told(capsys)
+    assert [line.split()[0] for line in out.split("\n")[1:] if line[:1].strip()] == PLACES
+    for key in KEYS:
+        assert key.sentence in words(out)
+
+
+def test_a_section_is_told_with_its_keys(capsys):
+    out = told(capsys, "road")
+    assert "road.speed" in out
+    assert "m/s" in out
+    assert "study.seed" not in out
+
+
+@pytest.mark.parametrize("word", [*INDICES, "norm", "half-car", "spring"])
+def test_words_that_keys_take_are_told_too(word, capsys):
+    assert told(capsys, word).startswith(f"{word}, a")
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("road.sped", 'Did you mean "road.speed"?'),
+        ("spedd", 'Did you mean "speed"?'),
+        ("xyz.abc", "inerter explain"),
+        ("", "inerter explain"),
+        ("...", "inerter explain"),
+        ("signal.amplitude", "inerter simulate"),
+        ("NAME", "inerter explain"),
+    ],
+)
+def test_a_key_that_there_is_not(key, said, capsys):
+    assert call(["explain", key]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("inerter: ")
+    assert said in error
+    assert error.count("\n") == 1

@@ -1,0 +1,131 @@
+"""What a study answers: in words of the trade, with ties told as ties, and a static limit as such."""
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from study_text import study_text
+from synthetic import designs, judged, with_value
+
+import inerter as it
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import run_study
+from inerter.report.answers import answers
+from inerter.report.findings import best_layouts
+from inerter.report.ways import ways
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+BY_BOTH = ("norm", "expected-value")
+
+
+@pytest.fixture(scope="module")
+def study():
+    return load_study(EXAMPLES / "quarter-car.toml")
+
+
+def with_losses(study, *losses):
+    """The study with these elements in its third layout."""
+    parts = {f"part{i}": loss for i, loss in enumerate(losses)}
+    layouts = {**study.layouts, "S3": replace(study.layouts["S3"], struts={"strut": " | ".join(["k", *parts])})}
+    return replace(study, elements={**study.elements, **parts}, layouts=layouts)
+
+
+@pytest.mark.parametrize(
+    ("losses", "methods", "told"),
+    [
+        ((), ("norm",), [""]),
+        ((), BY_BOTH, ["by exact norms", "by simulation"]),
+        ((it.Friction(10.0),), ("norm",), ["without friction"]),
+        ((it.Friction(10.0),), BY_BOTH, ["without friction", "with friction"]),
+        ((it.Gap(1e-4),), BY_BOTH, ["without play", "with play"]),
+        ((it.Friction(1.0), it.Gap(1e-4)), BY_BOTH, ["without friction or play", "with friction and play"]),
+        (
+            (it.Friction(1.0),),
+            ("expected-value", "statistical-linearisation"),
+            ["with friction by simulation", "with friction by linearisation"],
+        ),
+        (
+            (it.Friction(1.0), it.Gap(1e-4)),
+            ("statistical-linearisation", "expected-value"),
+            ["with friction, without play", "with friction and play"],
+        ),
+    ],
+)
+def test_methods_are_told_by_what_they_see(study, losses, methods, told):
+    assert list(ways(replace(with_losses(study, *losses), evaluate=methods)).values()) == told
+
+
+def test_no_name_of_a_method_is_in_an_answer(study):
+    asked = replace(with_losses(study, it.Friction(10.0)), evaluate=BY_BOTH)
+    told = answers(judged(designs()), asked)
+    assert len(told) == 3
+    for sentence in told:
+        assert re.match(
+            r"Best [a-z ]+ without friction: S3, .* better than S1; with friction still S3, .* better\.$", sentence
+        )
+        assert not any(method in sentence for method in BY_BOTH)
+
+
+def test_another_layout_may_be_the_best_with_friction(study):
+    asked = replace(with_losses(study, it.Friction(10.0)), evaluate=BY_BOTH)
+    results = judged(designs())
+    results["value"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = 1.0
+    results["improvement"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = 60.0
+    assert "; with friction S2, 1.0000 +- " in answers(results, asked)[0]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_means_that_their_scatter_does_not_tell_apart_are_ties(seed):
+    """Differences of less than t sqrt(e1^2 + e2^2), with the quantile of Student's distribution, from its tables."""
+    random = np.random.default_rng(seed)
+    results = judged(designs(), ["expected-value"]).assign_coords(elements=("layout", [2, 3, 3]))
+    errors = random.uniform(0.05, 0.4, 3)
+    results["improvement_error"].loc[{"index": "J1"}] = errors[:, None]
+    base = float(results["value"].sel(layout="S1", index="J1").squeeze())
+    student = 2.364624  # of seven degrees of freedom, 97.5 %
+    margin = student * math.hypot(errors[1], errors[2]) / 100.0 * base
+    best = 0.9 * base
+    for off, tied in ((0.99, True), (1.01, False)):
+        for layout, value in (("S3", best), ("S2", best + off * margin)):
+            results["value"].loc[{"layout": layout, "index": "J1"}] = value
+        assert best_layouts(results, "J1") == (["S2", "S3"] if tied else ["S3"])
+
+
+def test_a_layout_that_is_no_better_than_the_baseline_by_chance_is_a_tie():
+    results = judged(designs(), ["expected-value"]).assign_coords(elements=("layout", [2, 3, 3]))
+    base = float(results["value"].sel(layout="S1", index="J1").squeeze())
+    for layout, value in (("S3", base * (1.0 - 0.005)), ("S2", 2.0 * base)):
+        results["value"].loc[{"layout": layout, "index": "J1"}] = value
+    results["improvement"].loc[{"layout": "S3", "index": "J1"}] = 0.5
+    assert best_layouts(results, "J1") == ["S1", "S3"]
+
+
+SOFT = 'k = "15 kN/m"\nc = { from = "0.1 kN s/m", to = "1000 kN s/m" }\nb = { from = "1 kg", to = "5000 kg" }'
+
+
+def test_a_static_limit_is_called_that(tmp_path):
+    """The body on a soft spring and the tyre gives way by F (1/k + 1/k_t) under a steady force, and by no more if the
+    damping is right."""
+    text = study_text('indices = ["J5", "J1"]\noptimise = "norm"', elements=SOFT)
+    (tmp_path / "soft.toml").write_text(text, encoding="utf-8")
+    soft = load_study(tmp_path / "soft.toml")
+    result = run_study(soft, tmp_path / "out")
+    limit = 1.0 / 15e3 + 1.0 / 150e3
+    assert result.data.value.sel(index="J5").values.ravel() == pytest.approx([limit, limit], rel=1e-9)
+    told = answers(result.data, soft)
+    assert told[0].startswith("Best dynamic load carrying: S1 and S2, equally good, 73.33 um/N, the static limit")
+    assert "static" not in told[1]
+    stiff = replace(soft, elements={**soft.elements, "k": it.Spring(300e3, name="k")})
+    assert "static" not in answers(run_study(stiff, tmp_path / "stiff").data, stiff)[0]
+
+
+def test_values_that_are_not_numbers_are_no_ties(study):
+    results = judged(designs(), ["expected-value"])
+    results["standard_error"][:] = math.nan
+    assert best_layouts(results, "J1") == ["S3"]
+    nothing = with_value(designs(), math.nan, layout=["S1", "S2", "S3"], index="J1")
+    assert best_layouts(nothing, "J1") == []
+    assert answers(nothing, study)[0] == "Best ride comfort: no layout has a finite value."

@@ -48,6 +48,12 @@ def tie_entry(entry: dict[str, Any]) -> TieEntry:
     return TieEntry(text)
 
 
+def tie_schema() -> dict[str, Any]:
+    """What editors are told of such an entry."""
+    text = {"type": "string", "description": f"What the value follows from: {_EXAMPLE}.", "examples": ["0.8 * c_front"]}
+    return {"type": "object", "properties": {TIED: text}, "required": [TIED], "additionalProperties": False}
+
+
 def tied_element(name: str, entry: TieEntry, elements: Mapping[str, Element]) -> Element:
     """The element of that name; `elements` are those that are not tied. Raises `EntryError` if there is none such."""
     found = _part(_tree(entry.expression), entry.expression, elements)

@@ -29,9 +29,15 @@ def run(document: dict[str, Any], folder: Path) -> Any:
     return json.loads("".join(as_text(result))), result
 
 
-def test_a_run_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """What the command line makes of the document."""
+    return run(DOCUMENT, tmp_path_factory.mktemp("ran"))
+
+
+def test_a_run_is_that_of_the_command_line(client: TestClient, ran: Any) -> None:
     told = client.post("/api/work", json={"kind": "run", "study": DOCUMENT, "wait": 30}).json()
-    expected, result = run(DOCUMENT, tmp_path)
+    expected, result = ran
     assert told["state"] == "done"
     assert {**told["result"], "title": ""} == {**expected, "title": ""}
     files = {row["name"]: row["size"] for row in client.get(f"/api/work/{told['id']}/files").json()["files"]}
@@ -50,9 +56,9 @@ def test_a_sweep_is_that_of_the_command_line(client: TestClient, tmp_path: Path)
     assert {**told["result"], "title": ""} == {**expected, "title": ""}
 
 
-def test_optima_are_those_of_a_run(client: TestClient, tmp_path: Path) -> None:
+def test_optima_are_those_of_a_run(client: TestClient, ran: Any) -> None:
     """The panel, the work, and the texts of their values: all are the design that a run finds."""
-    expected, _ = run(DOCUMENT, tmp_path)
+    expected, _ = ran
     wanted = {(d["layout"], d["index"]): d for d in expected["designs"]}
     panel = client.post("/api/panel/optimise", json={"study": DOCUMENT}).json()["designs"]
     work = client.post("/api/work", json={"kind": "optimise", "study": DOCUMENT, "wait": 30}).json()["result"][
@@ -71,7 +77,7 @@ def test_optima_are_those_of_a_run(client: TestClient, tmp_path: Path) -> None:
         assert (result["value"], result["improvement_percent"]) == (case["value"], case["improvement_percent"])
 
 
-@settings(max_examples=3)
+@settings(max_examples=2)
 @given(c=st.floats(200.0, 9e4), b=st.floats(2.0, 900.0), c1=st.floats(200.0, 9e4))
 def test_a_study_of_designs_gives_the_numbers_of_the_panel(
     client: TestClient, tmp_path_factory: pytest.TempPathFactory, c: float, b: float, c1: float

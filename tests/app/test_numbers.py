@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +17,13 @@ from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 import inerter as it
+from inerter.app.answers import answered
+from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
+from inerter.app.fixed import fixed
 from inerter.files.common.toml import as_toml
+from inerter.files.study.cases import cases, run_case
+from inerter.files.study.results import dataset
 from inerter.report.study_data import as_text
 
 
@@ -99,6 +105,31 @@ def test_a_study_of_designs_gives_the_numbers_of_the_panel(
     for curve in curves["curves"]:
         gains = data[f"gain_{curve['index']}"].sel(layout=curve["layout"])
         assert curve["gain"] in gains.values.tolist()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "conditions",
+        *(
+            pytest.param(name, marks=pytest.mark.campaign)
+            for name in ("limits", "trade_off", "seat", "full-car", "quarter-car")
+        ),
+    ],
+)
+def test_panels_ask_what_the_study_asks(name: str) -> None:
+    """Over conditions, at quantiles, of any vehicle: a study of the very designs has the panel's numbers."""
+    document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    study = study_from(document)
+    panel = answered("indices", {"study": document, "methods": ["norm"]})
+    made = fixed(document, study, designs_of(study, {}))
+    asked = study_from({**made, "study": {**made["study"], "evaluate": ["norm"]}})
+    data = dataset(asked, {case: run_case(asked, case) for case in cases(asked)})
+    for design in panel["designs"]:
+        for row in design["results"]:
+            there = data.sel({"layout": design["layout"], "index": row["index"], "method": "norm"})
+            assert there.value.item() == row["value"]
+            assert there.improvement.item() == row["improvement_percent"]
 
 
 def test_a_history_is_that_of_python(client: TestClient) -> None:

@@ -2,8 +2,8 @@
 
     python benchmarks/page_latency.py [STEPS]
 
-In a real Chromium, on a server of its own, with the quarter car. A step counts from the input event until the table shows an
-answer to that very question and the curves are drawn from theirs.
+In a real Chromium, on a server of its own, with the quarter car. A step counts from the input event until the table
+shows an answer to that very question, and the curves are drawn from theirs.
 """
 
 from __future__ import annotations
@@ -26,8 +26,10 @@ TOKEN = "a-token-of-the-benchmark-of-the-page"
 
 STEP = """async ([position, panels]) => {
   const slider = document.getElementById("slider elements.c");
-  const done = (panel) => new Promise((resolve) => addEventListener("inerter:shown", function look(event) {
-    if (event.detail.panel === panel && event.detail.newest) { removeEventListener("inerter:shown", look); resolve(performance.now()); }
+  const done = (panel) => new Promise((resolve) => addEventListener("inerter:shown", function look({ detail }) {
+    if (detail.panel !== panel || !detail.newest) return;
+    removeEventListener("inerter:shown", look);
+    resolve(performance.now());
   }));
   const all = Promise.all(panels.map(done));
   const begun = performance.now();
@@ -87,9 +89,8 @@ def _measure(page: Any, link: str, steps: int) -> None:
     for panels in (["indices"], ["indices", "response"]):
         page.evaluate(STEP, [10, panels])
         times = [page.evaluate(STEP, [40 + (37 * i) % 320, panels]) for i in range(steps)]
-        print(
-            f"a step to {' and '.join(panels):22} {median(times):8.1f} ms, 95 % under {quantiles(times, n=20)[-1]:.1f} ms ({steps} steps)"
-        )
+        late = quantiles(times, n=20)[-1]
+        print(f"a step to {' and '.join(panels):22} {median(times):8.1f} ms, 95 % under {late:.1f} ms ({steps} steps)")
     page.click("#tab-history")
     page.wait_for_selector(".motion canvas")
     page.get_by_role("button", name="Play").click()

@@ -80,6 +80,10 @@ class Visitor:
         self.page.get_by_text("Open", exact=True).click()
         self.page.set_input_files(".menu input[type=file]", [str(path) for path in files])
 
+    def wait_for_text(self, text: str) -> None:
+        """Wait until the network that is edited is this one."""
+        self.page.wait_for_function("text => document.getElementById('network-text')?.value === text", arg=text)
+
     @property
     def text(self) -> str:
         return str(self.page.input_value("#network-text"))

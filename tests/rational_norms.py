@@ -127,7 +127,8 @@ class RationalMechanism:
         if what in ("displacement", "velocity", "acceleration"):
             power = {"displacement": 0, "velocity": 1, "acceleration": 2}[what]
             top = S**power * moved({self.names.index(stem): flint.fmpq(1)})
-            if source == "ground_acceleration" and what == "acceleration":
+            masses = {c.name for c in self.mechanism.coordinates if not c.angle}
+            if source == "ground_acceleration" and what == "acceleration" and stem in masses:
                 top += self.denominator
         else:
             assert what in ("force", "load")

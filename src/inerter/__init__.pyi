@@ -143,6 +143,7 @@ from inerter.vehicle.mechanism import Coordinate as Coordinate
 from inerter.vehicle.mechanism import Force as Force
 from inerter.vehicle.mechanism import Measures as Measures
 from inerter.vehicle.mechanism import Mechanism as Mechanism
+from inerter.vehicle.mechanism import Point as Point
 from inerter.vehicle.mechanism import RoadInput as RoadInput
 from inerter.vehicle.mechanism import Strut as Strut
 from inerter.vehicle.mechanism import Tyre as Tyre

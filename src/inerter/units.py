@@ -88,7 +88,18 @@ def are_alike(unit: str, other: str) -> bool:
     >>> are_alike("km/h", "m/s"), are_alike("kg", "N/m")
     (True, False)
     """
-    return bool(_dimension(unit) == _dimension(other))
+    return bool(_dimension("" if unit == PURE else unit) == _dimension("" if other == PURE else other))
+
+
+def product(one: str, sign: str, other: str) -> str:
+    """The unit of a product ("*") or a quotient ("/") of quantities in two units, in SI units.
+
+    >>> product("N/m", "/", "N/m"), product("1", "/", "N/m")
+    ('1', 'm/N')
+    """
+    parts = [_registry().parse_units("" if unit == PURE else unit) for unit in (one, other)]
+    found = parts[0] * parts[1] if sign == "*" else parts[0] / parts[1]
+    return f"{found:~D}".replace(" ** ", "^").replace(" * ", " ").replace(" / ", "/") or PURE
 
 
 def format_quantity(value: float, unit: str, digits: int = 4) -> str:

@@ -203,6 +203,7 @@ def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys
         "limits",
         "trade_off",
         "conditions",
+        "tolerances",
         "ball_screw",
     ],
 )

@@ -104,7 +104,7 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
     study = tmp_path / "newcomer.toml"
     study.write_text(NEWCOMER)
     visitor.open(study)
-    page.wait_for_function("() => document.querySelector('#network-text')?.value === 'k | c'")
+    visitor.wait_for_text("k | c")
     visitor.settled()
     build(visitor)
     page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
@@ -120,13 +120,14 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
     steps = 0
     while page.get_by_role("button", name="Undo").is_enabled():
         page.get_by_role("button", name="Undo").click()
+        page.wait_for_timeout(100)
         steps += 1
     page.wait_for_function("() => document.querySelector('#network-text').value !== 'k | c - b'")
     assert steps >= 4
     while page.get_by_role("button", name="Redo").is_enabled():
         page.keyboard.press("Control+Shift+Z")
-        page.wait_for_timeout(50)
-    assert visitor.text == "k | c - b"
+        page.wait_for_timeout(100)
+    visitor.wait_for_text("k | c - b")
     assert visitor.values() == optimum
 
     page.get_by_text("Link", exact=True).click()
@@ -154,7 +155,7 @@ def test_every_example_opens(visitors: Any, served: Served) -> None:
         page = visitor.page
         before = visitor.text
         visitor.open(path)
-        page.wait_for_function("() => document.querySelector('.notice')")
+        page.wait_for_selector(".notice")
         told = page.inner_text(".notice")
         try:
             study = load_study(path)
@@ -216,15 +217,15 @@ def test_dragging_and_naming_by_mouse(visitor: Visitor) -> None:
     page.mouse.down()
     page.mouse.move(target["x"] + target["width"] / 2, target["y"] + target["height"] * 0.9, steps=8)
     page.mouse.up()
-    assert visitor.text == "k | c - b"
+    visitor.wait_for_text("k | c - b")
     page.fill("#element-name", "flywheel")
     page.keyboard.press("Enter")
-    assert visitor.text == "k | c - flywheel"
+    visitor.wait_for_text("k | c - flywheel")
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S2", exact=True).click()
-    assert visitor.text == "k | c | flywheel"
+    visitor.wait_for_text("k | c | flywheel")
     page.locator(".element[data-name=flywheel]").click()
     page.keyboard.press("Delete")
-    assert visitor.text == "k | c"
+    visitor.wait_for_text("k | c")
 
 
 @pytest.mark.campaign

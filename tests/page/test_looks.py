@@ -52,7 +52,7 @@ def _long_names() -> str:
 STUDIES: dict[str, Callable[[], str] | None] = {
     "quarter-car": (EXAMPLES / "quarter-car.toml").read_text,
     "half-car": (EXAMPLES / "half-car.toml").read_text,
-    "ball_screw": (EXAMPLES / "ball_screw.toml").read_text,
+    "ball_screw": lambda: (EXAMPLES / "ball_screw.toml").read_text().replace('f = "10 N"', 'f = "300 N"'),
     "forty-elements": _forty_elements,
     "long-names": _long_names,
     "faulty": lambda: _long_names().replace("120 kN/m", "120").replace("layouts]\n", 'layouts]\n"no name" = "k - "\n'),

@@ -13,6 +13,7 @@ from campaigns import sampled
 from synthetic import LONG, designs, judged, sweep, with_value
 
 import inerter as it
+from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.loading import load_study
@@ -212,3 +213,25 @@ def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
     text = Page(report(designs(["S1"], baseline=""), study, tmp_path)).text
     assert "Improvement" not in text
     assert "Best ride comfort: S1, 2.525 m/s²." in text.replace(SPACE, " ")
+
+
+def test_a_page_has_contents_that_lead_to_its_parts(study, tmp_path):
+    draw_study(designs(), tmp_path)
+    source = report(designs(), study, tmp_path)
+    contents = re.search(r'<nav class="contents".*?</nav>', source)
+    assert contents
+    links = re.findall(r'<a href="#(part-\d+)">(.*?)</a>', contents[0])
+    assert links == re.findall(r'<h2 id="(part-\d+)">(.*?)</h2>', source)
+    assert len(links) == source.count("<h2") >= 5
+
+
+def test_networks_are_drawn_where_the_question_is(study, tmp_path):
+    files = draw_layouts(study, tmp_path)
+    assert sum(file.suffix == ".svg" for file in files) == len(study.layouts)
+    source = report(designs(), study, tmp_path)
+    page = Page(source)
+    asked = source.partition("What was asked</h2>")[2].partition("<h2")[0]
+    assert page.tags.count("svg") == asked.count("<svg") == len(study.layouts)
+    names = Counter(value for key, value in page.attributes if key == "id")
+    assert set(names.values()) == {1}
+    assert asked.count("This drawing is wider than the screen") == len(study.layouts)

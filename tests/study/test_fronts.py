@@ -12,7 +12,8 @@ from study_text import study_text
 
 import inerter as it
 from inerter.errors import StudyError
-from inerter.figures.study import draw_study, study_figures
+from inerter.figures.study import study_figures
+from inerter.figures.style import styled
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
@@ -81,8 +82,9 @@ def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
         "knee",
         "least tyre-load",
     ]
-    assert "front" in [figure.name for figure in study_figures(found.data)]
-    draw_study(found.data, tmp_path)
+    (figure,) = [figure for figure in study_figures(found.data) if figure.name == "front"]
+    with styled():
+        figure.draw().draw_without_rendering()
     page = report(found.data, found.study, tmp_path)
     assert "<h2>Trade-off</h2>" in page
     assert "S2, knee" in page
@@ -105,7 +107,7 @@ def test_a_front_within_limits_that_nothing_keeps_says_so(tmp_path: Path) -> Non
     assert [front.status for front in result.fronts] == ["infeasible"] * 2
     assert any(line.startswith("front of S1: infeasible") for line in result.failures)
     assert "infeasible" in "\n".join(front_lines(result.data, 80))
-    draw_study(result.data, tmp_path)
+    assert "front" not in [figure.name for figure in study_figures(result.data)]
     assert report(result.data, study, tmp_path)
 
 

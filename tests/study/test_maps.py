@@ -10,9 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from campaigns import sampled
 from study_text import study_text
 
 from inerter.figures.study import draw_study, study_figures
+from inerter.figures.style import styled
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
@@ -83,7 +85,7 @@ def test_rows_of_the_table_say_where_they_are(folder: Path, data: xr.Dataset) ->
         assert float(row["improvement_percent"]) == float(design["improvement"])
 
 
-@pytest.mark.parametrize("kept", [0, 5, 11, 23])
+@pytest.mark.parametrize("kept", sampled([0, 5, 11, 23], [11]))
 def test_a_map_goes_on_to_the_same_bytes(study: Study, folder: Path, tmp_path: Path, kept: int) -> None:
     """What the journal has is not computed again, and one process or two write the same."""
     again = tmp_path / "again"
@@ -112,11 +114,11 @@ def test_a_map_is_told_in_words_that_fit(data: xr.Dataset) -> None:
 def test_the_figures_of_a_map_are_drawn_and_captioned(study: Study, data: xr.Dataset, tmp_path: Path) -> None:
     names = [figure.name for figure in study_figures(data)]
     assert names == ["map-J1", "map-c-J1", "map-b-J1", "map-J3", "map-c-J3", "map-b-J3"]
-    files = draw_study(data, tmp_path)
-    assert [file.stat().st_size > 1000 for file in files] == [True] * 12
+    files = draw_study(data.isel(index=[0], parameter=[0]), tmp_path)
+    assert [file.stat().st_size > 1000 for file in files] == [True] * 4
     page = report(data, study, tmp_path)
     assert "over sprung mass and k" in page
-    assert page.count('role="img"') >= 6
+    assert page.count('role="img"') == 2
 
 
 def test_tables_of_a_map_hold_the_numbers_of_its_points(data: xr.Dataset) -> None:
@@ -128,14 +130,17 @@ def test_tables_of_a_map_hold_the_numbers_of_its_points(data: xr.Dataset) -> Non
     assert first.rows[0].cells[1].text.replace("−", "-").startswith(f"{float(at['improvement']):+.1f}")
 
 
-def test_a_map_with_values_that_are_none_is_drawn(data: xr.Dataset, tmp_path: Path) -> None:
-    for bad in (np.nan, np.inf):
-        holes = data.copy(deep=True)
-        holes["value"][0, 0, 0, 0] = holes["improvement"][1, 0, :, 1] = bad
-        holes["value"][1, 1] = holes["improvement"][1, 1] = bad
-        assert draw_study(holes, tmp_path)
-        assert summary_table(holes)
-        assert headlines(holes)
+@pytest.mark.parametrize("bad", sampled([np.nan, np.inf], [np.inf]))
+@pytest.mark.parametrize("everywhere", [True, False])
+def test_a_map_with_values_that_are_none_is_drawn(data: xr.Dataset, *, bad: float, everywhere: bool) -> None:
+    holes = data.copy(deep=True)
+    holes["value"][0, 0, 0, 0] = holes["improvement"][1, 0, :, 1] = bad
+    if everywhere:
+        holes["value"][1, 0] = holes["improvement"][1, 0] = bad
+    with styled():
+        study_figures(holes)[0].draw().draw_without_rendering()
+    assert summary_table(holes)
+    assert headlines(holes)
 
 
 def test_a_map_without_a_baseline_shows_values(study: Study, tmp_path: Path) -> None:
@@ -145,4 +150,5 @@ def test_a_map_without_a_baseline_shows_values(study: Study, tmp_path: Path) -> 
     assert "improvement" not in figure.caption
     assert "sprung mass = 400 kg" in headlines(found)[0]
     assert "improvement" not in map_tables(found)[0].caption
-    assert draw_study(found, tmp_path / "figures")
+    with styled():
+        figure.draw().draw_without_rendering()

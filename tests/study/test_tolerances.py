@@ -82,7 +82,7 @@ def test_a_tolerance_survives_being_written_and_resumed(found: StudyResult, tmp_
 def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
     fixed = FREE.replace('b = { from = "1 kg", to = "2000 kg" }', 'b = "30 kg"')
     study = study_of(tmp_path, ASK + 'tolerance = { c = "10 %" }\nquantile = 0.9\nbaseline = "S2"', fixed)
-    best = it.robust(study.design("S1"), it.RideComfort(study.road), it.Norm(), spread={"c": 0.1}, share=0.9, seed=0)
+    best = it.robust(study.design("S1"), it.RideComfort(study.road), it.Norm(), spread={"c": 0.1}, quantile=0.9, seed=0)
     asked = study.asked("J1", "S1")
     assert it.evaluate(best.design, asked, it.Norm()).value == best.value
     assert "quantile" in asked.title

@@ -42,8 +42,8 @@ def load(tmp_path: Path) -> Load:
 
 
 def test_a_full_car_is_the_one_of_python(load: Load) -> None:
-    k, c, bar = it.Spring(25e3, "k_f"), it.Damper(950.0, "c_f"), it.Spring(8e3, "k_a")
-    rear = it.Spring(27e3, "k_r") | it.Damper(1050.0, "c_r")
+    c, c_r = (it.Damper(it.free(100.0, 20e3, name=name), name) for name in ("c_f", "c_r"))
+    k, bar, rear = it.Spring(25e3, "k_f"), it.Spring(8e3, "k_a"), it.Spring(27e3, "k_r") | c_r
     expected = it.FullCar(
         1400, 2400, 520, 45, 40, 220e3, 220e3, 1.2, 1.5, 1.52, 1.5, k | c, rear, anti_roll_front=bar, anti_roll_rear=bar
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -124,6 +124,69 @@ def test_limits_hold_along_a_front():
     assert any(held[0].active for held in front.limits)
     others = random_designs(car, [J1, J5, J3], 2_000)
     check_undominated(front, others[others[:, 2] <= 540.0][:, :2])
+
+
+@dataclass(frozen=True)
+class Made:
+    """A function of one value x: the two of Zitzler, Deb and Thiele's third problem, whose front is in five pieces."""
+
+    which: int
+    symbol = title = response = "made"
+    unit = "1"
+
+    def function(self, x):
+        if self.which == 0:
+            return 1.0 + x, np.ones_like(x)
+        turn = 10.0 * np.pi
+        value = 3.0 - np.sqrt(x) - x * np.sin(turn * x)
+        return value, -0.5 / np.sqrt(x) - np.sin(turn * x) - turn * x * np.cos(turn * x)
+
+    def asks(self, vehicle):
+        return []
+
+    def per_output(self, split, vehicle):
+        return [self]
+
+    def estimated(self, vehicle, method):
+        return it.Estimate(float(self.function(np.float64(vehicle.strut.parts[1].value))[0]), "1")
+
+    def estimated_many(self, vehicle, method, points):
+        return self.function(points["x"])[0]
+
+    def as_objective(self, vehicle, method):
+        return self
+
+    def values(self, points):
+        return self.function(points[:, 0])[0]
+
+    def value_and_gradient(self, point):
+        value, slope = self.function(point[0])
+        return float(value), np.array([slope])
+
+    def active(self, point):
+        return None
+
+    def components(self, point, which):
+        raise AssertionError
+
+
+@pytest.mark.parametrize("count", sampled([15, 25, 50], [25]))
+def test_a_front_in_pieces_says_where_it_leaps(count):
+    car = paper_quarter_car(it.Spring(1e5) | it.Damper(it.free(1e-3, 1.0, "x")))
+    front = it.pareto(car, [Made(0), Made(1)], NORM, points=count)
+    x = np.array([values["x"] for values in front.parameters])
+    every = np.linspace(1e-3, 1.0, 200_001)
+    low = np.minimum.accumulate(Made(1).function(every)[0])
+    for place, value in zip(x, front.values[:, 1], strict=True):
+        assert value <= np.interp(place, every, low) + 1e-6
+    starts = every[1:][np.diff(low) < 0.0]
+    pieces = np.split(starts, np.flatnonzero(np.diff(starts) > 1e-3) + 1)
+    assert len(pieces) == 5
+    held = [np.flatnonzero((x > piece[0] - 1e-4) & (x < piece[-1] + 1e-4)) for piece in pieces]
+    assert sum(map(len, held)) == len(x) == count
+    across = [(int(one[-1]), int(other[0])) for one, other in pairwise(held)]
+    assert set(front.jumps) <= set(across)
+    assert len(front.jumps) >= (4 if count > 20 else 3)
 
 
 def test_criteria_that_do_not_contradict_each_other():

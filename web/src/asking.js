@@ -9,8 +9,8 @@ import { questions } from "./questions.js";
 
 const AGAIN = 1000; // [ms] until a lost server is asked again
 
-/** Keeps answers up to date with the state. @param {Store} store @param {Api} api @param {string} client */
-export function keepAsking(store, api, client) {
+/** Keeps answers up to date with the state. @param {Store} store @param {Api} api @param {string} client @param {() => Promise<void>} found what is done when a lost server is back */
+export function keepAsking(store, api, client, found = async () => {}) {
   /** @type {{[panel: string]: string}} */
   const underWay = {};
   /** @type {{[panel: string]: string}} */
@@ -20,6 +20,7 @@ export function keepAsking(store, api, client) {
 
   function look() {
     const state = store.get();
+    if (state.connection === "lost") lose();
     if (state.connection !== "ready" && state.connection !== "compiling") return;
     for (const { panel, path, body, learnt } of questions(state)) {
       const question = JSON.stringify(body);
@@ -37,7 +38,7 @@ export function keepAsking(store, api, client) {
       const sent = path.startsWith("panel/") ? { ...body, client: `${client}.${panel}`, sequence } : body;
       const value = await api.post(path, sent);
       settled[panel] = question;
-      store.dispatch({ type: "answered", panel, question, value });
+      store.dispatch({ type: "answered", panel, question, value});
       if (learnt) store.dispatch(learnt(value));
     } catch (error) {
       if (error instanceof Lost) lose();
@@ -54,6 +55,7 @@ export function keepAsking(store, api, client) {
   }
 
   function lose() {
+    if (waking) return;
     store.dispatch({ type: "connected", connection: "lost" });
     for (const panel of Object.keys(settled)) delete settled[panel];
     void wake();
@@ -67,6 +69,7 @@ export function keepAsking(store, api, client) {
       try {
         store.dispatch({ type: "told", about: await api.get("about") });
         store.dispatch({ type: "connected", connection: "ready" });
+        await found();
       } catch (error) {
         if (error instanceof Refusal && error.status === 401) store.dispatch({ type: "connected", connection: "refused" });
       }

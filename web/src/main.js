@@ -91,6 +91,6 @@ async function compiled() {
 }
 
 render(html`<${Page} store=${store} api=${api} enter=${enter} />`, /** @type {HTMLElement} */ (document.getElementById("page")));
-keepAsking(store, api, crypto.randomUUID?.() ?? String(Math.random()));
+keepAsking(store, api, crypto.randomUUID?.() ?? String(Math.random()), () => findWork(store, api));
 keepRemembering(store);
 void connect();

@@ -1,6 +1,6 @@
 // Curves by uPlot, in the colours of the page, with bands that are shaded.
 import uPlot from "uplot";
-import { html, useEffect, useLayoutEffect, useRef } from "./parts/html.js";
+import { html, useLayoutEffect, useRef } from "./parts/html.js";
 
 /** @typedef {{label: string, values: (number | null)[], dash?: boolean, colour?: number}} Curve */
 /** @typedef {{from: number, to: number, kind: string}} Band */
@@ -19,7 +19,7 @@ export function Plot({ x, curves, xLabel, yLabel, log = false, logY = false, ban
   const shape = JSON.stringify([curves.map(({ label, dash, colour: number }) => [label, dash, number]), xLabel, yLabel, log, logY, height, theme]);
   const shading = useRef(bands);
   shading.current = bands;
-  useEffect(() => {
+  useLayoutEffect(() => {
     const element = place.current;
     if (!element) return;
     const options = optionsOf(curves, { xLabel, yLabel, log, logY, height, width: element.clientWidth || 400 }, () => shading.current);

@@ -7,12 +7,15 @@ import { isRange } from "./state/document.js";
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./api.js").Api} Api */
 
-/** The best values of a layout, taken into the document; returns what to tell. @param {Store} store @param {Api} api @param {{study: any, layouts: string[], index: string, method: string}} asked */
+const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
+const LOOK = 300; // [ms] between two looks at work that goes on
+
+/** The best values of layouts, taken into the document; returns what to tell. @param {Store} store @param {Api} api @param {{study: any, layouts: string[], index: string, method: string}} asked */
 export async function optimise(store, api, asked) {
   const { study, layouts, index, method } = asked;
   const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
-    if (!sees(store.get(), method, "neither")) {
+    if (!sees(store.get(), method, "neither") || !(await isSmall(api, study, layouts[0]))) {
       await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")}: best ${index}`, ...body });
       store.dispatch({ type: "viewed", view: { tab: "work" } });
       return "Under way: see Work.";
@@ -57,11 +60,20 @@ export async function beginAtBest(store, api, gesture = null) {
   const method = store.get().about.methods.find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
   if (!index || !free || !method) return;
   try {
-    const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
-    if (store.get().history.present.study === study) takeOptima(store, designs, gesture);
+    if (await isSmall(api, study, Object.keys(study.layouts ?? {})[0])) {
+      const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
+      const { present } = store.get().history;
+      if (present.study === study && Object.keys(present.values).length === 0) takeOptima(store, designs, gesture);
+    } else store.dispatch({ type: "said", message: "The free values are in the middle of their bounds: to find the best takes longer here. Press Optimise." });
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   }
+}
+
+/** @param {Api} api @param {any} study @param {string} layout */
+async function isSmall(api, study, layout) {
+  const { coordinates } = await api.post("panel/mechanism", { study, layout, client: "page.size", sequence: Date.now() });
+  return coordinates.length <= SMALL;
 }
 
 /** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
@@ -71,41 +83,46 @@ const textsOf = (state, parameters) => Object.fromEntries(Object.entries(paramet
 export async function begin(store, api, body) {
   const job = await api.post("work", body);
   store.dispatch({ type: "worked", job: jobOf(job) });
-  void watch(store, api, job.id);
+  void watch(store, api);
   return job.id;
 }
 
 /** All work that the server knows, watched on. @param {Store} store @param {Api} api */
 export async function findWork(store, api) {
-  const { work } = await api.get("work");
-  for (const job of work) {
-    store.dispatch({ type: "worked", job: jobOf(job) });
-    void watch(store, api, job.id);
-  }
+  await look(store, api);
+  void watch(store, api);
 }
 
 /** @param {any} job */
-const jobOf = (job) => ({ id: job.id, kind: job.kind, title: job.title, state: job.state, share: share(job), sentence: job.sentence ?? job.told ?? null });
+const jobOf = (job) => ({ id: job.id, kind: job.kind, title: job.title, state: job.state, share: job.total ? (job.done ?? 0) / job.total : null, sentence: job.sentence || job.told || null });
 
-/** @param {{done?: number | null, total?: number | null}} progress */
-const share = ({ done, total }) => (total ? (done ?? 0) / total : null);
+let watching = false;
 
-/** @param {Store} store @param {Api} api @param {string} id */
-async function watch(store, api, id) {
-  /** @param {any} more */
-  const tell = (more) => store.dispatch({ type: "worked", job: { id, ...more } });
-  /** @type {{[event: string]: (data: any) => void}} */
-  const told = {
-    progress: (data) => tell({ state: "running", share: share(data), sentence: data.told ?? null }),
-    done: () => tell({ state: "done", share: 1 }),
-    failed: (data) => tell({ state: "failed", sentence: data.sentence }),
-    stopped: () => tell({ state: "stopped", sentence: "Stopped; what was computed is kept." }),
-  };
+/** Looks at the work until none goes on: one request at a time, however much there is. @param {Store} store @param {Api} api */
+async function watch(store, api) {
+  if (watching) return;
+  watching = true;
   try {
-    await api.events(`work/${id}/events`, (event, data) => told[event]?.(data));
-    if (["done", "stopped"].includes(store.get().work[id]?.state)) tell({ result: await api.get(`work/${id}/result`) });
+    while (Object.values(store.get().work).some(({ state }) => state === "waiting" || state === "running")) {
+      await new Promise((resolve) => setTimeout(resolve, LOOK));
+      await look(store, api);
+    }
   } catch (error) {
-    if (error instanceof Lost) store.dispatch({ type: "connected", connection: "lost" });
+    if (!(error instanceof Lost)) throw error;
+    store.dispatch({ type: "connected", connection: "lost" });
+  } finally {
+    watching = false;
+  }
+}
+
+/** @param {Store} store @param {Api} api */
+async function look(store, api) {
+  const { work } = await api.get("work");
+  const here = new Set(work.map((/** @type {any} */ { id }) => id));
+  for (const id of Object.keys(store.get().work)) if (!here.has(id)) store.dispatch({ type: "dropped", id });
+  for (const job of work) {
+    store.dispatch({ type: "worked", job: jobOf(job) });
+    if (job.state === "done" && !store.get().work[job.id].result) store.dispatch({ type: "worked", job: { id: job.id, result: await api.get(`work/${job.id}/result`) } });
   }
 }
 

@@ -87,7 +87,7 @@ def panels(result: SimulationResult) -> list[Panel]:
         if result.on_rig and inerters:
             found.append(Panel(f"{strut} force", "N", (Curve(force_of(strut)),)))
         title = f"{f'{strut} ' if len(struts) > 1 else ''}{'inerter' if inerters else strut} force"
-        title = title.replace(f"{strut} {strut}", strut)
+        title = title.replace(f"{strut} {strut}", strut).replace("_", " ")
         carried = tuple(map(force_of, inerters)) or (force_of(strut),)
         numbers = range(struts.index(strut), len(carried) + struts.index(strut))
         labels = inerters if len(inerters) > 1 else ("",)

@@ -15,7 +15,6 @@ from inerter.figures.designs import WORST, frequency_responses, improvement_bars
 from inerter.figures.fronts import front_curves, pairs
 from inerter.figures.labels import (
     by_which,
-    capital,
     compared,
     criteria,
     criterion_title,
@@ -132,7 +131,7 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
             if shown:
                 yield StudyFigure(
                     f"map-{parameter}-{index}",
-                    f"{capital(parameter)} that is best for {title}, over {words}. Open circles: at a bound.",
+                    f"Best {parameter} for {title}, over {words}. Open circles: at a bound.",
                     partial(_parameter_map, results, index, parameter),
                 )
 

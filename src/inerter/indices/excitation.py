@@ -19,6 +19,7 @@ from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter, as_filter
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import check_inputs
+from inerter.vehicle.halves import half_of
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 
 _VELOCITY, _ACCELERATION = "m/s", "m/s^2"
@@ -65,8 +66,8 @@ class RoadVelocity:
         return self.road.velocity_intensity
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same; where both tracks are alike, with both sides on one."""
-        return mechanism.on_one_track() if self.road.coherence is None else mechanism
+        """The same; where both tracks are alike with both sides on one, and one half of it if both sides are alike."""
+        return half_of(mechanism.on_one_track()) if self.road.coherence is None else mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """One at each road input; with a coherence two, from the mean of the tracks and half of their difference."""

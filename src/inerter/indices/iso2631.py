@@ -1,8 +1,8 @@
 """Frequency weightings of ISO 2631-1:1997 for what people feel, from the parameters of its Annex A.
 
 A weighting is a band pass (f1, f2, both of second order and Butterworth), a transition from acceleration to velocity
-(f3, f4, Q4), which has no zero without f3, and perhaps an upward step (f5, Q5, f6, Q6), from (f5/f6)^2 at low frequencies
-to one.
+(f3, f4, Q4), which has no zero without f3, and perhaps an upward step (f5, Q5, f6, Q6), from (f5/f6)^2 at low
+frequencies to one.
 """
 
 from __future__ import annotations

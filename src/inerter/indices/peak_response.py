@@ -60,6 +60,4 @@ class PeakResponse:
 
 def _over(top: str, bottom: str) -> str:
     """A unit over another one."""
-    if top == bottom:
-        return "1"
     return f"{f'({top})' if '/' in top else top}/{f'({bottom})' if '/' in bottom or ' ' in bottom else bottom}"

@@ -15,8 +15,8 @@ from inerter.vehicle.mechanism import Mechanism, Weighted
 class SuspensionTravel:
     """R.m.s. travel of the suspension on a road [m], added up over the struts; a limit on it holds for each.
 
-    These are the struts at one wheel each, that is, at one coordinate that a tyre carries, so that what joins two wheels
-    does not count, nor does a seat; where there are none, all struts.
+    These are the struts at one wheel each, that is, at one coordinate that a tyre carries, so that what joins two
+    wheels does not count, nor does a seat; where there are none, all struts.
     """
 
     road: Road | Excitation

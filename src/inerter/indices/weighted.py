@@ -84,7 +84,8 @@ def _checked(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array]:
         ) from None
     if times.ndim != 1 or times.shape != given.shape or not (np.all(np.isfinite(times)) and np.all(np.isfinite(given))):
         raise PerformanceIndexError(
-            f"Time and acceleration are two lists of as many finite numbers, got shapes {times.shape} and {given.shape}."
+            f"Time and acceleration are two lists of as many finite numbers, got shapes {times.shape} and "
+            f"{given.shape}."
         )
     steps = np.diff(times)
     if not steps.size or not steps.min() > 0.0 or np.ptp(steps) > _EVEN * steps.max():

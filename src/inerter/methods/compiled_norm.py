@@ -96,12 +96,23 @@ class CompiledQuestion:
         """Which outputs compiled code may value: those that are finite at a design beside the middle of the bounds."""
         if self.is_peak:
             return np.array([self._exact(self._special).status.ok])
-        return np.asarray(~np.isinf(self._norms(self._special)))
+        return np.asarray(~np.isinf(self._beside))
 
     @cached_property
     def seen(self) -> NDArray[np.bool_]:
         """Which outputs the source reaches, as those of one half of a car do not see what the two sides share."""
-        return np.asarray(self._norms(self._special) > 0.0)
+        return np.asarray(self._beside > 0.0)
+
+    @cached_property
+    def sighted(self) -> tuple[tuple[NDArray[np.bool_], CompiledQuestion], ...]:
+        """For each source the outputs that it reaches, and the question about these."""
+        sources = [one for one in self.apart or (self,) if np.any(one.seen)]
+        return tuple((one.seen, CompiledQuestion(one.problem.part(one.seen))) for one in sources)
+
+    @cached_property
+    def _beside(self) -> Array:
+        """Norms at a design beside the middle of the bounds."""
+        return self._norms(self._special)
 
     @cached_property
     def _special(self) -> Array:
@@ -177,13 +188,12 @@ class CompiledQuestion:
 
         Of several sources, squares are added up; what does not see one gets nothing of it.
         """
-        if not self.apart:
+        if not self.apart and np.all(self.seen):
             norms, gradients, good = h2_kernels.norms(points, *self.arguments, weights)
             return np.asarray(norms), np.asarray(gradients), np.asarray(good)
         squares, good = np.zeros((points.shape[0], self.serves.size)), np.ones(points.shape[0], dtype=bool)
-        parts = [(one.seen, CompiledQuestion(one.problem.part(one.seen))) for one in self.apart if np.any(one.seen)]
         found = []
-        for seen, one in parts:
+        for seen, one in self.sighted:
             norms, _, fine = one._with_gradients(points, np.empty(0))
             squares[:, seen] += norms**2
             found.append(norms)
@@ -191,7 +201,7 @@ class CompiledQuestion:
         total = np.sqrt(squares)
         gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
-            for (seen, one), norms in zip(parts, found, strict=True):
+            for (seen, one), norms in zip(self.sighted, found, strict=True):
                 shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
                 gradients[row] += one._with_gradients(points[row : row + 1], shares)[1][0]
         return total, gradients, good

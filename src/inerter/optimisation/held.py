@@ -73,5 +73,5 @@ def infeasible(held: Sequence[Held], parameters: Mapping[str, float]) -> Status:
     at = ", ".join(f"{name} = {value:.4g}" for name, value in parameters.items())
     return Status(
         StatusKind.INFEASIBLE,
-        f"no design between the bounds has {limits}; the nearest, at {at}, has {nearest}",
+        f"no design was found between the bounds that has {limits}; the nearest, at {at}, has {nearest}",
     )

@@ -176,7 +176,7 @@ def _best(
     if linear is not None:
         best_linear = vehicle.with_values(dict(zip(free, linear.tolist(), strict=True)))
         over_linear = compare(design, best_linear, index, method)
-    held = held_at(problem, design, method, point, known=quick and best.excess <= kept)
+    held = held_at(problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value))
     estimate = over_linear.first if over_linear else _confirmed(estimate_of(design, index, method), best.value)
     if not best.excess <= kept:
         estimate = replace(estimate, status=infeasible(held, parameters))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import nan
 
 import xarray as xr
 
@@ -11,7 +12,7 @@ from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.report.budgets import end_of_range
-from inerter.report.findings import Telling, Writer, best_layouts, headlines
+from inerter.report.findings import Telling, Writer, best_layouts, headlines, listed
 from inerter.report.fronts import front_sentences
 from inerter.report.ways import ways
 
@@ -25,7 +26,19 @@ def answers(
         *headlines(results, Telling(write, ways(study), static)),
         *front_sentences(results, write),
         *_of_budgets(results, study, budgets, write),
+        *_of_limits(study, write),
     ]
+
+
+def _of_limits(study: Study, write: Writer) -> Iterator[str]:
+    told = [f"{_spoken(one.words)} {write(one.value, one.unit, nan).strip()}" for one in study.limits]
+    if told:
+        yield f"These are the best of all designs with {listed(told)}."
+
+
+def _spoken(words: str) -> str:
+    """Words of a file as they are said: static-stiffness.strut is the static stiffness of strut."""
+    return words.replace("-", " ").replace(".", " of ")
 
 
 def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome], write: Writer) -> Iterator[str]:
@@ -36,7 +49,7 @@ def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutco
         if layout in best:
             what = capital(f"{study.elements[element].key} {element}")
             ends = [f"{end} in {index_title(results, o.index)}" for o in own if (end := end_of_range(o, write))]
-            told = [f"{what}: {layout} is better than {study.baseline} {', '.join(ends)}."] if ends else []
+            told = [f"{what}: {layout} is better than {study.baseline} {listed(ends)}."] if ends else []
             others = [found for found in own if not end_of_range(found, write)]
             told += [f"{what}, {layout}, {index_title(results, o.index)}: {o.message}." for o in others]
             yield " ".join(told)

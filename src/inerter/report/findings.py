@@ -108,7 +108,7 @@ def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
 
 
 def _alike(names: list[str]) -> str:
-    return f"{_listed(names)}, equally good" if len(names) > 1 else names[0]
+    return f"{listed(names)}, equally good" if len(names) > 1 else names[0]
 
 
 Extreme = tuple[float, dict[str, float]]  # a number, and the swept values where it is
@@ -179,7 +179,7 @@ def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
             }
             told = [f"{words} {results.attrs['baseline']} at {count}" for words, count in counts.items() if count]
             if told:
-                sentences.append((index, f"{name} is {_listed(told)} of {better.size} points{by_which(results)}"))
+                sentences.append((index, f"{name} is {listed(told)} of {better.size} points{by_which(results)}"))
     return sentences
 
 
@@ -205,10 +205,10 @@ def _places(found: list[tuple[float, float]], unit: str, write: Writer) -> str:
     """Swept values with their errors; of many the first, and how many there are."""
     more = len(found) - _MOST_PLACES
     texts = [write(at, unit, error) for at, error in found[:_MOST_PLACES]]
-    return _listed([*texts, *([f"{more} other values"] if more > 0 else [])])
+    return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def _listed(words: list[str]) -> str:
+def listed(words: list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 

@@ -43,7 +43,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
         cells = []
         for limit in limits:
             value, _, cost = _told(results.sel(layout=name, index=index, limit=limit), index).partition(", ")
-            cells.append(Cell(value, cost))
+            cells.append(Cell(value, cost.replace(" -", " \N{MINUS SIGN}")))
         rows.append(Row(name, cells))
     caption = f"Limits of the designs that are best for {titled(index_title(results, index), index)}"
     return Table(caption, ["Layout", *limits], rows)

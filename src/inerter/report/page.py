@@ -32,6 +32,7 @@ from inerter.report.tolerances import tolerance_tables
 from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
+_LARGER = 1.2  # than they are drawn, are drawings between text
 _MOST_SWEPT = 1000  # values of a sweep on a page
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
@@ -150,7 +151,7 @@ def environment(*packages: str) -> Environment:
 
 def printed_sentence(sentence: str) -> str:
     """A sentence with a minus where there is one, and per cent on the line of their number."""
-    text = sentence.replace(" +- ", " ± ").replace(" %", f"{_SPACE}%")
+    text = sentence.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}").replace(" %", f"{_SPACE}%")
     return re.sub(r" -(?=[\d.]|inf\b)", " −", text)
 
 
@@ -174,7 +175,7 @@ def inline(svg: str, name: str, caption: str, *, natural: bool = False) -> Marku
     opening, _, rest = body.partition(">")
     rest = _REFERENCE.sub(rf"\g<1>{name}-", rest)
     width = _WIDTH.search(opening)
-    size = f' style="width: {float(width[1]):.0f}pt"' if natural and width else ""
+    size = f' style="width: {_LARGER * float(width[1]):.0f}pt"' if natural and width else ""
     return Markup(f'{_SIZE.sub("", opening)}{size} role="img" aria-label="{escape(caption)}">{rest}')
 
 

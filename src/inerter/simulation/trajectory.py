@@ -128,13 +128,18 @@ class Trajectory:
         """The sample of an output that is farthest from zero, and when it was."""
         return peak_of(self.time, self[name])
 
-    @cached_property
+    @property
     def static_loads(self) -> dict[str, float]:
         """The weight that each tyre carries at rest [N], by its name; empty where that is not known, as `notes` say."""
+        return self._weighed[0]
+
+    @cached_property
+    def _weighed(self) -> tuple[dict[str, float], str]:
+        """The static loads, and why there are none."""
         try:
-            return {} if self._mechanism is None else static_tyre_loads(self._mechanism)
-        except MechanismError:
-            return {}
+            return ({} if self._mechanism is None else static_tyre_loads(self._mechanism)), ""
+        except MechanismError as problem:
+            return {}, str(problem)
 
     @property
     def least_tyre_loads(self) -> dict[str, Peak]:
@@ -159,13 +164,11 @@ class Trajectory:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be said of the motion, one sentence each: tyres that would have lifted off."""
-        if self._mechanism is not None and self._mechanism.tyres and not self.static_loads:
-            try:
-                static_tyre_loads(self._mechanism)
-            except MechanismError as problem:
-                return (f"Whether a tyre would lift off cannot be told. {problem}",)
-        by_tyre = {tyre: tuple(one for one in self.lift_offs if one.tyre == tyre) for tyre in self.static_loads}
-        return tuple(lift_off_note(found, self.static_loads[tyre]) for tyre, found in by_tyre.items() if found)
+        static, unknown = self._weighed
+        if unknown:
+            return (f"Whether a tyre would lift off cannot be told. {unknown}",)
+        by_tyre = {tyre: tuple(one for one in self.lift_offs if one.tyre == tyre) for tyre in static}
+        return tuple(lift_off_note(found, static[tyre]) for tyre, found in by_tyre.items() if found)
 
     def unit(self, name: str) -> str:
         """Unit of an output."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inerter.errors import InerterError, PerformanceIndexError
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.graph import Branch, Graph, Mount, full_graph
-from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Strut, Tyre
+from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Point, Strut, Tyre
 
 Matrix = NDArray[np.float64]
 _LISTED = 24  # names in a message
@@ -61,7 +61,7 @@ def outputs(mechanism: Mechanism, graph: Graph) -> dict[str, Output]:
     if len(mechanism.struts) == 1:
         own = f"{mechanism.struts[0].name}_"
         found += [replace(o, name=o.name.removeprefix(own)) for o in found if o.name.startswith(own)]
-    found += [*_of_elements(mechanism, graph), *_over_ground(mechanism, graph)]
+    found += [*_of_elements(mechanism, graph), *_over_ground(mechanism, graph), *_of_still(mechanism)]
     known = {output.name: output for output in reversed(found)}  # a mount's own name goes before an element's
     return {output.name: known[output.name] for output in found}
 
@@ -110,7 +110,7 @@ def _of_inputs(mechanism: Mechanism) -> list[Output]:
     return found
 
 
-def _motions(mechanism: Mechanism, coordinate: Coordinate) -> tuple[str, ...]:
+def _motions(mechanism: Mechanism, coordinate: Coordinate | Point) -> tuple[str, ...]:
     """What is known of a coordinate's own motion: on moving ground no more than the acceleration of a mass."""
     if mechanism.ground_moves and not coordinate.angle:
         return tuple(what for what in _MOTIONS if what not in _OVER_GROUND)
@@ -120,7 +120,7 @@ def _motions(mechanism: Mechanism, coordinate: Coordinate) -> tuple[str, ...]:
 def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
     found = []
     ground = np.array([float(force.name == GROUND_ACCELERATION) for force in mechanism.forces])
-    for coordinate, row in zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False):
+    for coordinate, row in _moving(mechanism, graph):
         unit, said = "rad" if coordinate.angle else "m", _said(coordinate.name)
         carried = {"external": ground} if mechanism.ground_moves and not coordinate.angle else {}
         for what in _motions(mechanism, coordinate):
@@ -129,11 +129,20 @@ def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
     return found
 
 
+def _moving(mechanism: Mechanism, graph: Graph) -> list[tuple[Coordinate | Point, Matrix]]:
+    """Coordinates and points, as rows over the nodes."""
+    found: list[tuple[Coordinate | Point, Matrix]] = []
+    found += zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False)
+    of = {coordinate.name: row for coordinate, row in found}
+    for point in mechanism.points:
+        found.append((point, sum((v * of[n] for n, v in point.port.items()), np.zeros(len(graph.nodes)))))
+    return found
+
+
 def _over_ground(mechanism: Mechanism, graph: Graph) -> list[Output]:
     """Motions of masses relative to the ground, whether that moves or not."""
-    rows = zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False)
     found = []
-    for coordinate, row in (one for one in rows if not one[0].angle):
+    for coordinate, row in (one for one in _moving(mechanism, graph) if not one[0].angle):
         for what in _OVER_GROUND:
             moved: dict[str, Any] = {what: row}
             title = f"{_said(coordinate.name)} {what} over the ground"
@@ -192,6 +201,22 @@ def _placed(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
             break
         known = known | np.any(alone, axis=0)
     return known
+
+
+def _of_still(mechanism: Mechanism) -> list[Output]:
+    """Of struts that nothing moves: zero, by every name that they may have."""
+    found: list[Output] = []
+    for strut in mechanism.still:
+        force, travel = of_mount(strut)
+        found += [Output(force, "N", _said(force)), Output(travel, "m", _said(travel))]
+        labels = [element.label for element in strut.network.elements()]
+        for label in (*(f"{strut.name}.{label}" for label in labels), *labels):
+            found += [
+                Output(velocity_of(label), "m/s", f"velocity across {label}"),
+                Output(force_of(label), "N", f"force of {label}"),
+                Output(stroke_of(label), "m", f"stroke of {label}"),
+            ]
+    return found
 
 
 def check_inputs(

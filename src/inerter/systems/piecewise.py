@@ -138,6 +138,8 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
             elements[label] = elements[label].with_value(value)
         else:
             inertias[label] = replace(inertias[label], inertia=value)
+    if system.mechanism.ground_moves and any(label in inertias for label in values):
+        raise DesignError("Every mass feels the ground that moves. Change masses before, and take piecewise(...).")
     mechanism = copy(system.mechanism)  # which was checked when it was made
     object.__setattr__(mechanism, "coordinates", tuple(inertias.values()))
     known = system.kinematics

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations, pairwise
+from itertools import combinations
 from numbers import Integral
 from typing import Any
 
@@ -41,7 +41,8 @@ _NO_CONFLICT = 1e-6  # relative size of a trade-off up to which there is none
 _SHIFT = 3.0  # added to normalised criteria, so that they have logarithms
 _SAME = 1e-4  # normalised distance up to which two points are one
 _SLACK = 1e-6  # of a normalised criterion that is better than asked for
-_LEXICOGRAPHIC, _FLAT = 1e-8, 1e-3  # relative: what an end may give up, and what must be gained for it
+_WIDE, _DOUBTED = 1.6, 1.2  # of the typical gap: what is filled, and what is looked into for a jump
+_AT_END = 0.02  # of a gap, up to which a point lies at its end
 _STARTS = 3  # from the sample for each point
 
 
@@ -252,27 +253,36 @@ class _Trade:
         self, found: list[_Found], count: int, which: Sequence[int]
     ) -> tuple[list[_Found], set[tuple[bytes, bytes]]]:
         """So many points, in whose widest gaps others were put; and the gaps in which there is nothing."""
-        found, jumps = _thinned(found, count, which), set()
+        jumps: set[tuple[bytes, bytes]] = set()
+        found = _thinned(found, count, which)
         for _ in range(3 * count):
-            gaps = [
-                (float(np.linalg.norm(b.normal[list(which)] - a.normal[list(which)])), i)
-                for i, (a, b) in enumerate(pairwise(found))
-                if (a.point.tobytes(), b.point.tobytes()) not in jumps
-            ]
+            gaps = _gaps(found, jumps, which)
             if not gaps:
                 break
             widest, i = max(gaps)
-            typical = float(np.median([gap for gap, _ in gaps]))
-            if len(found) >= count and widest <= 1.6 * typical:
+            if len(found) >= count and widest <= _WIDE * float(np.median([gap for gap, _ in gaps])):
                 break
-            a, b = found[i], found[i + 1]
-            one = self.solve(0.5 * (a.normal + b.normal), [a, b], which)
-            apart = 0.0 if one is None else min(np.linalg.norm((one.normal - o.normal)[list(which)]) for o in (a, b))
-            if one is None or apart < 0.02 * widest:
-                jumps.add((a.point.tobytes(), b.point.tobytes()))
-                continue
-            found = _thinned(_undominated([*found, one], which), max(count, 3), which, keep=one)
+            one = self.inside(found[i], found[i + 1], which)
+            if one is None:
+                jumps.add(_pair(found, i))
+            else:
+                found = _thinned(_undominated([*found, one], which), max(count, 3), which, keep=one)
+        gaps = _gaps(found, jumps, which)
+        typical = float(np.median([gap for gap, _ in gaps])) if gaps else 0.0
+        jumps |= {
+            _pair(found, i)
+            for gap, i in gaps
+            if gap > _DOUBTED * typical and self.inside(found[i], found[i + 1], which) is None
+        }
         return found, jumps
+
+    def inside(self, a: _Found, b: _Found, which: Sequence[int]) -> _Found | None:
+        """A point between two neighbours; None if the search for one ends at one of them: the front jumps there."""
+        one = self.solve(0.5 * (a.normal + b.normal), [a, b], which)
+        if one is None:
+            return None
+        apart = [float(np.linalg.norm((one.normal - other.normal)[list(which)])) for other in (a, b)]
+        return one if min(apart) > _AT_END * float(np.linalg.norm((a.normal - b.normal)[list(which)])) else None
 
     def over_triangle(self, ends: Sequence[_Found], count: int) -> list[_Found]:
         """The front of three criteria: the fronts of each two, and points between them."""
@@ -303,6 +313,18 @@ def _costly(problem: Limited, first: Sequence[Array]) -> LocalOptimum:
         return trust_region_within(problem, start)
     assert problem.objective is not None
     return trust_region(problem.objective, start, problem.lower, problem.upper)
+
+
+def _pair(found: Sequence[_Found], i: int) -> tuple[bytes, bytes]:
+    """What tells the gap behind a point from others."""
+    return found[i].point.tobytes(), found[i + 1].point.tobytes()
+
+
+def _gaps(found: Sequence[_Found], jumps: set[tuple[bytes, bytes]], which: Sequence[int]) -> list[tuple[float, int]]:
+    """The widths of the gaps between neighbours that are no jumps, with their numbers."""
+    table = np.array([one.normal for one in found])[:, list(which)]
+    widths = np.linalg.norm(np.diff(table, axis=0), axis=1).tolist()
+    return [(width, i) for i, width in enumerate(widths) if _pair(found, i) not in jumps]
 
 
 def _undominated(found: Sequence[_Found], which: Sequence[int]) -> list[_Found]:

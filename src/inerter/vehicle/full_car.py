@@ -76,6 +76,7 @@ class FullCar(VehicleModel):
                 load_input="sprung_force",
                 load_output="sprung_displacement",
             ),
+            mirror=(*((f"unsprung_{a}_left", f"unsprung_{a}_right") for a in _AXLES), ("roll", "roll")),
         )
 
     def _coordinates(self) -> tuple[Coordinate, ...]:

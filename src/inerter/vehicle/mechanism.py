@@ -73,6 +73,15 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Point:
+    """A place that moves as a port does, with outputs of its own; an angle if that is what it measures."""
+
+    name: str
+    port: Port
+    angle: bool = False
+
+
+@dataclass(frozen=True)
 class Weighted:
     """An output of the mechanism with the weight that brings it to the unit of an index."""
 
@@ -94,7 +103,7 @@ class Measures:
 class Mechanism:
     """Any number of coordinates, struts, tyres, roads and forces.
 
-    Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`;
+    Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`, so of points;
     `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and
     `_relative_velocity` are those over the ground, which are the same unless the ground moves.
 
@@ -108,11 +117,16 @@ class Mechanism:
     roads: tuple[RoadInput, ...] = ()
     forces: tuple[Force, ...] = ()
     measures: Measures = field(default_factory=Measures)
+    points: tuple[Point, ...] = ()
+    mirror: tuple[tuple[str, str], ...] = ()  # coordinates that are each other's image, or turn round: `half_of`
+    still: tuple[Strut, ...] = ()  # struts that nothing moves and that are left out: their outputs are zero
     ground_moves: bool = False  # coordinates are then relative to it: see `on_moving_ground`
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
             object.__setattr__(self, name, _parts(name, getattr(self, name), kind))
+        if self.ground_moves:
+            object.__setattr__(self, "forces", _with_ground(self.forces, self.coordinates))
         _check_measures(self.measures)
         _check_names(self)
         _check_numbers(self)
@@ -133,8 +147,7 @@ class Mechanism:
         """
         if self.ground_moves:
             return self
-        masses = {c.name: -c.inertia for c in self.coordinates if not c.angle}
-        return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, masses)), ground_moves=True)
+        return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, {})), ground_moves=True)
 
     def on_one_track(self) -> Mechanism:
         """The same mechanism with tyres that meet the road at once on one road, where it lies alike on both sides.
@@ -178,6 +191,7 @@ _KINDS: dict[str, type] = {
     "tyres": Tyre,
     "roads": RoadInput,
     "forces": Force,
+    "points": Point,
 }
 
 
@@ -199,6 +213,12 @@ def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
     return parts
 
 
+def _with_ground(forces: Iterable[Force], coordinates: Iterable[Coordinate]) -> tuple[Force, ...]:
+    """The forces, that of the ground on the masses as they are now."""
+    masses = {c.name: -c.inertia for c in coordinates if not c.angle}
+    return tuple(replace(f, port=masses) if f.name == GROUND_ACCELERATION else f for f in forces)
+
+
 def _check_measures(measures: object) -> None:
     if not isinstance(measures, Measures):
         raise MechanismError(f"The measures of a mechanism are Measures(...), got {measures!r}.")
@@ -211,12 +231,13 @@ def _check_measures(measures: object) -> None:
 
 def _check_names(mechanism: Mechanism) -> None:
     seen: set[str] = set()
-    parts: tuple[Coordinate | Strut | Tyre | RoadInput | Force, ...] = (
+    parts: tuple[Coordinate | Strut | Tyre | RoadInput | Force | Point, ...] = (
         *mechanism.coordinates,
         *mechanism.struts,
         *mechanism.tyres,
         *mechanism.roads,
         *mechanism.forces,
+        *mechanism.points,
     )
     for part in parts:
         kind = type(part).__name__
@@ -258,6 +279,7 @@ def _check_ports(mechanism: Mechanism) -> None:
     ports = [(f"strut {s.name!r}", p, coordinates | roads) for s in mechanism.struts for p in (s.upper, s.lower)]
     ports += [(f"tyre {t.name!r}", t.port, coordinates) for t in mechanism.tyres]
     ports += [(f"force {f.name!r}", f.port, coordinates) for f in mechanism.forces]
+    ports += [(f"point {p.name!r}", p.port, coordinates) for p in mechanism.points]
     for where, port, may_hold in ports:
         if not isinstance(port, Mapping):
             raise MechanismError(f"The port of {where} maps coordinates to levers, as {{'body': 1.0}}; got {port!r}.")

@@ -1,6 +1,8 @@
 // The indices of the strut beside the baseline, and what may be done about them at once.
 
-import { baselineOf } from "../questions.js";
+import { kindOf } from "../kinds.js";
+import { baselineOf, designOf } from "../questions.js";
+import { namesIn } from "../state/document.js";
 import { shown } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
@@ -30,6 +32,7 @@ export function AnswersPanel({ store, api }) {
     ${value && html`<${Indices} value=${value} layout=${document.layout} baseline=${baseline} stale=${Boolean(sentence)} />`}
     <${Limits} value=${value} />
     <${Optimise} store=${store} api=${api} indices=${indicesOf(state)} />
+    <${Budget} store=${store} api=${api} indices=${indicesOf(state)} />
     <${OtherProblems} state=${state} />
   </section>`;
 }
@@ -58,8 +61,8 @@ function Indices({ value, layout, baseline, stale }) {
     <tbody>${design.results.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span></th>
-        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}<${Notes} result=${result} /></td>
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span> <${Notes} result=${result} /></th>
+        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}</td>
         ${!alone && html`<td class="number">${reference ? number(reference) : "–"}</td><td class=${`number ${better(result.improvement_percent)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}</td>`}
       </tr>`;
     })}</tbody>
@@ -86,7 +89,7 @@ const better = (value) => (typeof value !== "number" || Math.abs(value) < 0.005 
 /** @param {{result: any}} props */
 function Notes({ result }) {
   const texts = [result.status !== "ok" && result.message, ...(result.notes ?? [])].filter(Boolean);
-  return texts.length === 0 ? null : html`<details class="notes"><summary aria-label="Notes">ⓘ</summary><ul>${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
+  return texts.length === 0 ? null : html`<details class="notes"><summary>note</summary><ul>${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
 }
 
 /** Which limits are kept. @param {{value: any}} props */
@@ -119,6 +122,39 @@ function Optimise({ store, api, indices }) {
     <button class="main" value="one">Optimise</button> <button value="all">All layouts</button>
     <p class="quiet" role="status">${told}</p>
   </form>`;
+}
+
+/** How much of an element the design bears before the baseline is as good. @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
+function Budget({ store, api, indices }) {
+  const state = store.get();
+  const document = state.history.present;
+  const [told, setTold] = useState("");
+  const names = namesIn(document.study, document.layout);
+  if (names.length === 0 || indices.length === 0 || document.layout === baselineOf(document).layout) return null;
+  const switching = names.find((name) => kindOf(state, name)?.switches) ?? names[0];
+  return html`<details class="budget"><summary>What it bears</summary><form class="row" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
+    event.preventDefault();
+    const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
+    const body = { study: document.study, design: designOf(document), baseline: baselineOf(document), index: form.get("index"), parameter: form.get("parameter") };
+    setTold("Simulating…");
+    try {
+      setTold(budgetTold(await api.post("panel/budget", { ...body, client: "page.budget", sequence: Date.now() }), document.layout, baselineOf(document).layout));
+    } catch (error) {
+      setTold(/** @type {Error} */ (error).message);
+    }
+  }}>
+    <label>How much of <select name="parameter" key=${document.layout} defaultValue=${switching}>${names.map((name) => html`<option key=${name} selected=${name === switching}>${name}</option>`)}</select></label>
+    <label>by <select name="index">${indices.map(({ symbol }) => html`<option key=${symbol}>${symbol}</option>`)}</select></label>
+    <button>Find out</button>
+    <p role="status">${told}</p>
+  </form></details>`;
+}
+
+/** @param {any} found @param {string} layout @param {string} baseline */
+function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
+  if (typeof value !== "number") return message || "There is no such value.";
+  const error = standard_error ? ` ± ${shown(standard_error, 2)}` : "";
+  return `At ${parameter} = ${shown(value)}${error} ${unit}, ${layout} is as good as ${baseline}.${status === "ok" ? "" : ` ${message}`}`;
 }
 
 /** What is wrong with the study at places that have no field on the page. @param {{state: State}} props */

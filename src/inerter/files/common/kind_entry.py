@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from inerter.errors import DesignError, UnitError
+from inerter.errors import UnitError
 from inerter.fields import Field
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest
+from inerter.files.common.ties import TIED, tie_text
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
 from inerter.units import parse_quantity, shown
@@ -111,7 +112,7 @@ def entry_of(element: Element) -> str | dict[str, Any]:
     if isinstance(value, Free):
         alone = {"from": said(value.lower, unit), "to": said(value.upper, unit)}
     elif isinstance(value, Tied):
-        raise DesignError(f"{element.label!r} is tied to others ({value}); an entry holds numbers. Fix it first.")
+        return {TIED: tie_text(value)}
     else:
         alone = said(value, unit)
     if kinds_by_unit().get(unit) is type(element):

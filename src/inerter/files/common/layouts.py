@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from inerter.errors import NetworkError
 from inerter.files.common.entries import Amount
 from inerter.files.common.kind_entry import KindEntry
-from inerter.files.common.problem import Problem, at
+from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.shape import Range
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
+from inerter.files.common.ties import TieEntry, tied_element, with_known_values
 from inerter.files.common.vehicles import Mount, made, mounts
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.registry import kinds_by_unit
@@ -29,7 +30,8 @@ class StrutLayout:
 
     def design(self, model: str, vehicle: Mapping[str, Any], elements: Mapping[str, Element]) -> Vehicle:
         """The vehicle with these struts, made of `elements`."""
-        return made(model, vehicle, {mount: network(text, **elements) for mount, text in self.struts.items()})
+        known = with_known_values(elements)
+        return made(model, vehicle, {mount: network(text, **known) for mount, text in self.struts.items()})
 
     def entry(self) -> str | dict[str, str]:
         """How a file says it."""
@@ -48,6 +50,18 @@ def struts_of(model: str, vehicle: Mapping[str, Any], entry: Shape | dict[str, s
     given = entry.model_dump(exclude_none=True) if isinstance(entry, Shape) else entry
     struts = {**own, **given}
     return {name: struts[name] for name in dict.fromkeys((*known, *struts)) if name in struts}
+
+
+def elements_of(entries: Mapping[str, Any]) -> tuple[dict[str, Element], list[Problem]]:
+    """The elements that the entries of a section tell, in their order, and what is wrong with those that are tied."""
+    own = {name: element_of(name, entry) for name, entry in entries.items() if not isinstance(entry, TieEntry)}
+    found, problems = {}, []
+    for name, entry in entries.items():
+        try:
+            found[name] = tied_element(name, entry, own) if isinstance(entry, TieEntry) else own[name]
+        except EntryError as error:
+            problems.append(replace(error.problem, place=("elements", name)))
+    return found, problems
 
 
 def element_of(name: str, entry: Range | Amount | KindEntry) -> Element:

@@ -14,12 +14,11 @@ from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
 from inerter.files.study.limits import limits_in, questions_limited
-from inerter.files.study.study import Study
-from inerter.methods.asking import objective_of
+from inerter.files.study.study import Study, elements_used
+from inerter.methods.asking import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Compiled, asked_of
 from inerter.methods.registry import is_blind
-from inerter.networks.parser import names
 from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
@@ -58,11 +57,12 @@ def _tried(every: Cases) -> list[int]:
 
 def _check_design(study: Study, layout: str) -> None:
     vehicle = study.design(layout)
-    mechanism = vehicle.mechanism()
-    asked = [one for name in study.indices for one in asked_of(vehicle, study.over_conditions(name))]
-    questions = [index.question(case.mechanism()) for case, index in asked]
+    loose = without_tied_values(vehicle)
+    over = [study.over_conditions(name) for name in study.indices]
+    each = [one for index in over for one in asked_of(loose.vehicle if loose else vehicle, index)]
+    questions = [(case.mechanism(), index.question(case.mechanism())) for case, index in each]
     if any(map(is_blind, study.methods)):
-        for question in questions:
+        for mechanism, question in questions:
             linear_problem(mechanism, question, CONVENTIONS[study.conventions])
     else:
         free = vehicle.free_values().items()
@@ -81,7 +81,7 @@ def study_notes(study: Study) -> list[str]:
     for layout in study.layouts:
         for note in design_notes(study, study.design(layout).mechanism()):
             notes.setdefault(note, []).append(layout)
-    used = {name for layout in study.layouts.values() for text in layout.struts.values() for name in names(text)}
+    used = elements_used(study)
     unused = [name for name in study.elements if name not in used]
     return [f"{some(layouts)}: {note}" for note, layouts in notes.items()] + (
         [f"no layout uses {some(unused)}"] if unused else []

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from inerter.files.common.layouts import StrutLayout, element_of, layout_problems, struts_of
+from inerter.files.common.layouts import StrutLayout, elements_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest, some
@@ -51,6 +51,7 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     shape = shape_of(tables, path, *shapes())
     study = replace(_resolve(path, shape), texts=texts_of(tables))
     problems = [
+        *elements_of(shape.elements)[1],
         *vehicle_problems(study.model, study.vehicle),
         *layout_problems(study.model, study.vehicle, study.elements, study.layouts),
         *_road_problems(study, shape),
@@ -93,7 +94,7 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         model=model,
         vehicle=vehicle,
         road=None if shape.road is None else Road(**shape.road.model_dump(exclude={"letter"})),
-        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
+        elements=elements_of(shape.elements)[0],
         layouts=layouts,
         indices=settings.indices,
         conventions=settings.conventions,

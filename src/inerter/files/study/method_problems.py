@@ -18,7 +18,7 @@ from inerter.methods.registry import (
     needs_amplitude,
     refuses_gaps,
 )
-from inerter.networks.elements import Element
+from inerter.networks.elements import Element, Tied
 from inerter.networks.elements.roles import Statistical
 from inerter.systems.graph import switching_parts
 from inerter.units import shown
@@ -137,6 +137,8 @@ def _budget_problems(study: Study) -> Iterator[Problem]:
         if name not in study.elements:
             missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
             yield at(place, fault=missing, hint=nearest(name, study.elements))
+        elif isinstance(study.elements[name].value, Tied):
+            yield at(place, fault=f"{name} is tied to others", expected="an element with a value of its own")
         elif not set(used.get(name, ())) - {study.baseline}:
             only = f"no layout but the baseline has {name}"
             yield at(place, fault=only, expected="an element of a layout that is compared")

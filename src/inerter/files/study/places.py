@@ -148,8 +148,7 @@ def _road_numbers(study: Study) -> dict[str, Number]:
 
 def _put_road(study: Study, key: str, number: float) -> Study:
     assert study.road is not None
-    names = {f.key: f.name for f in ROAD}
-    changed: dict[str, Any] = {names[key]: number}
+    changed: dict[str, Any] = {f.name: number for f in ROAD if f.key == key}
     return replace(study, road=replace(study.road, **changed))
 
 

@@ -46,8 +46,9 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
         gains = np.full((len(study.layouts), weights.size, omega.size), np.nan)
         for layout, (problem, system) in mine.items():
             with np.errstate(over="ignore", invalid="ignore"):
-                response = frequency_response(system, omega, problem.pade_order)[:, :, 0]
-            gains[list(study.layouts).index(layout)] = weights[:, None] * np.abs(response).T
+                sizes = np.abs(frequency_response(system, omega, problem.pade_order))
+            together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
+            gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
         own = f"({question.unit})" if "/" in question.unit else question.unit
         per = question.drive.unit
         unit = question.unit if not per else f"{own}/({per})" if "/" in per else f"{own}/{per}"

@@ -45,6 +45,7 @@ from inerter.files.common.shape import (
     vehicle_shapes,
 )
 from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.ties import TieEntry, is_tie, tie_entry
 from inerter.files.common.vehicles import models
 from inerter.files.study.conditions import OVER
 from inerter.files.study.limits import LimitEntry, LimitShape
@@ -217,6 +218,12 @@ class Settings(Shape):
     )
 
 
+_AnyElement = Annotated[
+    Annotated[ElementEntry, Tag("<own>")] | Annotated[TieEntry, PlainValidator(tie_entry), Tag("<tied>")],
+    Discriminator(lambda value: "<tied>" if is_tie(value) else "<own>"),
+]
+
+
 class StudyFile(WithVehicle):
     """The whole file, but for what is made of quantities and rows."""
 
@@ -226,7 +233,7 @@ class StudyFile(WithVehicle):
     )
     vehicle: Any
     road: Any
-    elements: dict[ElementName, ElementEntry] = Field(
+    elements: dict[ElementName, _AnyElement] = Field(
         min_length=1,
         description="What struts are made of, by names of your own. The unit tells the element: N/m spring, "
         "N s/m damper, kg inerter, N dry friction, m gap. A value is fixed, or free between two bounds.",
@@ -294,7 +301,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         **vehicles,
         ("road",): RoadShape,
         **kinds,
-        ("elements", "*", "<range>"): Range,
+        ("elements", "*", "<own>", "<range>"): Range,
         **tables,
         ("study",): settings,
         ("study", "sweep", "*", "<range>"): SweepRange,

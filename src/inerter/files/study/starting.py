@@ -164,8 +164,8 @@ def _made(kind: type[VehicleModel]) -> VehicleModel:
 
 def _answers(kind: type[VehicleModel], symbol: str) -> bool:
     """Whether the vehicle can be asked for the index, without any setting of it."""
-    index: Any = INDICES[symbol]
-    bare = {f.name for f in dataclasses.fields(index) if f.default is f.default_factory is dataclasses.MISSING}
+    row: Any = INDICES[symbol]
+    bare = {f.name for f in dataclasses.fields(row) if f.default is f.default_factory is dataclasses.MISSING}
     if bare - {"road"}:
         return False
     try:

@@ -25,7 +25,7 @@ from inerter.methods.asking import Asked
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
-from inerter.networks.elements import Element
+from inerter.networks.elements import Element, Tied
 from inerter.networks.parser import names
 from inerter.scatter.robust import Quantile
 from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
@@ -236,9 +236,16 @@ def elements_used(study: Study) -> dict[str, list[str]]:
     """The elements in layouts, each with the layouts that it is in."""
     used: dict[str, list[str]] = {}
     for layout, struts in study.layouts.items():
-        for element in dict.fromkeys(name for text in struts.struts.values() for name in _names(text)):
+        named = [name for text in struts.struts.values() for name in _names(text)]
+        for element in dict.fromkeys([*named, *(other for name in named for other in _followed(study, name))]):
             used.setdefault(element, []).append(layout)
     return used
+
+
+def _followed(study: Study, name: str) -> tuple[str, ...]:
+    """What an element follows from, if it is tied."""
+    value = study.elements[name].value if name in study.elements else None
+    return value.names if isinstance(value, Tied) else ()
 
 
 def _names(expression: str) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from inerter.files.study.conditions import StudyCondition, what_of
 from inerter.files.study.places import Number, Place, element_at, number_at, place_of, places, with_numbers
 from inerter.files.study.shape import SweepRange
 from inerter.files.study.study import Study, Sweep, elements_used
-from inerter.networks.elements import Free
+from inerter.networks.elements import Free, Tied
 from inerter.units import are_alike, format_quantity, parse_quantity, shown, unit_in
 
 Entry = SweepRange | tuple[str, ...]
@@ -53,9 +53,13 @@ def number_of(study: Study, place: Place) -> Number:
     number, element = number_at(study, place), element_at(place)
     if number is None:
         raise unknown_place(study, place)
-    if isinstance(number.value, Free):
+    if isinstance(number.value, Free | Tied):
         hint = "Fix it, or leave the sweep out."
-        raise EntryError(fault=f"{element} is free", expected="an element with a fixed value", hint=hint)
+        raise EntryError(
+            fault=f"{element} is {'free' if isinstance(number.value, Free) else 'tied to others'}",
+            expected="an element with a fixed value",
+            hint=hint,
+        )
     if element and element not in elements_used(study):
         unused = f"{element} is in no layout, so a sweep changes nothing"
         raise EntryError(fault=unused, expected="an element that a layout uses")

@@ -1,0 +1,125 @@
+"""Values that follow from those of other elements, as files say them: `{ tied = "0.8 * c_front" }`."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from inerter.files.common.problem import EntryError
+from inerter.files.common.suggest import nearest, some
+from inerter.networks.elements import Element, Tied, tied
+from inerter.networks.elements.registry import kinds_by_unit
+from inerter.units import PURE, are_alike, product, shown
+
+TIED = "tied"
+_LONGEST = 200
+_SIGNS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
+_EXAMPLE = 'sums, differences, products and quotients of elements and numbers, such as "0.8 * c_front"'
+
+
+class TieEntry(NamedTuple):
+    """What a value follows from."""
+
+    expression: str
+
+
+class _Part(NamedTuple):
+    """A part of an expression: its value, and its unit as a product."""
+
+    value: Tied | float
+    unit: str
+
+
+def is_tie(entry: Any) -> bool:
+    """Whether an entry is one of a value that follows from others."""
+    return isinstance(entry, dict) and TIED in entry
+
+
+def tie_entry(entry: dict[str, Any]) -> TieEntry:
+    """What such an entry says; raises `EntryError` for what is wrong with it."""
+    others = [key for key in entry if key != TIED]
+    if others:
+        raise EntryError(got=shown(others[0]), fault="not a key of a tied value", expected='tied = "..." alone')
+    text = entry[TIED]
+    if not isinstance(text, str) or not text.strip() or len(text) > _LONGEST:
+        raise EntryError(got=shown(text), expected=_EXAMPLE)
+    _tree(text)
+    return TieEntry(text)
+
+
+def tied_element(name: str, entry: TieEntry, elements: Mapping[str, Element]) -> Element:
+    """The element of that name; `elements` are those that are not tied. Raises `EntryError` if there is none such."""
+    found = _part(_tree(entry.expression), entry.expression, elements)
+    if not isinstance(found.value, Tied):
+        raise EntryError(got=shown(entry.expression), fault="it names no element", expected=_EXAMPLE)
+    for unit, kind in kinds_by_unit().items():
+        if are_alike(unit, found.unit):
+            return kind.of(found.value, name)
+    known = ", ".join(kinds_by_unit())
+    raise EntryError(got=shown(entry.expression), fault=f"it is in {found.unit}", expected=f"a value in one of {known}")
+
+
+def with_known_values(elements: Mapping[str, Element]) -> dict[str, Element]:
+    """The elements, with the numbers of those that are fixed in what is tied to them."""
+    known = {name: element.value for name, element in elements.items() if isinstance(element.value, float)}
+    return {name: _settled(element, known) for name, element in elements.items()}
+
+
+def tie_text(value: Tied) -> str:
+    """The expression of a tied value, with all digits of its numbers."""
+    stack: list[str] = []
+    for part in value.program:
+        if isinstance(part, str) and part in _SIGNS.values():
+            second, first = stack.pop(), stack.pop()
+            stack.append(f"({first} {part} {second})")
+        else:
+            stack.append(part if isinstance(part, str) else repr(part))
+    (text,) = stack
+    return text.removeprefix("(").removesuffix(")") if text.startswith("(") else text
+
+
+def _settled(element: Element, known: Mapping[str, float]) -> Element:
+    value = element.value
+    if not isinstance(value, Tied):
+        return element
+    return element.with_value(value.fixed({name: known[name] for name in value.names if name in known}))
+
+
+def _tree(text: str) -> ast.expr:
+    try:
+        return ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise EntryError(got=shown(text), fault="it cannot be read", expected=_EXAMPLE) from None
+
+
+def _part(node: ast.expr, text: str, elements: Mapping[str, Element]) -> _Part:
+    if isinstance(node, ast.Constant) and isinstance(node.value, int | float) and not isinstance(node.value, bool):
+        return _Part(float(node.value), PURE)
+    if isinstance(node, ast.Name):
+        if node.id not in elements:
+            missing = f"{shown(node.id)} is no element that has a value of its own (there are {some(elements)})"
+            raise EntryError(got=shown(text), fault=missing, hint=nearest(node.id, elements))
+        return _Part(tied(node.id), elements[node.id].unit)
+    if not isinstance(node, ast.BinOp) or type(node.op) not in _SIGNS:
+        raise EntryError(got=shown(text), fault="it cannot be read", expected=_EXAMPLE)
+    sign = _SIGNS[type(node.op)]
+    first, second = (_part(side, text, elements) for side in (node.left, node.right))
+    if sign in "+-":
+        if not are_alike(first.unit, second.unit):
+            fault = f"{first.unit} and {second.unit} cannot be added or subtracted"
+            raise EntryError(got=shown(text), fault=fault, expected="values of one unit")
+        return _Part(_joined(sign, first.value, second.value), first.unit)
+    return _Part(_joined(sign, first.value, second.value), product(first.unit, sign, second.unit))
+
+
+def _joined(sign: str, first: Tied | float, second: Tied | float) -> Tied | float:
+    match sign:
+        case "+":
+            return first + second
+        case "-":
+            return first - second
+        case "*":
+            return first * second
+        case _:
+            return first / second

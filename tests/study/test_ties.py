@@ -1,0 +1,111 @@
+"""Values that follow from others in study files: what they are, and what cannot be."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from study_text import study_text
+
+import inerter as it
+from inerter.errors import StudyError
+from inerter.files.study.checking import check_study
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import run_study
+from inerter.files.study.study import Study, elements_used, write_resolved
+
+OWN = """k = "60 kN/m"
+c = { from = "100 N s/m", to = "100 kN s/m" }
+k1 = { from = "70 kN/m", to = "1 MN/m" }
+"""
+MADE_UP = OWN + 'k2 = { tied = "1 / (1 / k - 1 / k1)" }'
+ASK = 'indices = ["J1"]\noptimise = "norm"'
+
+
+def study_of(folder: Path, elements: str, layouts: str, settings: str = ASK) -> Study:
+    path = folder / "study.toml"
+    path.write_text(study_text(settings, elements=elements, layouts=layouts), encoding="utf-8")
+    return load_study(path)
+
+
+def test_a_spring_that_makes_up_a_stiffness(tmp_path: Path) -> None:
+    """Two springs in series that are as stiff as one give what the one gives, whatever the first is."""
+    study = study_of(tmp_path, MADE_UP, 'S1 = "k | c"\nS2 = "k1 - k2 | c"')
+    check_study(study)
+    strut = it.Spring(1.0 / (1.0 / 60e3 - 1.0 / it.tied("k1")), "k2")
+    assert study.elements["k2"].unit == strut.unit
+    for k1 in (80e3, 300e3):
+        fixed = study.design("S2").with_values({"c": 2e3, "k1": k1})
+        assert it.evaluate(fixed, it.static_stiffness("strut"), it.Norm()).value == pytest.approx(60e3, rel=1e-12)
+    found = run_study(study, tmp_path / "out").data["value"].squeeze()
+    assert float(found.sel(layout="S2")) == pytest.approx(float(found.sel(layout="S1")), rel=1e-9)
+    assert elements_used(study)["k"] == ["S1", "S2"]
+
+
+def test_a_tie_follows_a_sweep_and_survives_being_written(tmp_path: Path) -> None:
+    sweep = ASK + '\nsweep = { k = ["40 kN/m", "50 kN/m"] }'
+    study = study_of(tmp_path, MADE_UP, 'S2 = "k1 - k2 | c"', sweep)
+    for k in (40e3, 50e3):
+        fixed = study.design("S2", k).with_values({"c": 2e3, "k1": 80e3})
+        assert it.evaluate(fixed, it.static_stiffness("strut"), it.Norm()).value == pytest.approx(k, rel=1e-12)
+    (tmp_path / "copy.toml").write_text(write_resolved(study), encoding="utf-8")
+    again = load_study(tmp_path / "copy.toml")
+    assert again == study
+    assert again.resolved() == study.resolved()
+
+
+@pytest.mark.parametrize(
+    ("expression", "unit", "value"),
+    [
+        ("0.8 * c", "N s/m", 0.8 * 3.0),
+        ("c / 4 + 2 * c", "N s/m", 0.75 + 6.0),
+        ("c - 0.1 * c", "N s/m", 2.7),
+        ("k1 * k / (k1 + k)", "N/m", 80e3 * 60e3 / 140e3),
+        ("c * c / k", "kg", 9.0 / 60e3),
+    ],
+)
+def test_the_units_of_an_expression_tell_its_element(tmp_path: Path, expression: str, unit: str, value: float) -> None:
+    study = study_of(tmp_path, OWN + f'x = {{ tied = "{expression}" }}', 'S1 = "k1 | c | x"')
+    assert study.elements["x"].unit == unit
+    design = study.design("S1").with_values({"c": 3.0, "k1": 80e3})
+    (found,) = [e.value for e in design.strut.elements() if e.name == "x"]
+    assert found == pytest.approx(value, rel=1e-14)
+
+
+BAD: dict[str, tuple[str, list[str]]] = {
+    "nothing": ("", ["quotients"]),
+    "no name": ("2 * 3", ["names no element"]),
+    "unknown": ("0.8 * cc", ['"cc"', 'Did you mean "c"?']),
+    "a tied one": ("0.8 * x", ['"x"', "value of its own"]),
+    "half of it": ("0.8 *", ["cannot be read"]),
+    "a power": ("c ** 2", ["cannot be read"]),
+    "a call": ("abs(c)", ["cannot be read"]),
+    "a sign": ("-c", ["cannot be read"]),
+    "unlike units": ("c + k", ["cannot be added"]),
+    "no element's unit": ("c * k", ["it is in", "N/m"]),
+    "too long": (" + ".join(["c"] * 100), ["quotients"]),
+}
+
+
+@pytest.mark.parametrize(("expression", "words"), BAD.values(), ids=BAD)
+def test_a_bad_tie_is_refused_with_its_place(tmp_path: Path, expression: str, words: list[str]) -> None:
+    with pytest.raises(StudyError) as caught:
+        study_of(tmp_path, OWN + f'x = {{ tied = "{expression}" }}', 'S1 = "k1 | c"')
+    (line,) = str(caught.value).splitlines()
+    assert line.startswith("study.toml: elements.x: "), line
+    assert [word for word in words if word not in line] == [], line
+
+
+@pytest.mark.parametrize(
+    ("entry", "settings", "place", "words"),
+    [
+        ("{ tied = 3 }", ASK, "elements.x", ["got 3"]),
+        ('{ tied = "c", from = "1 N s/m" }', ASK, "elements.x", ['"from"', "alone"]),
+        ('{ tied = "c" }', ASK + '\nsweep = { x = ["1 N s/m", "2 N s/m"] }', "study.sweep.x", ["tied to others"]),
+    ],
+)
+def test_what_else_cannot_be(tmp_path: Path, entry: str, settings: str, place: str, words: list[str]) -> None:
+    with pytest.raises(StudyError) as caught:
+        study_of(tmp_path, OWN + f"x = {entry}", 'S1 = "k1 | c | x"', settings)
+    (line,) = [line for line in str(caught.value).splitlines() if line.startswith(f"study.toml: {place}: ")]
+    assert [word for word in words if word not in line] == [], line

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +17,13 @@ from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 import inerter as it
+from inerter.app.answers import answered
+from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
+from inerter.app.fixed import fixed
 from inerter.files.common.toml import as_toml
+from inerter.files.study.cases import cases, run_case
+from inerter.files.study.results import dataset
 from inerter.report.study_data import as_text
 
 
@@ -29,9 +35,15 @@ def run(document: dict[str, Any], folder: Path) -> Any:
     return json.loads("".join(as_text(result))), result
 
 
-def test_a_run_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """What the command line makes of the document."""
+    return run(DOCUMENT, tmp_path_factory.mktemp("ran"))
+
+
+def test_a_run_is_that_of_the_command_line(client: TestClient, ran: Any) -> None:
     told = client.post("/api/work", json={"kind": "run", "study": DOCUMENT, "wait": 30}).json()
-    expected, result = run(DOCUMENT, tmp_path)
+    expected, result = ran
     assert told["state"] == "done"
     assert {**told["result"], "title": ""} == {**expected, "title": ""}
     files = {row["name"]: row["size"] for row in client.get(f"/api/work/{told['id']}/files").json()["files"]}
@@ -50,9 +62,9 @@ def test_a_sweep_is_that_of_the_command_line(client: TestClient, tmp_path: Path)
     assert {**told["result"], "title": ""} == {**expected, "title": ""}
 
 
-def test_optima_are_those_of_a_run(client: TestClient, tmp_path: Path) -> None:
+def test_optima_are_those_of_a_run(client: TestClient, ran: Any) -> None:
     """The panel, the work, and the texts of their values: all are the design that a run finds."""
-    expected, _ = run(DOCUMENT, tmp_path)
+    expected, _ = ran
     wanted = {(d["layout"], d["index"]): d for d in expected["designs"]}
     panel = client.post("/api/panel/optimise", json={"study": DOCUMENT}).json()["designs"]
     work = client.post("/api/work", json={"kind": "optimise", "study": DOCUMENT, "wait": 30}).json()["result"][
@@ -71,7 +83,7 @@ def test_optima_are_those_of_a_run(client: TestClient, tmp_path: Path) -> None:
         assert (result["value"], result["improvement_percent"]) == (case["value"], case["improvement_percent"])
 
 
-@settings(max_examples=3)
+@settings(max_examples=2)
 @given(c=st.floats(200.0, 9e4), b=st.floats(2.0, 900.0), c1=st.floats(200.0, 9e4))
 def test_a_study_of_designs_gives_the_numbers_of_the_panel(
     client: TestClient, tmp_path_factory: pytest.TempPathFactory, c: float, b: float, c1: float
@@ -93,6 +105,31 @@ def test_a_study_of_designs_gives_the_numbers_of_the_panel(
     for curve in curves["curves"]:
         gains = data[f"gain_{curve['index']}"].sel(layout=curve["layout"])
         assert curve["gain"] in gains.values.tolist()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "conditions",
+        *(
+            pytest.param(name, marks=pytest.mark.campaign)
+            for name in ("limits", "trade_off", "seat", "full-car", "quarter-car")
+        ),
+    ],
+)
+def test_panels_ask_what_the_study_asks(name: str) -> None:
+    """Over conditions, at quantiles, of any vehicle: a study of the very designs has the panel's numbers."""
+    document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    study = study_from(document)
+    panel = answered("indices", {"study": document, "methods": ["norm"]})
+    made = fixed(document, study, designs_of(study, {}))
+    asked = study_from({**made, "study": {**made["study"], "evaluate": ["norm"]}})
+    data = dataset(asked, {case: run_case(asked, case) for case in cases(asked)})
+    for design in panel["designs"]:
+        for row in design["results"]:
+            there = data.sel({"layout": design["layout"], "index": row["index"], "method": "norm"})
+            assert there.value.item() == row["value"]
+            assert there.improvement.item() == row["improvement_percent"]
 
 
 def test_a_history_is_that_of_python(client: TestClient) -> None:

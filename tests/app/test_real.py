@@ -190,11 +190,11 @@ def test_without_the_extra_there_is_a_sentence(tmp_path: Path) -> None:
 def test_the_command_line_loads_none_of_it() -> None:
     program = (
         "import sys, json\nfrom inerter.cli.main import call\n"
-        "for words in (['--help'], ['serve', '--help'], ['check', sys.argv[1]]): call(words)\n"
+        "for words in (['--help'], ['serve', '--help']): call(words)\n"
         "print(json.dumps([name for name in sys.modules if name.split('.')[0] in ('starlette', 'uvicorn')"
         " or (name.startswith('inerter.app.') and name != 'inerter.app.serve')]))"
     )
-    command = [sys.executable, "-c", program, str(EXAMPLES / "quarter-car.toml")]
+    command = [sys.executable, "-c", program]
     found = subprocess.run(command, capture_output=True, text=True, timeout=60.0, check=False)
     assert json.loads(found.stdout.splitlines()[-1]) == []
 

@@ -76,11 +76,19 @@ def test_a_page_that_is_loaded_again_sees_all(client: TestClient) -> None:
     assert events(client, number, "nonsense") == found
 
 
-def test_work_that_waits_is_stopped_at_once(client: TestClient) -> None:
-    first, second = begin(client, kind="run", study=LONG), begin(client, kind="optimise", study=DOCUMENT)
+def test_work_that_waits_is_stopped_at_once(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(KINDS, "endless", WorkKind("endless", "Without end", (), "app.test_work:endless"))
+    first, second = begin(client, kind="endless"), begin(client, kind="optimise", study=DOCUMENT)
     assert client.delete(f"/api/work/{second}").json()["state"] == "stopped"
+    until(client, first, "running")
     client.delete(f"/api/work/{first}")
     until(client, first, "stopped")
+
+
+def endless(request: Any, folder: Any, tell: Any) -> Any:
+    while True:
+        tell(0, 1, "")
+        time.sleep(0.01)
 
 
 @pytest.mark.parametrize(

@@ -22,8 +22,8 @@ from inerter.files.study.cases import FAILURES, Case, Outcome, run_case
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
 from inerter.files.study.study import Study
-from inerter.indices.question import Index
 from inerter.indices.registry import INDICES
+from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.methods.registry import DEFAULT, methods_that, searches
@@ -35,6 +35,7 @@ from inerter.scatter.tolerance import tolerance
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.vehicle import Vehicle
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
@@ -93,7 +94,7 @@ def _estimate(study: Study, design: Design | None, index: str, method: str) -> E
     """The value of an index; where it cannot be had, nan with a status that says why."""
     if design is None:
         return None
-    asked: tuple[Any, ...] = design, study.index(index), study.method(method)
+    asked: tuple[Any, ...] = design.vehicle, study.asked(index, design.layout), study.method(method)
     try:
         hash(asked)
     except TypeError:  # a mechanism, or an index with matrices
@@ -101,9 +102,9 @@ def _estimate(study: Study, design: Design | None, index: str, method: str) -> E
     return _remembered(*asked)
 
 
-def _valued(design: Design, index: Index, method: Method) -> Estimate:
+def _valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
     try:
-        return evaluate(design.mechanism, index, method)
+        return evaluate(vehicle, index, method)
     except FAILURES as error:
         return Estimate(np.nan, index.unit, Status(StatusKind.FAILED, str(error)))
 
@@ -124,7 +125,7 @@ def _result(
     return {
         "index": index,
         "title": asked.title,
-        "unit": asked.unit,
+        "unit": study.unit(index),
         "method": method,
         "value": found.value,
         "standard_error": found.standard_error,
@@ -151,7 +152,7 @@ def _better(
     try:
         known = found[1]
         two: Comparison = compare(
-            design.mechanism, baseline.mechanism, study.index(index), study.method(method), known=known
+            design.vehicle, baseline.vehicle, study.asked(index, design.layout), study.method(method), known=known
         )
     except FAILURES:
         return percent, None
@@ -263,7 +264,7 @@ def budget(study: Study, body: Body) -> Answer:
     found = find_budget(
         design.vehicle,
         baseline.vehicle,
-        study.index(needed(body, "index")),
+        study.asked(needed(body, "index"), design.layout),
         parameter=needed(body, "parameter"),
         method=study.method(method),
     )
@@ -285,7 +286,8 @@ def budget(study: Study, body: Body) -> Answer:
 
 def scatter(study: Study, body: Body) -> Answer:
     """What an index becomes when values of a design scatter, and which of them matters most."""
-    design, index = one_design(study, body), study.index(needed(body, "index"))
+    design, name = one_design(study, body), needed(body, "index")
+    index = study.over_conditions(name)
     method = body.get("method") or DEFAULT
     found = tolerance(
         design.vehicle,
@@ -298,8 +300,8 @@ def scatter(study: Study, body: Body) -> Answer:
     counts, edges = np.histogram(found.values[np.isfinite(found.values)], bins=40)
     return {
         **design.told(study),
-        "index": index.symbol,
-        "unit": index.unit,
+        "index": name,
+        "unit": study.unit(name),
         "method": method,
         "nominal": found.nominal.value,
         "mean": found.mean,

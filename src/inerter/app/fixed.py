@@ -11,7 +11,8 @@ from typing import Any
 from inerter.app.designs import Design
 from inerter.files.study.study import Study
 
-_SEARCH = ("optimise", "budgets", "sweep")  # keys of [study] that ask for more than the value of a design
+# keys of [study] that ask for more than the value of a design
+_SEARCH = ("optimise", "budgets", "sweep", "subject_to", "trade_off", "points")
 
 
 def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:
@@ -31,7 +32,7 @@ def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) 
     }
     settings = {key: value for key, value in made["study"].items() if key not in _SEARCH}
     base = next((key for key, design in zip(keys, designs, strict=True) if design.layout == study.baseline), keys[0])
-    made["study"] = {**settings, "baseline": base}
+    made["study"] = {"indices": list(study.indices), **settings, "baseline": base}
     return made
 
 

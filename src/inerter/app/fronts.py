@@ -9,6 +9,7 @@ from inerter.app.answers import Body, texts_of
 from inerter.app.documents import study_from
 from inerter.app.kinds import Tell
 from inerter.errors import StudyError
+from inerter.files.study.limits import limits_in
 from inerter.methods.registry import methods_that, searches
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.pareto import pareto
@@ -23,13 +24,22 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
     if not 2 <= len(indices) <= 3:
         raise StudyError(f"A trade-off is one between two or three indices, got {len(indices)}.")
     method = study.method(body.get("method") or study.optimise or methods_that(searches)[0])
-    asked = [study.index(index) for index in indices]
+    points = body.get("points") or _POINTS
+    limits = [limit for several in limits_in(study) for limit in several]
     fronts: list[dict[str, Any]] = []
     for number, layout in enumerate(layouts):
         tell(number, len(layouts), layout)
+        asked = [study.asked(index, layout) for index in indices]
         with one_blas_thread():
-            found = pareto(study.design(layout), asked, method, points=body.get("points") or _POINTS, seed=study.seed)
-        points = zip(found.values.tolist(), found.parameters, found.statuses, strict=True)
+            found = pareto(
+                study.design(layout),
+                asked,
+                method,
+                points=points,
+                subject_to=limits,
+                seed=study.seed,
+            )
+        several = zip(found.values.tolist(), found.parameters, found.statuses, strict=True)
         fronts.append(
             {
                 "layout": layout,
@@ -41,7 +51,7 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
                         "status": status.kind.value,
                         "message": status.message,
                     }
-                    for values, parameters, status in points
+                    for values, parameters, status in several
                 ],
                 "jumps": [list(pair) for pair in found.jumps],
                 "knee": found.knee if len(found.values) else None,
@@ -50,7 +60,5 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
             }
         )
     tell(len(layouts), len(layouts), "")
-    told = [
-        {"index": name, "title": index.title, "unit": index.unit} for name, index in zip(indices, asked, strict=True)
-    ]
+    told = [{"index": index, "title": study.index(index).title, "unit": study.unit(index)} for index in indices]
     return {"indices": told, "fronts": fronts}

@@ -103,7 +103,7 @@ def compared(body: Body, folder: Path, tell: Tell) -> Any:
     rows: list[dict[str, Any]] = []
     for design, index, method in asked:
         tell(len(rows), len(asked), f"{design.name} {index}")
-        found = compare(design.mechanism, first.mechanism, study.index(index), study.method(method))
+        found = compare(design.vehicle, first.vehicle, study.asked(index, design.layout), study.method(method))
         rows.append(
             {
                 "name": design.name,

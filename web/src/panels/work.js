@@ -1,6 +1,7 @@
 // Long work: one queue, and a row for each kind of it with its form and what is shown of its result.
 
 import { percent } from "./answers.js";
+import { FrontForm, FrontResult, frontBody } from "./front.js";
 import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
 import { html, useState } from "../parts/html.js";
@@ -21,6 +22,7 @@ import { begin, stop, takeOptima } from "../working.js";
 export const KINDS = [
   { kind: "run", title: "Run the whole study", sentence: "As inerter run does: all layouts and indices, with report, tables and figures.", body: () => ({}), Result: RunResult },
   { kind: "sweep", title: "Sweep", sentence: "The best designs over one number of the study.", body: sweepBody, Form: SweepForm, Result: SweepResult },
+  { kind: "front", title: "Trade-off front", sentence: "The designs of which none is better by both indices: each point can be taken into the editor.", body: frontBody, Form: FrontForm, Result: FrontResult },
 ];
 
 /** @param {{store: Store, api: Api}} props */

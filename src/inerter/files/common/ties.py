@@ -48,6 +48,13 @@ def tie_entry(entry: dict[str, Any]) -> TieEntry:
     return TieEntry(text)
 
 
+def tie_schema() -> dict[str, Any]:
+    """What a JSON Schema says of such an entry."""
+    about = "What it follows from: an expression of other elements, numbers with units, + - * / and brackets."
+    text = {"type": "string", "minLength": 1, "maxLength": _LONGEST, "description": about}
+    return {"type": "object", "properties": {TIED: text}, "required": [TIED], "additionalProperties": False}
+
+
 def tied_element(name: str, entry: TieEntry, elements: Mapping[str, Element]) -> Element:
     """The element of that name; `elements` are those that are not tied. Raises `EntryError` if there is none such."""
     found = _part(_tree(entry.expression), entry.expression, elements)

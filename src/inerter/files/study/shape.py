@@ -45,7 +45,7 @@ from inerter.files.common.shape import (
     vehicle_shapes,
 )
 from inerter.files.common.tables import Shape, Shapes
-from inerter.files.common.ties import TieEntry, is_tie, tie_entry
+from inerter.files.common.ties import TieEntry, is_tie, tie_entry, tie_schema
 from inerter.files.common.vehicles import models
 from inerter.files.study.conditions import OVER
 from inerter.files.study.limits import LimitEntry, LimitShape
@@ -219,7 +219,7 @@ class Settings(Shape):
 
 
 _AnyElement = Annotated[
-    Annotated[ElementEntry, Tag("<own>")] | Annotated[TieEntry, PlainValidator(tie_entry), Tag("<tied>")],
+    Annotated[ElementEntry, Tag("<own>")] | Annotated[TieEntry, checked(tie_entry, tie_schema), Tag("<tied>")],
     Discriminator(lambda value: "<tied>" if is_tie(value) else "<own>"),
 ]
 

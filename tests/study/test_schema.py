@@ -65,6 +65,20 @@ def test_every_key_says_what_it_is_and_its_examples_are_sound():
     assert keys > 40
 
 
+def everything(schema: object) -> list[dict]:
+    """All schemas within one, itself among them."""
+    inner = schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
+    own = [schema] if isinstance(schema, dict) else []
+    return own + list(chain.from_iterable(map(everything, inner)))
+
+
+def test_no_entry_may_be_anything():
+    """An alternative that takes all would let every mistake beside it pass."""
+    several = [one for schema in everything(SCHEMA) for one in schema.get("anyOf", ())]
+    assert len(several) > 20
+    assert {} not in several
+
+
 @pytest.mark.parametrize("unit", USUAL)
 def test_usual_units_are_those_of_their_kind(unit):
     for kind, usual in USUAL.items():

@@ -103,7 +103,7 @@ def check(study: Path, /) -> int:
   inerter new full-car -o -            prints it"""
 )
 def new(
-    vehicle: str = "quarter-car",
+    vehicle: str | None = None,
     /,
     *,
     output: Annotated[
@@ -116,7 +116,7 @@ def new(
     Parameters
     ----------
     vehicle
-        The model of the vehicle, such as quarter-car or half-car; inerter explain vehicle.model has all.
+        Its model; a quarter car if left out, and inerter explain vehicle.model has all.
     """
     from inerter.cli.new import new as command
 

@@ -6,16 +6,18 @@ import sys
 from pathlib import Path
 
 from inerter.errors import StudyError
+from inerter.files.study.shape import judged_models
 from inerter.files.study.starting import starting_text
 
 _STDOUT = Path("-")
 
 
-def new(vehicle: str, output: Path | None) -> int:
-    """Write a study file to start from; returns the exit code.
+def new(vehicle: str | None, output: Path | None) -> int:
+    """Write a study file to start from, of the first vehicle that there is if none is named; returns the exit code.
 
     Raises `StudyError` for an unknown vehicle, or where a file is there already.
     """
+    vehicle = vehicle or judged_models()[0]
     path = output or Path(f"{vehicle}.toml")
     text = starting_text(vehicle, "STUDY.toml" if path == _STDOUT else path.name)
     if path == _STDOUT:

@@ -49,8 +49,10 @@ def tie_entry(entry: dict[str, Any]) -> TieEntry:
 
 
 def tie_schema() -> dict[str, Any]:
-    """What editors are told of such an entry."""
-    text = {"type": "string", "description": f"What the value follows from: {_EXAMPLE}.", "examples": ["0.8 * c_front"]}
+    """What a JSON Schema says of such an entry."""
+    about = f"What the value follows from: {_EXAMPLE}."
+    text = {"type": "string", "minLength": 1, "maxLength": _LONGEST, "description": about}
+    text |= {"examples": ["0.8 * c_front"]}
     return {"type": "object", "properties": {TIED: text}, "required": [TIED], "additionalProperties": False}
 
 

@@ -12,6 +12,7 @@ from inerter.errors import RowError
 from inerter.fields import fields_of
 from inerter.files.common.entries import layout_name, one_of
 from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.schema import NEVER, checked
 from inerter.files.common.shape import ANY, if_given, of_choices, one_of_shapes
 from inerter.files.common.tables import Shape, Shapes
 from inerter.files.common.vehicles import in_si
@@ -90,7 +91,7 @@ def index_shapes() -> tuple[Any, Shapes]:
         kind = entry.get(_KIND)
         return f"<{kind}>" if isinstance(kind, str) and f"<{kind}>" in shapes else ANY
 
-    no_table = Annotated[Any, PlainValidator(_refused)]
+    no_table = Annotated[Any, checked(_refused, lambda: NEVER)]
     each: Any = one_of_shapes({**shapes, _NO_TABLE: no_table}, tag)
     every: Any = dict.__class_getitem__((_OwnName, each))
     return every, {("indices", "*", tagged): shape for tagged, shape in shapes.items()}

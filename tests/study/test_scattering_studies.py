@@ -12,7 +12,8 @@ import inerter as it
 from inerter.errors import StudyError
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import StudyResult, run_study
-from inerter.files.study.study import Study, write_resolved
+from inerter.files.study.study import Study
+from inerter.files.study.written import write_resolved
 from inerter.report.page import report
 from inerter.report.tolerances import tolerance_lines
 

@@ -12,7 +12,8 @@ from inerter.errors import StudyError
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
-from inerter.files.study.study import Study, elements_used, write_resolved
+from inerter.files.study.study import Study, elements_used
+from inerter.files.study.written import write_resolved
 
 OWN = """k = "60 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }

@@ -204,8 +204,7 @@ function Toolbar({ editing, selected, setHow }) {
 /** @param {{store: Store, selected: Tree | null}} props */
 function Rename({ store, selected }) {
   const [told, setTold] = useState("");
-  if (selected?.kind !== "element") return null;
-  const old = selected.name;
+  const old = selected?.kind === "element" ? selected.name : ""; // the form stays: a drawing that moves cannot be dragged in
   return html`<form class="row" key=${old} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const name = String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("name")).trim();
@@ -218,8 +217,8 @@ function Rename({ store, selected }) {
       store.change({ type: "elementRenamed", old, name });
     }
   }}>
-    <label>Name <input id="element-name" class="name" name="name" defaultValue=${old} value=${old} autocomplete="off" spellcheck=${false} /></label>
-    <button>Rename</button>${told && html`<span class="problem" role="alert">${told}</span>`}
+    <label>Name <input id="element-name" class="name" name="name" disabled=${old === ""} defaultValue=${old} value=${old} autocomplete="off" spellcheck=${false} /></label>
+    <button disabled=${old === ""}>Rename</button>${told && html`<span class="problem" role="alert">${told}</span>`}
   </form>`;
 }
 

@@ -25,7 +25,7 @@ from inerter.indices.registry import amplitude_of, index_choices, index_settings
 from inerter.methods.registry import averages
 from inerter.report.question import vehicle_rows
 from inerter.rows import Rows, made_of_rows
-from inerter.units import format_quantity, parse_quantity
+from inerter.units import parse_quantity
 
 STRUT = it.Spring(20e3) | it.Damper(1e3)
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -328,7 +328,7 @@ def test_a_method_has_the_settings_of_its_own_section(tmp_path: Path, length: fl
     again.write_text(write_resolved(study), encoding="utf-8")
     assert load_study(again) == study
     rows = dict(vehicle_rows(study))
-    assert rows["Reach of of-its-own"].startswith(format_quantity(length, "m", digits=12).split()[0])
+    assert rows["Reach of of-its-own"].startswith(f"{length!r}\xa0m")
     assert ("Width of of-its-own" in rows) == (breadth is not None)
 
 

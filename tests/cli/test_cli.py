@@ -9,6 +9,7 @@ import runpy
 import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -132,7 +133,8 @@ def test_run_writes_everything_and_prints_the_best(tmp_path: Path, capsys: pytes
     names = {path.name for path in folder.iterdir()}
     assert names >= {"summary.csv", "results.nc", "report.html", "figures", "study.resolved.toml", "versions.json"}
     assert {path.name for path in (folder / "figures").iterdir()} == {
-        f"{name}.{kind}" for name in ("improvement", "response-J1") for kind in ("svg", "png")
+        *(f"{name}.{kind}" for name in ("improvement", "response-J1") for kind in ("svg", "png")),
+        *(f"layout-{name}.svg" for name in tomllib.loads(SMALL)["layouts"]),
     }
     assert call(["run", str(study), "-o", str(folder)]) == 2
     assert "--force" in capsys.readouterr().err

@@ -91,6 +91,7 @@ FITTED = f'{IDENTIFY} "300 Hz"'
 SHOWN = f'{FITTED} --force-range "100 kgf"'
 SLOW = 'inerter identify friction.csv --model ball-screw --force-bandwidth "80 Hz"'
 WHOLE = "inerter reproduce wang-su-2008 -o paper"
+SERVES = "inerter serve examples/quarter-car.toml"  # until it is stopped: see tests/app and tests/page
 COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter run examples/quarter-car.toml": nothing,
     "inerter new half-car": nothing,
@@ -127,7 +128,7 @@ SELDOM = [WHOLE, FITTED, SLOW]  # whose parts, or what is much the same, is a ca
 
 def test_every_command_of_the_pages_is_run() -> None:
     """Those that only name one say which: their help is there."""
-    names = {f"inerter {name}" for name in app}
+    names = {*(f"inerter {name}" for name in app), SERVES}
     assert {command for command in commands() if command not in names | {"inerter"}} == set(COMMANDS)
 
 

@@ -111,7 +111,7 @@ def cheap(identified: Identified | None = None) -> Iterator[None]:
         change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
         change(
             "inerter.cli.commands.write_report",
-            lambda results, study, figures, path, budgets: write_text(path, "page\n"),
+            lambda results, study, figures, path, *found: write_text(path, "page\n"),
         )
         change("inerter.cli.simulation.draw_simulation", drawn("simulation.svg", "simulation.png"))
         change("inerter.cli.identify.write_identification", page)

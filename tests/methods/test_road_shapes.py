@@ -93,7 +93,7 @@ def check_family(seed, count, conventions, index):
     good = []
     for made, road, points in family(seed, count):
         objective = Norm(conventions).objective(made, INDICES[index](road))
-        assert objective.arrivals[2][0].size > 0
+        assert objective.arrivals[2][0].size > 0 or len(objective.problem.descriptor.inputs) < len(made.roads)
         norms, _, known = compiled(objective, points)
         good += known.tolist()
         few = np.flatnonzero(known)

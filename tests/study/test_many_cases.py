@@ -20,7 +20,6 @@ import numpy as np
 import pytest
 from study_text import study_text
 
-from inerter.cli import commands
 from inerter.cli.main import call
 from inerter.cli.progress import progress
 from inerter.figures.curves import thinned_band
@@ -33,6 +32,7 @@ from inerter.files.study.results import Gathered, dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.report.page import report
+from inerter.report.study_data import as_text
 from inerter.report.tables import sweep_tables
 from inerter.report.text import summary_table
 from inerter.work.journal import Journal
@@ -248,7 +248,7 @@ def test_a_page_of_many_cases_is_as_small_as_any(tmp_path: Path, swift: object) 
 def test_json_of_many_designs_comes_in_pieces(tmp_path: Path, swift: object) -> None:
     study = study_of(tmp_path, 50)
     result = run_study(study, tmp_path / "out")
-    pieces = list(commands._as_json(result))
+    pieces = list(as_text(result))
     assert len(pieces) > 200
     assert max(map(len, pieces)) < 2000
     text = "".join(pieces)

@@ -16,7 +16,7 @@ def layout_figure(layout: str) -> str:
 
 
 def draw_layouts(study: Study, folder: Path) -> list[Path]:
-    """Write the networks of each layout into `folder`, as SVG and as PNG; returns the files.
+    """Write the networks of each layout into `folder`, as SVG, for the page; returns the files.
 
     Mounts with the same network share one drawing.
     """
@@ -33,5 +33,5 @@ def draw_layouts(study: Study, folder: Path) -> list[Path]:
             }
         except NetworkError:  # a distribution's element that cannot be mounted by itself
             continue
-        files += draw_networks(networks, folder, layout_figure(name))
+        files += draw_networks(networks, folder, layout_figure(name), alone=True)
     return files

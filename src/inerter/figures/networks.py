@@ -79,10 +79,12 @@ class Schematic:
         return placed, tuple(moved(line, x, y) for line in self.lines)
 
 
-def draw_networks(networks: Mapping[str, Network], folder: Path, name: str, *, values: bool = False) -> list[Path]:
-    """Write the figure of some networks by their titles into `folder`; returns the files."""
+def draw_networks(
+    networks: Mapping[str, Network], folder: Path, name: str, *, values: bool = False, alone: bool = False
+) -> list[Path]:
+    """Write the figure of some networks by their titles into `folder`, as SVG `alone` if wished; returns the files."""
     with styled():
-        return save(network_figure(networks, values=values), folder, name, pdf=True)
+        return save(network_figure(networks, values=values), folder, name, pdf=not alone, png=not alone)
 
 
 def network_figure(networks: Mapping[str, Network], *, values: bool = False, width: float = WIDE) -> Figure:

@@ -20,15 +20,15 @@ def index_names() -> dict[str, str]:
     found = {symbol: symbol for symbol in INDICES}
     for symbol, words in index_words().items():
         if found.setdefault(words, symbol) != symbol:
-            raise RowError(
-                f"{found[words]} and {symbol} are both called {words!r} in files. Rename one of the classes."
-            )
+            raise RowError(f"{found[words]} and {symbol} are both called {words!r} in files. Give one another `key`.")
     return found
 
 
 @made_of_rows
 def index_words() -> dict[str, str]:
-    """The words of each index by its symbol: its `key`, or else those of its class."""
-    return {
-        symbol: getattr(kind, "key", _BEGINNING.sub("-", kind.__name__).lower()) for symbol, kind in INDICES.items()
-    }
+    """The words of each index by its symbol: its `key`, or else those of its class, unless another has them already."""
+    found: dict[str, str] = {}
+    for symbol, kind in INDICES.items():
+        of_class = _BEGINNING.sub("-", kind.__name__).lower()
+        found[symbol] = getattr(kind, "key", symbol if of_class in found.values() else of_class)
+    return found

@@ -216,8 +216,8 @@ def groups_of(driven: DrivenMany) -> tuple[dict[str, Any], int]:
     """The sequences that drive the runs of each vehicle, by keyword, and how many runs that are."""
     groups: dict[str, Any] = {name: group for name, group in driven.items() if name != "speed" and group is not None}
     given: Collection[Any] = groups.values()
-    lengths = {len(g) for g in given}
-    if any(isinstance(g, Signal | Mapping) for g in given) or len(lengths) != 1:
+    lengths = {len(g) if isinstance(g, Sequence) else 0 for g in given}
+    if len(lengths) != 1 or 0 in lengths:
         raise SimulationError(
             "Runs are driven by sequences of signals, all of one length: road=[multisine(...), ...] or forces=[{...}]."
         )

@@ -6,10 +6,9 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
@@ -19,6 +18,9 @@ from inerter.networks.elements import Free
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
 from inerter.trade_off.pareto import pareto
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)

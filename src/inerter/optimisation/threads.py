@@ -9,17 +9,19 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from functools import cache
+from types import ModuleType
 
-import scipy.linalg  # noqa: F401 -- SciPy's own BLAS: loaded after the limit was set, it would keep its threads
+import scipy
 from threadpoolctl import ThreadpoolController
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
     """A context in which the BLAS libraries that are loaded use one thread."""
-    limit: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
+    limit: AbstractContextManager[object] = _controller(scipy.linalg).limit(limits=1, user_api="blas")
     return limit
 
 
 @cache
-def _controller() -> ThreadpoolController:
+def _controller(loaded: ModuleType) -> ThreadpoolController:
+    """What limits the libraries that are loaded, SciPy's own among them: one that came later would keep its threads."""
     return ThreadpoolController()

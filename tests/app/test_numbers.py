@@ -41,6 +41,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return run(DOCUMENT, tmp_path_factory.mktemp("ran"))
 
 
+@pytest.mark.campaign
 def test_a_run_is_that_of_the_command_line(client: TestClient, ran: Any) -> None:
     told = client.post("/api/work", json={"kind": "run", "study": DOCUMENT, "wait": 30}).json()
     expected, result = ran

@@ -83,6 +83,7 @@ def test_gradients_of_tied_designs(index):
         assert gradient[i] * point[i] / value == pytest.approx((up - down) / 2e-5 / value, abs=1e-6)
 
 
+@pytest.mark.campaign
 def test_an_optimum_of_tied_values():
     best = it.optimise(half_car(), J1, NORM)
     assert best.agreed > 1

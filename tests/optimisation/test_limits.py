@@ -105,6 +105,7 @@ def quarter(low=100.0):
     return paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(low, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b")))
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     ("limit", "sign"), [(it.at_least(J3, 560.0), 1.0), (it.equal(J3, 510.0), 1.0), (it.equal(J5, 3e-5), -1.0)]
 )
@@ -164,6 +165,7 @@ class WithoutGradients(it.Norm):
         return SampledObjective(self.estimate, vehicle, index)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("limit", [it.at_most(J5, 2.7e-5), it.at_least(J3, 520.0), it.equal(J3, 510.0)])
 def test_searches_without_gradients_find_the_same(limit):
     best = it.optimise(quarter(), J1, NORM, subject_to=[limit])

@@ -33,6 +33,8 @@ def test_each_file_holds_what_a_simulation_says(tmp_path: Path) -> None:
         )
     assert [[file.name for file in row] for row in files][1] == [f"design-00001-signal-00{j}.nc" for j in range(3)]
     assert sorted(tmp_path.glob("new/*")) == sorted(file for row in files for file in row)
+    here = it.simulate_to_files(CARS[:1], tmp_path / "here", outputs=OUTPUTS, duration=0.2, road=SIGNALS[:1])
+    assert here[0][0].read_bytes() == files[0][0].read_bytes()
     assert told == sorted(told)
     assert told[-1] == 1.0
     for one, row in zip(CARS, files, strict=True):
@@ -43,14 +45,6 @@ def test_each_file_holds_what_a_simulation_says(tmp_path: Path) -> None:
                 assert found.attrs["status"] == "ok"
                 assert found["tyre_load"].attrs["units"] == "N"
                 assert all(np.array_equal(found[name].values, run[name]) for name in OUTPUTS)
-
-
-def test_files_do_not_depend_on_where_they_are_made(tmp_path: Path) -> None:
-    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
-        same = {"outputs": OUTPUTS, "duration": 0.1, "road": SIGNALS[:2]}
-        there = it.simulate_to_files(CARS[:1], tmp_path / "there", executor=executor, **same)  # type: ignore[arg-type]
-    here = it.simulate_to_files(CARS[:1], tmp_path / "here", **same)  # type: ignore[arg-type]
-    assert [one.read_bytes() for one in here[0]] == [one.read_bytes() for one in there[0]]
 
 
 def test_a_folder_that_holds_something_stays_as_it_is(tmp_path: Path) -> None:

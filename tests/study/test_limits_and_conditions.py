@@ -100,6 +100,7 @@ def test_a_limit_is_swept_by_its_place(load: Callable[..., Study], tmp_path: Pat
     assert float(alone.data["value"].item()) == values[2]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("over", ["mean", "worst"])
 def test_conditions_are_those_of_python(load: Callable[..., Study], tmp_path: Path, over: str) -> None:
     study = load(f'indices = ["J1", "J3"]\noptimise = "norm"\nconditions = "{over}"', TWO)

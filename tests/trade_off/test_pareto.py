@@ -264,6 +264,7 @@ def test_a_front_of_what_is_simulated():
     assert np.all(np.diff(quick.values[:, 1]) < 0.0)
 
 
+@pytest.mark.campaign
 def test_a_front_without_gradients_is_the_same():
     car = paper_quarter_car(strut("S3"))
     exact, found = it.pareto(car, [J1, J5], NORM, points=3), it.pareto(car, [J1, J5], WithoutGradients(), points=3)

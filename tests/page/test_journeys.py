@@ -261,3 +261,21 @@ def test_downloads_hold_what_is_shown(visitor: Visitor, tmp_path: Path) -> None:
     assert {row["index"]: float(row["value"]) for row in rows if row["layout"] == "S3e"} == shown
     assert _download(visitor, "Network (SVG)", tmp_path).read_text().lstrip().startswith("<?xml")
     assert _download(visitor, "Network (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.campaign
+def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
+    """Of every index of the study, whatever it is called: what the menu asks for, the server has."""
+    study = tmp_path / "study.toml"
+    study.write_text(NEWCOMER.replace('["J1", "J3", "J5"]', '["J1", "tyre-load"]'))
+    visitor.open(study)
+    visitor.wait_for_text("k | c")
+    visitor.settled()
+    for index in ("J1", "tyre-load"):
+        visitor.page.get_by_text("Save", exact=True).click()
+        visitor.page.locator(".menu-body select").select_option(index)
+        visitor.page.mouse.click(640, 5)
+        picture = _download(visitor, "Response (SVG)", tmp_path)
+        assert picture.name.endswith(f"response-{index}.svg")
+        assert picture.read_text().lstrip().startswith("<?xml")
+    assert _download(visitor, "Response (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")

@@ -14,6 +14,8 @@ import pytest
 from browser import EXAMPLES, Served, Visitor, wait_until
 
 import inerter as it
+from inerter.app.designs import design_of
+from inerter.app.documents import study_from
 from inerter.files.study.loading import load_study
 
 NEWCOMER = """title = "A newcomer's car"
@@ -279,3 +281,30 @@ def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
         assert picture.name.endswith(f"response-{index}.svg")
         assert picture.read_text().lstrip().startswith("<?xml")
     assert _download(visitor, "Response (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.campaign
+def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
+    page = visitor.page
+    asked: list[dict[str, Any]] = []
+    page.on("request", lambda request: "tolerance" in request.url and asked.append(request.post_data_json))
+    page.click("#tab-tolerance")
+    for name, part in {"k": "", "ks": "0", "c": "20"}.items():
+        page.locator(f"[name='spread {name}']").fill(part)
+    page.locator("#tab-panel").get_by_role("button", name="Find out").click()
+    page.wait_for_selector("table[data-scatter]")
+    (body,) = asked
+    assert body["spread"] == {"c": 0.2, "cs": 0.1, "b": 0.1}
+    study = study_from(body["study"])
+    design = design_of(study, **{key: body["design"][key] for key in ("layout", "values")})
+    found = it.tolerance(design.vehicle, study.index(body["index"]), it.Norm(), spread=body["spread"], samples=1024)
+    values = page.eval_on_selector_all("[data-scatter] td", "all => all.map(td => Number(td.dataset.value))")
+    assert values == [
+        found.nominal.value,
+        found.mean,
+        found.standard_deviation,
+        found.quantile(0.95),
+        found.worst,
+    ]
+    visitor.page.get_by_role("group", name="Layouts").get_by_role("button", name="S2", exact=True).click()
+    page.wait_for_selector("text=before it was changed")

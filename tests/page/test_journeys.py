@@ -308,3 +308,15 @@ def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
     ]
     visitor.page.get_by_role("group", name="Layouts").get_by_role("button", name="S2", exact=True).click()
     page.wait_for_selector("text=before it was changed")
+
+
+@pytest.mark.campaign
+def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
+    page = visitor.page
+    page.click("#tab-work")
+    form = page.locator("form.begin", has_text="Sweep")
+    form.locator("select").select_option("road.speed")
+    assert form.locator("[name=from]").input_value() == "12.5 m/s"
+    form.locator("[name=points]").fill("2")
+    form.get_by_role("button", name="Begin").click()
+    page.wait_for_selector(".job[data-state=done] .plot canvas", timeout=120_000)

@@ -320,3 +320,31 @@ def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
     form.locator("[name=points]").fill("2")
     form.get_by_role("button", name="Begin").click()
     page.wait_for_selector(".job[data-state=done] .plot canvas", timeout=120_000)
+
+
+@pytest.mark.campaign
+def test_limits_stand_in_the_answers(visitor: Visitor) -> None:
+    visitor.open(EXAMPLES / "limits.toml")
+    visitor.wait_for_text("k | c - b")
+    visitor.page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
+    told = visitor.page.locator(".limits li").first.inner_text()
+    assert told == "kept: suspension-travel at most 8 mm; it is 8 mm"
+    visitor.page.fill("[id='entry elements.k']", "20 kN/m")
+    visitor.page.keyboard.press("Enter")
+    visitor.page.wait_for_selector(".limits .bad")
+    assert visitor.page.locator(".limits .bad").last.inner_text().startswith("broken: static-stiffness")
+
+
+@pytest.mark.campaign
+def test_what_the_keyboard_enters_is_typed_over(visitor: Visitor) -> None:
+    """A value of more digits than are shown: whoever comes by Tab has all of it chosen, with all its digits."""
+    page = visitor.page
+    visitor.settled()
+    entry = page.locator("[id='entry elements.c']")
+    assert len(entry.get_attribute("title")) > len(entry.input_value())
+    page.locator("[data-place='elements.c'] input[type=range]").focus()
+    page.keyboard.press("Tab")
+    assert entry.input_value() == entry.get_attribute("title")
+    page.keyboard.type("3 kN s/m")
+    page.keyboard.press("Enter")
+    wait_until(lambda: entry.get_attribute("title") == "3 kN s/m")

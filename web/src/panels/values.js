@@ -148,8 +148,15 @@ export function Entry({ id, label, text, wrong = false, done }) {
     if (typed !== null && typed.trim() !== text) done(typed.trim());
     setTyped(null);
   };
+  /** All digits, chosen at once: if they came with the next drawing, what the keyboard had chosen would be lost. @param {Event} event */
+  const enter = (event) => {
+    const input = /** @type {HTMLInputElement} */ (event.currentTarget);
+    input.value = text;
+    input.select();
+    setInside(true);
+  };
   return html`<input class="entry" id=${id} aria-label=${label} title=${text} value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
-    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onFocus=${() => setInside(true)}
+    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onFocus=${enter}
     onBlur=${() => {
       finish();
       setInside(false);

@@ -11,7 +11,8 @@ import { indicesOf, percent } from "./answers.js";
 /** @typedef {import("../api.js").Api} Api */
 
 const USUAL = 10; // [%] that a value lies above or below its own at the most
-const FEWER = 256; // samples where a method takes longer than a norm
+const DESIGNS = 10_000; // that are judged while one waits, by norms, and a quarter of them by what takes longer
+const [FEWEST, MOST] = [64, 1024]; // samples, a power of two
 
 /** @param {{store: Store, api: Api}} props */
 export function TolerancePanel({ store, api }) {
@@ -26,7 +27,8 @@ export function TolerancePanel({ store, api }) {
   return html`<form onSubmit=${async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-    const body = { study: document.study, design: designOf(document), index: form.get("index"), spread: spreadOf(names, form), ...methodOf(state) };
+    const spread = spreadOf(names, form);
+    const body = { study: document.study, design: designOf(document), index: form.get("index"), spread, ...effortOf(state, Object.keys(spread).length) };
     setTold("Under way…");
     try {
       setFound({ of, value: await api.post("panel/tolerance", { ...body, client: "page.tolerance", sequence: Date.now() }) });
@@ -36,7 +38,7 @@ export function TolerancePanel({ store, api }) {
     }
   }}>
     <p class="quiet">How far each value of ${document.layout} may lie above or below its own; all between is equally likely. What is empty does not scatter.</p>
-    <div class="row spreads">${names.map((name) => html`<label key=${name}>${name} ± <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any" defaultValue=${USUAL} /> %</label>`)}</div>
+    <div class="row spreads">${names.map((name) => html`<label key=${name}><span>${name} ±</span> <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any" defaultValue=${USUAL} /> %</label>`)}</div>
     <div class="row"><label>Index <select name="index">${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}</select></label> <button>Find out</button></div>
     <p role="status">${told}</p>
   </form>
@@ -50,11 +52,12 @@ function spreadOf(names, form) {
   return Object.fromEntries(parts.filter(([, part]) => Number(part) > 0));
 }
 
-/** The method that the page judges by, unless it averages over roads: thousands of designs take too long then. @param {State} state */
-function methodOf({ about, view }) {
+/** The method that the page judges by, unless it averages over roads, and as many samples as a wait allows. @param {State} state @param {number} scattering how many values scatter */
+function effortOf({ about, view }, scattering) {
   const method = about.methods.find((/** @type {any} */ { name }) => name === view.method);
-  if (!method || method.averages) return {};
-  return method.sees === "neither" ? { method: method.name } : { method: method.name, samples: FEWER };
+  const quick = !method || method.averages || method.sees === "neither";
+  const samples = 2 ** Math.floor(Math.log2((quick ? DESIGNS : DESIGNS / 4) / (2 + scattering)));
+  return { ...(method && !method.averages ? { method: method.name } : {}), samples: Math.min(MOST, Math.max(FEWEST, samples)) };
 }
 
 /** @param {{value: any}} props */

@@ -78,7 +78,7 @@ function Scattered({ value }) {
       </table></div>
       <${Histogram} histogram=${value.histogram} title=${`Distribution of ${value.index}`} />
       <div class="scroll" tabindex="0" role="region" aria-label="Which value matters"><table>
-        <thead><tr><th scope="col">part of the variance</th><th scope="col" title="what the value makes by itself">by itself</th><th scope="col" title="what would go if the value did not scatter">in all</th><th scope="col"></th></tr></thead>
+        <thead><tr><th scope="col">variance from</th><th scope="col" title="what the value makes by itself">by itself</th><th scope="col" title="what would go if the value did not scatter">in all</th><th scope="col"></th></tr></thead>
         <tbody>${names.map((name) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">${share(value.main[name])}</td><td class="number">${share(value.total[name])}</td><td class="measure"><span class="measured" style=${{ width: `${100 * Math.min(1, Math.max(0, value.total[name] ?? 0))}%` }}></span></td></tr>`)}</tbody>
       </table></div>
     </div>`;

@@ -226,7 +226,7 @@ var ge,$i,uf,Xt,ks,ml,_i,fl,wi,Ss,xs,ff,jo=Symbol.for("pv"),hl={},gl=[],pf=/^m(i
       </table></div>
       <${Ym} histogram=${e.histogram} title=${`Distribution of ${e.index}`} />
       <div class="scroll" tabindex="0" role="region" aria-label="Which value matters"><table>
-        <thead><tr><th scope="col">part of the variance</th><th scope="col" title="what the value makes by itself">by itself</th><th scope="col" title="what would go if the value did not scatter">in all</th><th scope="col"></th></tr></thead>
+        <thead><tr><th scope="col">variance from</th><th scope="col" title="what the value makes by itself">by itself</th><th scope="col" title="what would go if the value did not scatter">in all</th><th scope="col"></th></tr></thead>
         <tbody>${n.map(o=>$`<tr key=${o}><th scope="row">${o}</th><td class="number">${au(e.main[o])}</td><td class="number">${au(e.total[o])}</td><td class="measure"><span class="measured" style=${{width:`${100*Math.min(1,Math.max(0,e.total[o]??0))}%`}}></span></td></tr>`)}</tbody>
       </table></div>
     </div>`}var au=e=>Wo(e===null?null:100*e),[Dr,Xo]=[320,150];function Ym({histogram:{edges:e,counts:t},title:n}){let o=Math.max(...t);if(!(o>0))return null;let l=Dr/t.length;return $`<svg class="histogram" viewBox=${`0 0 ${Dr} ${Xo+20}`} role="img" aria-label=${n}>

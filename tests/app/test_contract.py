@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import re
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +16,13 @@ from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 import inerter as it
+from inerter.app.documents import problems
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.app.requests import ENDPOINTS
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.networks.parser import network, parsed
+from inerter.units import parse_quantity
 
 CSV = b"time [s],displacement [mm],force [N]\n" + b"".join(
     b"%g,%g,%g\n" % (i * 1e-3, i % 7, i % 11) for i in range(500)
@@ -277,3 +280,23 @@ def test_several_designs_of_one_layout_have_names_of_their_own(client: TestClien
     told = client.post("/api/study/write", json={"study": document, "designs": designs}).json()["study"]
     assert list(told["layouts"]) == ["S1", "S1.3", "S1.4", "S1.2"]
     assert client.post("/api/study/check", json={"study": told}).json()["problems"] == []
+
+
+@pytest.mark.parametrize("name", ["limits", pytest.param("full-car", marks=pytest.mark.campaign)])
+def test_each_place_that_is_told_can_be_swept(client: TestClient, name: str) -> None:
+    """What `places` offers a sweep takes, and it offers all that is fixed, in and beyond elements."""
+    document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    told = client.post("/api/study/check", json={"study": document}).json()["places"]
+    assert [row["place"] for row in told if takes(document, **row)] == [row["place"] for row in told]
+    offered = {row["place"] for row in told}
+    assert {"road.speed", "vehicle.sprung_mass"} <= offered
+    for name, entry in document["elements"].items():
+        assert (name in offered) == isinstance(entry, str)
+    for row in told:
+        assert parse_quantity(row["text"], row["unit"]) == pytest.approx(row["value"], rel=1e-3)
+
+
+def takes(document: dict[str, Any], place: str, value: float, unit: str, **_: Any) -> bool:
+    """Whether a sweep of this place is accepted."""
+    sweep = {place: {"from": f"{0.9 * value!r} {unit}", "to": f"{1.1 * value!r} {unit}", "points": 2}}
+    return problems({**document, "study": {**document["study"], "sweep": sweep}}) == []

@@ -133,6 +133,40 @@ def test_panels_ask_what_the_study_asks(name: str) -> None:
             assert there.improvement.item() == row["improvement_percent"]
 
 
+@pytest.mark.parametrize("method", ["norm", pytest.param("statistical-linearisation", marks=pytest.mark.campaign)])
+def test_limits_are_kept_or_broken(client: TestClient, method: str) -> None:
+    """Of designs on either side of each limit, and of the best one, which lies on both."""
+    document = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    study = study_from(document)
+    best = client.post("/api/panel/optimise", json={"study": document, "layouts": ["S3"], "indices": ["comfort"]})
+    optimum = best.json()["designs"][0]["parameters"]
+    values = [optimum, *({**optimum, "k": k, "c": c} for k in (2e4, 9e4) for c in (300.0, 3e3, 3e4))]
+    designs = [{"layout": "S3", "values": each} for each in values]
+    body = {"study": document, "designs": designs, "methods": [method], "indices": ["tyre-load"]}
+    told = [d["limits"] for d in client.post("/api/panel/indices", json=body).json()["designs"]]
+    travel = [
+        it.evaluate(study.design("S3").with_values(v), it.SuspensionTravel(study.road), it.Norm()) for v in values
+    ]
+    assert [one["value"] for one, _ in told] == pytest.approx([found.value for found in travel], rel=1e-9)
+    assert [one["value"] for _, one in told] == pytest.approx([each["k"] for each in values], rel=1e-9)
+    assert [one["kept"] for one, _ in told[1:]] == [found.value < 8e-3 for found in travel[1:]]
+    assert [one["kept"] for _, one in told[1:]] == [each["k"] > 60e3 for each in values[1:]]
+    assert {one["kept"] for one, _ in told[1:]} == {True, False}
+    assert [one["kept"] for one in told[0]] == [True, True]
+
+
+def test_a_limit_without_a_value_is_not_known(client: TestClient) -> None:
+    """Of a strut that friction alone holds linear analysis cannot tell: its limits are neither kept nor broken."""
+    document = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    document["elements"]["f"] = "20 N"
+    document["layouts"] = {"S1": "k - f"}
+    body = {"study": document, "methods": ["norm"], "indices": ["tyre-load"]}
+    travel, stiffness = client.post("/api/panel/indices", json=body).json()["designs"][0]["limits"]
+    assert (travel["value"], travel["kept"]) == (None, None)
+    assert "friction" in travel["message"]
+    assert (stiffness["value"], stiffness["kept"]) == (0.0, False)
+
+
 def test_a_history_is_that_of_python(client: TestClient) -> None:
     body = {"study": DOCUMENT, "layout": "S3", "values": {"S3": {"c": 3000.0, "b": 50.0}}, "seed": 3, "duration": 0.5}
     told = client.post("/api/panel/history", json=body).json()

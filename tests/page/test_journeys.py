@@ -14,6 +14,8 @@ import pytest
 from browser import EXAMPLES, Served, Visitor, wait_until
 
 import inerter as it
+from inerter.app.designs import design_of
+from inerter.app.documents import study_from
 from inerter.files.study.loading import load_study
 
 NEWCOMER = """title = "A newcomer's car"
@@ -261,3 +263,88 @@ def test_downloads_hold_what_is_shown(visitor: Visitor, tmp_path: Path) -> None:
     assert {row["index"]: float(row["value"]) for row in rows if row["layout"] == "S3e"} == shown
     assert _download(visitor, "Network (SVG)", tmp_path).read_text().lstrip().startswith("<?xml")
     assert _download(visitor, "Network (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.campaign
+def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
+    """Of every index of the study, whatever it is called: what the menu asks for, the server has."""
+    study = tmp_path / "study.toml"
+    study.write_text(NEWCOMER.replace('["J1", "J3", "J5"]', '["J1", "tyre-load"]'))
+    visitor.open(study)
+    visitor.wait_for_text("k | c")
+    visitor.settled()
+    for index in ("J1", "tyre-load"):
+        visitor.page.get_by_text("Save", exact=True).click()
+        visitor.page.locator(".menu-body select").select_option(index)
+        visitor.page.mouse.click(640, 5)
+        picture = _download(visitor, "Response (SVG)", tmp_path)
+        assert picture.name.endswith(f"response-{index}.svg")
+        assert picture.read_text().lstrip().startswith("<?xml")
+    assert _download(visitor, "Response (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.campaign
+def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
+    page = visitor.page
+    asked: list[dict[str, Any]] = []
+    page.on("request", lambda request: "tolerance" in request.url and asked.append(request.post_data_json))
+    page.click("#tab-tolerance")
+    for name, part in {"k": "", "ks": "0", "c": "20"}.items():
+        page.locator(f"[name='spread {name}']").fill(part)
+    page.locator("#tab-panel").get_by_role("button", name="Find out").click()
+    page.wait_for_selector("table[data-scatter]")
+    (body,) = asked
+    assert body["spread"] == {"c": 0.2, "cs": 0.1, "b": 0.1}
+    study = study_from(body["study"])
+    design = design_of(study, **{key: body["design"][key] for key in ("layout", "values")})
+    found = it.tolerance(design.vehicle, study.index(body["index"]), it.Norm(), spread=body["spread"], samples=1024)
+    values = page.eval_on_selector_all("[data-scatter] td", "all => all.map(td => Number(td.dataset.value))")
+    assert values == [
+        found.nominal.value,
+        found.mean,
+        found.standard_deviation,
+        found.quantile(0.95),
+        found.worst,
+    ]
+    visitor.page.get_by_role("group", name="Layouts").get_by_role("button", name="S2", exact=True).click()
+    page.wait_for_selector("text=before it was changed")
+
+
+@pytest.mark.campaign
+def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
+    page = visitor.page
+    page.click("#tab-work")
+    form = page.locator("form.begin", has_text="Sweep")
+    form.locator("select").select_option("road.speed")
+    assert form.locator("[name=from]").input_value() == "12.5 m/s"
+    form.locator("[name=points]").fill("2")
+    form.get_by_role("button", name="Begin").click()
+    page.wait_for_selector(".job[data-state=done] .plot canvas", timeout=120_000)
+
+
+@pytest.mark.campaign
+def test_limits_stand_in_the_answers(visitor: Visitor) -> None:
+    visitor.open(EXAMPLES / "limits.toml")
+    visitor.wait_for_text("k | c - b")
+    visitor.page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
+    told = visitor.page.locator(".limits li").first.inner_text()
+    assert told == "kept: suspension-travel at most 8 mm; it is 8 mm"
+    visitor.page.fill("[id='entry elements.k']", "20 kN/m")
+    visitor.page.keyboard.press("Enter")
+    visitor.page.wait_for_selector(".limits .bad")
+    assert visitor.page.locator(".limits .bad").last.inner_text().startswith("broken: static-stiffness")
+
+
+@pytest.mark.campaign
+def test_what_the_keyboard_enters_is_typed_over(visitor: Visitor) -> None:
+    """A value of more digits than are shown: whoever comes by Tab has all of it chosen, with all its digits."""
+    page = visitor.page
+    visitor.settled()
+    entry = page.locator("[id='entry elements.c']")
+    assert len(entry.get_attribute("title")) > len(entry.input_value())
+    page.locator("[data-place='elements.c'] input[type=range]").focus()
+    page.keyboard.press("Tab")
+    assert entry.input_value() == entry.get_attribute("title")
+    page.keyboard.type("3 kN s/m")
+    page.keyboard.press("Enter")
+    wait_until(lambda: entry.get_attribute("title") == "3 kN s/m")

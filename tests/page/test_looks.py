@@ -96,7 +96,7 @@ def test_looks(name: str, visitors: Any, serve: Callable[..., Served], served: S
                 page.wait_for_selector(".notice")
                 page.get_by_role("button", name="Close the message").click()
                 visitor.settled()
-            for tab in ("response", "history", "compare", "work", "rig") if make else ("none",):
+            for tab in ("response", "history", "compare", "tolerance", "work", "rig") if make else ("none",):
                 if make:
                     page.click(f"#tab-{tab}")
                     page.wait_for_timeout(200)

@@ -7,6 +7,7 @@ import { Menu } from "./panels/memory.js";
 import { NetworkPanel } from "./panels/network.js";
 import { ResponsePanel } from "./panels/response.js";
 import { RigPanel } from "./panels/rig.js";
+import { TolerancePanel } from "./panels/tolerance.js";
 import { ValuesPanel } from "./panels/values.js";
 import { WorkPanel } from "./panels/work.js";
 import { html, useEffect, useState } from "./parts/html.js";
@@ -21,6 +22,7 @@ const TABS = [
   { key: "response", title: "Frequency response", Panel: ResponsePanel },
   { key: "history", title: "On the road", Panel: HistoryPanel },
   { key: "compare", title: "Compare", Panel: ComparePanel },
+  { key: "tolerance", title: "Tolerances", Panel: TolerancePanel },
   { key: "work", title: "Work", Panel: WorkPanel },
   { key: "rig", title: "Rig", Panel: RigPanel },
 ];

@@ -1,5 +1,6 @@
 // Curves by uPlot, in the colours of the page, with bands that are shaded.
 import uPlot from "uplot";
+import { shown } from "./state/scale.js";
 import { html, useLayoutEffect, useRef } from "./parts/html.js";
 
 /** @typedef {{label: string, values: (number | null)[], dash?: boolean, colour?: number}} Curve */
@@ -40,6 +41,9 @@ export function Plot({ x, curves, xLabel, yLabel, log = false, logY = false, ban
 /** @param {number[]} x @param {Curve[]} curves @returns {any} */
 const dataOf = (x, curves) => [x, ...curves.map(({ values }) => values)];
 
+/** What stands at the marks of an axis. @param {uPlot} _ @param {(number | null)[]} marks */
+const marked = (_, marks) => marks.map((mark) => (mark === null ? "" : shown(mark).replace(/^1·/, "")));
+
 /** @param {Curve[]} curves @param {{xLabel: string, yLabel: string, log: boolean, logY: boolean, height: number, width: number}} how @param {() => Band[]} bands @returns {uPlot.Options} */
 function optionsOf(curves, { xLabel, yLabel, log, logY, height, width }, bands) {
   const [ink, faint] = [colour("--ink"), colour("--line")];
@@ -50,7 +54,7 @@ function optionsOf(curves, { xLabel, yLabel, log, logY, height, width }, bands) 
     cursor: { drag: { x: true, y: false } },
     legend: { live: true },
     scales: { x: { time: false, distr: log ? 3 : 1 }, y: { distr: logY ? 3 : 1 } },
-    axes: [{ ...axis, label: xLabel }, { ...axis, label: yLabel, size: 64 }],
+    axes: [{ ...axis, label: xLabel, values: marked }, { ...axis, label: yLabel, size: 64, values: marked }],
     series: [
       { label: xLabel, value: (_, v) => (v === null ? "–" : v.toPrecision(4)) },
       ...curves.map(({ label, dash, colour: number }, i) => ({

@@ -16,6 +16,12 @@ export function baselineOf({ study, values }) {
   return { layout, values: values[layout] ?? {}, name: layout };
 }
 
+/** The design that is edited and the one that it is compared with; that one alone if it is edited. @param {Document} document */
+export function shownDesigns(document) {
+  const [design, baseline] = [designOf(document), baselineOf(document)];
+  return design.layout === baseline.layout ? [design] : [design, baseline];
+}
+
 /** What stands in the comparison: a layout of the study, or a design that was kept. @param {Document} document @param {string} key */
 export function comparedDesign(document, key) {
   const kept = document.designs.find(({ name }) => `kept ${name}` === key);
@@ -44,10 +50,7 @@ export function questions(state) {
 }
 
 /** @param {Document} document */
-function about(document) {
-  const [design, baseline] = [designOf(document), baselineOf(document)];
-  return { study: document.study, designs: design.layout === baseline.layout ? [design] : [design, baseline], baseline };
-}
+const about = (document) => ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
 
 /** @param {State} state @param {Document} document @returns {Question} */
 function historyOf({ view }, document) {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import lru_cache
 from pkgutil import resolve_name
 from typing import Any
 
@@ -14,8 +13,9 @@ from inerter.app.designs import Design, baseline_of, design_of, designs_of
 from inerter.app.documents import study_from
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
+from inerter.app.valued import limits_at, valued
 from inerter.app.wire import encoded
-from inerter.errors import DesignError, Status, StatusKind, StudyError
+from inerter.errors import DesignError, StudyError
 from inerter.fields import fields_of
 from inerter.files.common.shape import ROAD
 from inerter.files.study.cases import FAILURES, Case, Outcome, run_case
@@ -23,9 +23,8 @@ from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
-from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Estimate, Method, evaluate
+from inerter.methods.method import Estimate
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
@@ -35,13 +34,10 @@ from inerter.scatter.tolerance import tolerance
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.vehicle.registry import VEHICLES
-from inerter.vehicle.vehicle import Vehicle
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
 
-
-_REMEMBERED = 2000  # values of designs
 _SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
 
 
@@ -83,6 +79,7 @@ def indices(study: Study, body: Body) -> Answer:
                     for index in indices
                     for method in methods
                 ],
+                "limits": limits_at(study, design, methods[0]),
             }
             for design in designs
         ],
@@ -94,22 +91,7 @@ def _estimate(study: Study, design: Design | None, index: str, method: str) -> E
     """The value of an index; where it cannot be had, nan with a status that says why."""
     if design is None:
         return None
-    asked: tuple[Any, ...] = design.vehicle, study.asked(index, design.layout), study.method(method)
-    try:
-        hash(asked)
-    except TypeError:  # a mechanism, or an index with matrices
-        return _valued(*asked)
-    return _remembered(*asked)
-
-
-def _valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
-    try:
-        return evaluate(vehicle, index, method)
-    except FAILURES as error:
-        return Estimate(np.nan, index.unit, Status(StatusKind.FAILED, str(error)))
-
-
-_remembered = lru_cache(_REMEMBERED)(_valued)  # a step of a slider leaves most designs as they were
+    return valued(design.vehicle, study.asked(index, design.layout), study.method(method))
 
 
 def _result(

@@ -6,8 +6,12 @@ from typing import Any
 
 from inerter.app.documents import problems_of, study_from
 from inerter.errors import InerterError
+from inerter.files.common.problem import EntryError
 from inerter.files.study.checking import check_study, study_notes
+from inerter.files.study.places import place_of, places
 from inerter.files.study.study import Study, elements_used
+from inerter.files.study.sweeps import number_of
+from inerter.units import format_quantity
 
 
 def checked(document: object) -> dict[str, Any]:
@@ -16,8 +20,22 @@ def checked(document: object) -> dict[str, Any]:
         study = study_from(document)
         check_study(study)
     except InerterError as error:
-        return {"problems": problems_of(error), "notes": [], "layouts": {}}
-    return {"problems": [], "notes": study_notes(study), "layouts": _layouts(study)}
+        return {"problems": problems_of(error), "notes": [], "layouts": {}, "places": []}
+    return {"problems": [], "notes": study_notes(study), "layouts": _layouts(study), "places": _places(study)}
+
+
+def _places(study: Study) -> list[dict[str, Any]]:
+    """The numbers that can be swept, of those that the study has."""
+    found = []
+    for label, number in places(study).items():
+        try:
+            value = number_of(study, place_of(label)).value
+        except EntryError:  # it is free, or makes no difference
+            continue
+        if isinstance(value, int | float):
+            text = format_quantity(value, number.unit)
+            found.append({"place": label, "words": number.words, "unit": number.unit, "value": value, "text": text})
+    return found
 
 
 def _layouts(study: Study) -> dict[str, Any]:

@@ -97,8 +97,13 @@ function Limits({ value }) {
   const limits = value?.designs?.[0]?.limits ?? [];
   return limits.length === 0
     ? null
-    : html`<h3>Limits</h3><ul class="limits">${limits.map((/** @type {any} */ limit) => html`<li class=${limit.kept ? "good" : "bad"}>${limit.kept ? "kept: " : "broken: "}${limit.title ?? limit.name}: ${shown(limit.value)} ${limit.unit ?? ""}</li>`)}</ul>`;
+    : html`<h3>Limits</h3><ul class="limits">${limits.map((/** @type {any} */ limit) => html`<li key=${limit.title} class=${LIMIT_CLASSES[limit.kept]}>${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
 }
+
+/** @type {{[kept: string]: string}} */
+const LIMIT_WORDS = { true: "kept", false: "broken", null: "not known" };
+/** @type {{[kept: string]: string}} */
+const LIMIT_CLASSES = { true: "good", false: "bad", null: "quiet" };
 
 /** @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
 function Optimise({ store, api, indices }) {

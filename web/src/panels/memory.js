@@ -1,6 +1,7 @@
 // Opening, undoing, sharing and downloading.
 
-import { designOf } from "../questions.js";
+import { indicesOf } from "./answers.js";
+import { designOf, shownDesigns } from "../questions.js";
 import { html, useState } from "../parts/html.js";
 import { download, linkTo, open } from "../remembering.js";
 import { begin, openStudy } from "../working.js";
@@ -11,6 +12,7 @@ import { begin, openStudy } from "../working.js";
 /** @param {{store: Store, api: Api}} props */
 export function Menu({ store, api }) {
   const state = store.get();
+  const [picked, setPicked] = useState("");
   const { history } = state;
   const { study } = history.present;
   const name = fileName(study.title);
@@ -28,8 +30,14 @@ export function Menu({ store, api }) {
     const asked = JSON.parse(state.answers.indices?.key || "{}");
     download(await api.blob("export/csv", { panel: "indices", request: asked }), `${name}.csv`);
   });
-  /** @param {"svg" | "png"} format @param {"networks" | "responses"} kind */
-  const figure = (format, kind) => attempt(async () => download(await api.blob("figure", { kind, format, study, designs: [designOf(history.present)] }), `${name}-${kind}.${format}`));
+  const indices = indicesOf(state).map(({ symbol }) => symbol);
+  const index = indices.includes(picked) ? picked : indices[0];
+  /** @param {"svg" | "png"} format @param {string} kind @param {any[]} designs */
+  const figure = (format, kind, designs) => attempt(async () => download(await api.blob("figure", { kind, format, study, designs }), `${name}-${kind}.${format}`));
+  /** @param {"svg" | "png"} format */
+  const network = (format) => figure(format, "networks", [designOf(history.present)]);
+  /** @param {"svg" | "png"} format */
+  const response = (format) => figure(format, `response-${index}`, shownDesigns(history.present));
   const report = attempt(async () => {
     await begin(store, api, { kind: "run", title: `Report: ${study.title ?? "study"}`, study });
     store.dispatch({ type: "viewed", view: { tab: "work" } });
@@ -42,10 +50,11 @@ export function Menu({ store, api }) {
       <button type="button" onClick=${theStudy}>Study file (TOML)</button>
       <button type="button" onClick=${theDesign}>This design, values fixed (TOML)</button>
       <button type="button" onClick=${csv}>Indices (CSV)</button>
-      <button type="button" onClick=${figure("svg", "networks")}>Network (SVG)</button>
-      <button type="button" onClick=${figure("png", "networks")}>Network (PNG)</button>
-      <button type="button" onClick=${figure("svg", "responses")}>Responses (SVG)</button>
-      <button type="button" onClick=${figure("png", "responses")}>Responses (PNG)</button>
+      <button type="button" onClick=${network("svg")}>Network (SVG)</button>
+      <button type="button" onClick=${network("png")}>Network (PNG)</button>
+      ${index && html`<label>Response of <select value=${index} onChange=${(/** @type {Event} */ event) => setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>${indices.map((each) => html`<option key=${each}>${each}</option>`)}</select></label>
+        <button type="button" onClick=${response("svg")}>Response (SVG)</button>
+        <button type="button" onClick=${response("png")}>Response (PNG)</button>`}
       <button type="button" onClick=${report}>Report: run the study</button>
     </div></details>
     <${Share} store=${store} />

@@ -14,6 +14,8 @@ const DECADE = 10;
 /** A number of the document. `unit` is null where the unit itself tells what it is; `set` gives the change to another text.
  * @typedef {{place: string[], label: string, sentence: string, unit: string | null, text: string, range: {from: string, to: string}, free: boolean, set: (text: string) => import("../state/document.js").Change}} Amount */
 
+const MANY = 14; // elements of a layout that stand below each other; of more some are scrolled, so that the rest of the page stays near
+
 /** @param {{store: Store}} props */
 export function ValuesPanel({ store }) {
   const state = store.get();
@@ -25,7 +27,7 @@ export function ValuesPanel({ store }) {
   const rest = numbersOf(state.about, state.history.present);
   return html`<section class="panel values" aria-labelledby="values-title">
     <h2 id="values-title">Values</h2>
-    ${used.map((name) => html`<${ElementRow} key=${name} store=${store} name=${name} />`)}
+    <div class=${used.length > MANY ? "many" : ""}>${used.map((name) => html`<${ElementRow} key=${name} store=${store} name=${name} />`)}</div>
     ${other.length > 0 &&
     html`<details><summary>${`Elements of other layouts (${other.length})`}</summary>
       ${other.map((name) => html`<${ElementRow} key=${name} store=${store} name=${name} />`)}
@@ -148,8 +150,15 @@ export function Entry({ id, label, text, wrong = false, done }) {
     if (typed !== null && typed.trim() !== text) done(typed.trim());
     setTyped(null);
   };
+  /** All digits, chosen at once: if they came with the next drawing, what the keyboard had chosen would be lost. @param {Event} event */
+  const enter = (event) => {
+    const input = /** @type {HTMLInputElement} */ (event.currentTarget);
+    input.value = text;
+    input.select();
+    setInside(true);
+  };
   return html`<input class="entry" id=${id} aria-label=${label} title=${text} value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
-    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onFocus=${() => setInside(true)}
+    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onFocus=${enter}
     onBlur=${() => {
       finish();
       setInside(false);

@@ -5,8 +5,6 @@ import { FrontForm, FrontResult, frontBody } from "./front.js";
 import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
 import { html, useState } from "../parts/html.js";
-import { numbersOf } from "../questions.js";
-import { isRange } from "../state/document.js";
 import { shown, takenApart, quantity } from "../state/scale.js";
 import { begin, stop, takeOptima } from "../working.js";
 
@@ -114,27 +112,22 @@ function Files({ api, job }) {
     : html`<ul class="files">${files.map(({ name, size }) => html`<li key=${name}><button type="button" class="link" onClick=${async () => download(await api.blob(`work/${job.id}/files/${name}`), name.split("/").at(-1) ?? name)}>${name}</button> <span class="quiet">${shown(size / 1000, 3)} kB</span></li>`)}</ul>`;
 }
 
-/** The numbers that can be swept. @param {State} state @returns {{key: string, text: string}[]} */
+/** The numbers that can be swept: elements, and then what else the study has. @param {State} state @returns {{place: string, words: string, text: string}[]} */
 function sweepable(state) {
-  const { study } = state.history.present;
-  const elements = Object.entries(study.elements ?? {}).filter(([, entry]) => !isRange(entry) && typeof entry === "string");
-  const rest = state.about?.places ? numbersOf(state.about, state.history.present) : [];
-  return [
-    ...elements.map(([key, text]) => ({ key, text: String(text) })),
-    ...rest.map(({ place }) => ({ key: place.join("."), text: String(study[place[0]]?.[place[1]]) })),
-  ];
+  const numbers = state.answers.check?.value?.places ?? [];
+  return numbers.toSorted((/** @type {any} */ one, /** @type {any} */ other) => Number(one.place.includes(".")) - Number(other.place.includes(".")));
 }
 
 /** @param {{state: State}} props */
 function SweepForm({ state }) {
   const numbers = sweepable(state);
-  const [key, setKey] = useState("");
-  const chosen = numbers.find((each) => each.key === key) ?? numbers[0];
+  const [place, setPlace] = useState("");
+  const chosen = numbers.find((each) => each.place === place) ?? numbers[0];
   const apart = takenApart(chosen?.text);
-  if (!chosen || !apart) return html`<span class="quiet">No element has a fixed value to sweep.</span>`;
-  return html`<label>of <select name="of" value=${chosen.key} onChange=${(/** @type {Event} */ event) => setKey(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>${numbers.map((each) => html`<option key=${each.key} value=${each.key}>${each.key}</option>`)}</select></label>
-    <label>from <input name="from" class="entry" key=${`from ${chosen.key}`} defaultValue=${quantity(apart.number / 2, apart.unit)} /></label>
-    <label>to <input name="to" class="entry" key=${`to ${chosen.key}`} defaultValue=${quantity(apart.number * 2, apart.unit)} /></label>
+  if (!chosen || !apart) return html`<span class="quiet">There is no fixed value to sweep.</span>`;
+  return html`<label>of <select name="of" value=${chosen.place} onChange=${(/** @type {Event} */ event) => setPlace(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>${numbers.map((each) => html`<option key=${each.place} value=${each.place}>${each.place}${each.words === each.place ? "" : `: ${each.words}`}</option>`)}</select></label>
+    <label>from <input name="from" class="entry" key=${`from ${chosen.place}`} defaultValue=${quantity(apart.number / 2, apart.unit)} /></label>
+    <label>to <input name="to" class="entry" key=${`to ${chosen.place}`} defaultValue=${quantity(apart.number * 2, apart.unit)} /></label>
     <label>points <input name="points" type="number" min="2" max="100000" defaultValue="16" /></label>`;
 }
 

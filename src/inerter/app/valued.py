@@ -1,0 +1,71 @@
+"""What an index, or what is limited, comes to in a design; values that have been found are kept."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from math import inf, isnan, nan
+from typing import Any
+
+from inerter.app.designs import Design
+from inerter.errors import Status, StatusKind
+from inerter.files.study.cases import FAILURES
+from inerter.files.study.limits import StudyLimit, limits_in
+from inerter.files.study.study import Study
+from inerter.methods.asking import Asked
+from inerter.methods.method import Estimate, Method, evaluate
+from inerter.optimisation.constrained import KEPT_COSTLY
+from inerter.optimisation.held import Held
+from inerter.optimisation.limits import Limit, for_each
+from inerter.units import format_quantity
+from inerter.vehicle.vehicle import Vehicle
+
+_REMEMBERED = 2000  # values of designs
+
+
+def valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+    """The value of an index; where it cannot be had, nan with a status that says why."""
+    asked: tuple[Any, ...] = vehicle, index, method
+    try:
+        hash(asked)
+    except TypeError:  # a mechanism, or an index with matrices
+        return _valued(*asked)
+    return _remembered(*asked)
+
+
+def _valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+    try:
+        return evaluate(vehicle, index, method)
+    except FAILURES as error:
+        return Estimate(nan, index.unit, Status(StatusKind.FAILED, str(error)))
+
+
+_remembered = lru_cache(_REMEMBERED)(_valued)  # a step of a slider leaves most designs as they were
+
+
+def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:
+    """The limits of a study at a design, each with the value that comes closest, by the method of that name."""
+    pairs = zip(study.limits, limits_in(study), strict=True)
+    return [_limit(one, several, design.vehicle, study.method(name)) for one, several in pairs]
+
+
+def _limit(said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Method) -> dict[str, Any]:
+    try:
+        single = [replace(limit, of=one) for limit in several for one in for_each(limit.of, vehicle)]
+        held = [Held(limit, valued(vehicle, limit.of, method), False, 0.0) for limit in single]
+        worst = max(held, key=lambda one: inf if isnan(one.value) else one.excess).estimate
+        kept = None if isnan(worst.value) else all(one.excess <= KEPT_COSTLY for one in held)
+    except FAILURES as error:
+        worst, kept = Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error))), None
+    return {
+        "of": said.of,
+        "sense": said.sense,
+        "limit": said.value,
+        "title": said.label,
+        "unit": said.unit,
+        "value": worst.value,
+        "text": "" if kept is None else format_quantity(worst.value, said.unit),
+        "kept": kept,
+        "status": worst.status.kind.value,
+        "message": worst.status.message,
+    }

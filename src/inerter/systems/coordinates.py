@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.systems import rationals
+from inerter.systems.levers import RANK_TOLERANCE, Span, independent_rows
 from inerter.systems.rationals import FractionRows
 
 Matrix = NDArray[np.float64]
-_RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +48,14 @@ class Coordinates:
     P: Matrix
     rates: tuple[Matrix, Matrix, Matrix]
     motions: FractionRows  # R, U, Y and Z in fractions, a column each
+    span: Span
     known: dict[bytes, list[Matrix]] = field(default_factory=dict)  # what `rate` has found
 
     def rate(self, nodes: Matrix) -> list[Matrix]:
         """The velocity of a combination of nodes over a, u, y and z; what is zero is zero."""
         key = nodes.tobytes()
         if key not in self.known:
-            row = rationals.product(rationals.exact(nodes[None]), self.motions, nodes.size)
+            row = rationals.product(self.span.meant(nodes[None]), self.motions, nodes.size)
             edges = np.cumsum([self.R.shape[1], self.U.shape[1], self.Y.shape[1]])
             self.known[key] = np.split(rationals.rounded(row, nodes.size)[0], edges)
         return self.known[key]
@@ -67,15 +68,16 @@ def find_coordinates(
     springs: Matrix,
     spring_roads: Matrix,
     forces: Matrix,
+    span: Span,
 ) -> Coordinates:
     """Split the motions of the nodes, and choose independent elongations.
 
     `inertia`, `damping`, `springs` hold one incidence row an element (elements, nodes); `spring_roads` the springs'
-    rows over the roads; `forces` one row an external force (forces, nodes).
+    rows over the roads; `forces` one row an external force (forces, nodes); `span` tells which levers are one.
 
     Raises `MechanismError` for a node that is held by nothing.
     """
-    found = _found(*((m.shape, m.tobytes()) for m in (inertia, damping, springs, spring_roads, forces)))
+    found = _found(span, *((m.shape, m.tobytes()) for m in (inertia, damping, springs, spring_roads, forces)))
     if isinstance(found, int):
         raise MechanismError(
             f"Node {nodes[found]!r} is held by nothing: no mass, spring, damper or inerter resists its motion."
@@ -83,25 +85,26 @@ def find_coordinates(
     return found
 
 
-def combination(rows: Matrix, target: Matrix) -> Matrix | None:
-    """Numbers with which the rows add up to `target`; None if they cannot."""
-    return _combination(rows.shape, rows.tobytes(), target.tobytes())
+def combination(span: Span, rows: Matrix, target: Matrix) -> Matrix | None:
+    """Numbers with which the rows, over nodes and perhaps roads, add up to `target`; None if they cannot."""
+    return _combination(span, rows.shape, rows.tobytes(), target.tobytes())
 
 
 @lru_cache(maxsize=512)
-def _combination(shape: tuple[int, int], rows: bytes, target: bytes) -> Matrix | None:
+def _combination(span: Span, shape: tuple[int, int], rows: bytes, target: bytes) -> Matrix | None:
     matrix, wanted = np.frombuffer(rows).reshape(shape), np.frombuffer(target)[None]
-    found = rationals.weights(rationals.exact(matrix), rationals.exact(wanted))[0]
+    found = rationals.weights(span.meant(matrix), span.meant(wanted))[0]
     return None if found is None else rationals.rounded([found], shape[0])[0]
 
 
 @lru_cache(maxsize=512)
-def _found(*matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
+def _found(span: Span, *matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
     """The coordinates, or the number of a node that is held by nothing; remembered for all designs of a layout."""
     n, roads = matrices[0][0][1], matrices[3][0][1]
-    inertia, damping, springs, spring_roads, forces = (
-        rationals.exact(np.frombuffer(data).reshape(shape)) for shape, data in matrices
-    )
+    given = [np.frombuffer(data).reshape(shape) for shape, data in matrices]
+    inertia, damping, forces = rationals.exact(given[0]), span.meant(given[1]), span.meant(given[4])
+    both = span.meant(np.hstack([given[2], given[3]]))
+    springs, spring_roads = [row[:n] for row in both], [row[n:] for row in both]
     loose = rationals.null_space([*inertia, *damping, *springs], n)
     if loose:
         return max(range(n), key=lambda i: abs(loose[0][i]))
@@ -132,6 +135,7 @@ def _found(*matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
         P=rationals.rounded(P, len(springs)),
         rates=(whole[:, : len(R)], whole[:, len(R) : moved], whole[:, moved:]),
         motions=rationals.transposed([*R, *U, *Y, *Z], n),
+        span=span,
     )
 
 
@@ -187,7 +191,7 @@ def null_space(rows: Matrix) -> Matrix:
     kept = rows[size > 0.0] / size[size > 0.0, None]
     if rows.shape[1] == 0 or kept.shape[0] == 0:
         return np.eye(rows.shape[1])
-    basis = scipy.linalg.null_space(kept, rcond=_RANK_TOLERANCE)
+    basis = scipy.linalg.null_space(kept, rcond=RANK_TOLERANCE)
     if basis.shape[1] == 0:
         return basis
     pivots = scipy.linalg.qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
@@ -199,23 +203,6 @@ def complete(basis: Matrix, candidates: Matrix) -> Matrix:
     """The first of the columns `candidates` that together with `basis` are independent and span all of them."""
     spanned = scipy.linalg.orth(basis).T if basis.size else np.zeros((0, candidates.shape[0]))
     return candidates[:, independent_rows(candidates.T, spanned)]
-
-
-def independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
-    """Numbers of the first rows that, with the orthonormal rows `spanned`, are independent and span all rows."""
-    directions = np.zeros((0, rows.shape[1])) if spanned is None else spanned
-    chosen: list[int] = []
-    for i, row in enumerate(rows):
-        size = np.linalg.norm(row)
-        if size == 0.0:
-            continue
-        residual = row / size
-        for _ in range(2):  # twice is enough for Gram-Schmidt
-            residual = residual - directions.T @ (directions @ residual)
-        if np.linalg.norm(residual) > _RANK_TOLERANCE:
-            directions = np.vstack([directions, residual / np.linalg.norm(residual)])
-            chosen.append(i)
-    return chosen
 
 
 @_remembered

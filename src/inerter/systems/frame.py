@@ -21,6 +21,7 @@ from inerter.networks.elements.roles import Linear
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph
 from inerter.systems.incidence import inertias, of_law, ports, stacked
+from inerter.systems.levers import Span
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.vehicle.mechanism import Mechanism
 
@@ -153,7 +154,7 @@ class Frame:
     def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
         """The combination of spring elongations that is this displacement whatever moves, if there is one."""
         springs = np.hstack([self.spring_rows, self.spring_roads])
-        return combination(springs, np.hstack([nodes, roads[self.road_columns]]))
+        return combination(self.split.span, springs, np.hstack([nodes, roads[self.road_columns]]))
 
 
 def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Sequence[str] = ()) -> Frame:
@@ -180,6 +181,7 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
         springs=spring_rows,
         spring_roads=spring_roads,
         forces=forces,
+        span=Span.of(graph, columns),
     )
     known = outputs(mechanism, graph)
     asked = [known[name] for name in wanted if name in known]

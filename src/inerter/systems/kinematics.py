@@ -19,9 +19,10 @@ from inerter.errors import MechanismError
 from inerter.kernels.arrays import FRICTION, GAP
 from inerter.networks.elements import Element, Network, Parallel, Series
 from inerter.networks.elements.roles import Guard, Linear
-from inerter.systems.coordinates import clean, complete, independent_rows, null_space, pseudo_inverse
+from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.incidence import inertia_values, inertias, ports, stacked
+from inerter.systems.levers import RANK_TOLERANCE, independent_rows
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 
@@ -164,7 +165,7 @@ def _turned(first: Branch, other: Branch) -> int:
     if not all(b.element.switches_by(Guard.FORCE) and b.element.acts for b in (first, other)):
         return 0
     row, beside = (np.concatenate([b.nodes, b.roads]) for b in (first, other))
-    return 1 if np.array_equal(row, beside) else -1 if np.array_equal(-row, beside) else 0
+    return next((turn for turn in (1, -1) if np.allclose(turn * row, beside, rtol=RANK_TOLERANCE, atol=0.0)), 0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,9 @@
 """Transfer functions of a mechanism without any rounding.
 
-A double is a whole number times a power of two, so masses, element values and levers are exact, and so is the matrix
-M s^2 + C s + K of all nodes, massless ones included, at a whole number s. Its determinant and the solutions for the
-inputs, times it, are polynomials in s whose values at enough such numbers give their coefficients. No states are
-chosen, nothing is eliminated by rank, and no tolerance decides.
+A double is a whole number times a power of two, so masses and element values are exact; levers are the fractions that
+they were meant to be (`systems.levers`); and so the matrix M s^2 + C s + K of all nodes, massless ones included, is
+exact at a whole number s. Its determinant and the solutions for the inputs, times it, are polynomials in s whose values
+at enough such numbers give their coefficients. No states are chosen, and nothing is eliminated by rank.
 """
 
 from __future__ import annotations
@@ -12,10 +12,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd as common
-from typing import Any
+from math import lcm
+
+import numpy as np
 
 from inerter.networks.elements import Element, Free, Tied
 from inerter.systems.graph import Graph
+from inerter.systems.incidence import Matrix, ports
+from inerter.systems.levers import Span
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
 from inerter.vehicle.mechanism import Mechanism
@@ -32,9 +36,10 @@ def transfer_functions(
     wanted: Sequence[str],
 ) -> TransferFunctions:
     """From road velocities and forces named `inputs` to the outputs named `wanted`, at `values` of the free values."""
-    nodal = _Nodal(mechanism, graph, values)
     known = outputs(mechanism, graph)
-    rows = [_Row.of(known[name], nodal) for name in wanted]
+    asked = [known[name] for name in wanted]
+    nodal = _Nodal(mechanism, graph, values, asked)
+    rows = [_Row.of(output, nodal) for output in asked]
     loads = [nodal.load(name) for name in inputs]
     samples = [nodal.sample(s, loads, rows) for s in range(1, 2 * len(graph.nodes) + 3)]
     denominator, *numerators = (interpolated(column) for column in zip(*samples, strict=True))
@@ -54,48 +59,66 @@ class _Row:
     def of(output: Output, nodal: _Nodal) -> _Row:
         carried = any(output.external)  # in the units of forces, and then all else too
 
-        def whole(row: Any) -> Row:
-            return {i: c << (nodal.value_bits if carried else 0) for i, c in nodal.whole(row).items()}
+        def whole(nodes: Matrix, roads: Matrix) -> tuple[Row, Row]:
+            unit = 1 << nodal.value_bits if carried else 1
+            over_nodes, over_roads = ({i: unit * c for i, c in row.items()} for row in nodal.whole(nodes, roads))
+            return over_nodes, over_roads
 
+        (displacement, road), (velocity, road_velocity), (acceleration, _) = (whole(*pair) for pair in _pairs(output))
         return _Row(
-            (whole(output.displacement), whole(output.velocity), whole(output.acceleration)),
-            (whole(output.road), whole(output.road_velocity)),
+            (displacement, velocity, acceleration),
+            (road, road_velocity),
             {i: 1 for i, weight in enumerate(output.forces) if weight},
             frozenset(name for name, weight in zip(nodal.names, output.external, strict=False) if weight),
         )
 
 
-class _Nodal:
-    """M s^2 + C s + K in whole numbers: levers times 2^levers, values times 2^values, and so their products."""
+def _pairs(output: Output) -> list[tuple[Matrix, Matrix]]:
+    """The rows of an output over nodes, each with that over the roads that moves as it does."""
+    return [
+        (output.displacement, output.road),
+        (output.velocity, output.road_velocity),
+        (output.acceleration, np.zeros(0)),
+    ]
 
-    def __init__(self, mechanism: Mechanism, graph: Graph, values: Mapping[str, float]) -> None:
+
+class _Nodal:
+    """M s^2 + C s + K in whole numbers: levers times `lever_unit`, values times 2^values, and so their products."""
+
+    def __init__(
+        self, mechanism: Mechanism, graph: Graph, values: Mapping[str, float], asked: Sequence[Output]
+    ) -> None:
         self.graph, self.size = graph, len(graph.nodes)
         self.roads = [road.name for road in mechanism.roads]
         self.names = [force.name for force in mechanism.forces]
-        ports = {force.name: force.port for force in mechanism.forces}
-        names = [coordinate.name for coordinate in mechanism.coordinates]
-        forces = {name: {names.index(at): lever for at, lever in port.items() if lever} for name, port in ports.items()}
-        forces |= {
-            force_of(branch.label): {i: -float(lever) for i, lever in enumerate(branch.nodes) if lever}
-            for branch in graph.branches
-        }
-        levers = [float(x) for b in graph.branches for row in (b.nodes, b.roads) for x in row if x]
-        levers += [lever for row in forces.values() for lever in row.values()]
-        self.lever_bits = max([_bits(lever) for lever in levers], default=0)
+        self.span = Span.of(graph, range(len(self.roads)))
+        pushed = dict(zip(self.names, ports(mechanism, graph), strict=True))
+        pushed = {force_of(branch.label): -branch.nodes for branch in graph.branches} | pushed
+        rows = [(branch.nodes, branch.roads) for branch in graph.branches]
+        rows += [pair for output in asked for pair in _pairs(output)]
+        rows += [(force, np.zeros(0)) for force in pushed.values()]
+        levers = (x for row in rows for x in self._meant(*row))
+        self.lever_unit = lcm(*{x.denominator for x in levers})
         numbers = [_coefficient(b.element, values) for b in graph.branches]
         masses = [coordinate.inertia for coordinate in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
-        self.masses = [_times(mass, self.value_bits + 2 * self.lever_bits) for mass in masses]
+        self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [
-            (_times(number, self.value_bits), b.element.linear.order, self.whole(b.nodes), self.whole(b.roads))
+            (_times(number, self.value_bits), b.element.linear.order, *self.whole(b.nodes, b.roads))
             for b, number in zip(graph.branches, numbers, strict=True)
         ]
-        self.forces = {
-            name: {i: _times(lever, self.lever_bits) for i, lever in row.items()} for name, row in forces.items()
-        }
+        self.forces = {name: self.whole(force, np.zeros(0))[0] for name, force in pushed.items()}
 
-    def whole(self, row: Any) -> Row:
-        return {i: _times(float(x), self.lever_bits) for i, x in enumerate(row) if x}
+    def whole(self, nodes: Matrix, roads: Matrix) -> tuple[Row, Row]:
+        """A row over nodes and roads in whole numbers."""
+        found = {i: int(x * self.lever_unit) for i, x in enumerate(self._meant(nodes, roads)) if x}
+        n = self.size
+        return {i: x for i, x in found.items() if i < n}, {i - n: x for i, x in found.items() if i >= n}
+
+    def _meant(self, nodes: Matrix, roads: Matrix) -> list[Fraction]:
+        row = np.zeros(self.size + len(self.roads))
+        row[: nodes.size], row[self.size : self.size + roads.size] = nodes, roads
+        return self.span.meant(row[None])[0]
 
     def load(self, name: str) -> Load:
         """An input by name."""
@@ -143,23 +166,20 @@ class _Nodal:
     def assembled(
         self, denominator: Polynomial, numerators: list[Polynomial], loads: list[Load], rows: list[_Row]
     ) -> TransferFunctions:
-        """With the powers of two taken out, and 1/s where a road is given by its velocity."""
-        both = self.value_bits + self.lever_bits
-        shifts = [
-            (both if road is None else 0) - (both if row.forces or row.external else self.lever_bits)
+        """With what all have in common taken out, and 1/s where a road is given by its velocity."""
+        force = self.lever_unit << self.value_bits
+        factors = [
+            (1 if row.forces or row.external else 1 << self.value_bits) * (1 if road is not None else force)
             for row in rows
             for road, *_ in loads
         ]
-        low = min(shifts, default=0)
         velocities = any(road is not None for road, *_ in loads)
-        whole = [scaled(n, 1 << (shift - low)) for n, shift in zip(numerators, shifts, strict=True)]
+        whole = [scaled(n, factor) for n, factor in zip(numerators, factors, strict=True)]
         whole = [
             [0, *n] if velocities and road is None else n
             for n, (road, *_) in zip(whole, loads * len(rows), strict=True)
         ]
-        bottom = scaled([0, *denominator] if velocities else denominator, 1 << max(-low, 0))
-        if low > 0:
-            whole = [scaled(n, 1 << low) for n in whole]
+        bottom = scaled([0, *denominator] if velocities else denominator, force)
         while bottom[0] == 0 and all(n[0] == 0 for n in whole if n):
             bottom, whole = bottom[1:], [n[1:] for n in whole]
         content = common(*bottom, *(c for n in whole for c in n))

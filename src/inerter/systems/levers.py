@@ -1,0 +1,112 @@
+"""What levers were meant to be: fractions in which a travel that depends on others up to rounding depends on them.
+
+Levers of a vehicle are doubles, and whoever wrote them had to round: 0.1 + 0.2 and 0.3 are one lever, though two
+doubles, and an anti-roll strut whose lever is a sum depends on the struts at the wheels but for the last digit. Taken
+by that digit they are independent by 1e-17: states that tell them apart are 1e16 times what they are made of, numbers
+without a digit, and a gain that is infinite is 1e29. Nothing said so. So a row that is near to a combination of others
+becomes that combination, in fractions, before anything is decided without a tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.systems import rationals
+from inerter.systems.graph import Graph
+from inerter.systems.incidence import stacked
+from inerter.systems.rationals import FractionRows, Row
+
+Matrix = NDArray[np.float64]
+RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
+_SIMPLE = 8  # the largest denominator of a share that is taken for a simple one, such as 1 or 1/2
+
+
+@dataclass(frozen=True)
+class Span:
+    """Rows of a graph's branches over nodes and some roads, springs first, then dampers: these decide what is one."""
+
+    shape: tuple[int, int]
+    data: bytes
+    nodes: int
+
+    @staticmethod
+    def of(graph: Graph, roads: Sequence[int]) -> Span:
+        """That of a graph, over the roads of these numbers."""
+        on_nodes, on_roads = stacked(sorted(graph.branches, key=lambda branch: branch.element.linear.order), graph)
+        rows = np.hstack([on_nodes, on_roads[:, list(roads)]])
+        return Span(rows.shape, rows.tobytes(), len(graph.nodes))
+
+    def meant(self, rows: Matrix) -> FractionRows:
+        """Rows over nodes, or over nodes and roads, as they were meant to be."""
+        return [list(_meant(self, row.tobytes())) for row in np.asarray(rows, dtype=np.float64)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Basis:
+    """The first independent rows, and columns in which they differ most, with the inverse of what stands there."""
+
+    rows: FractionRows
+    columns: tuple[int, ...]
+    inverse: FractionRows
+    reach: Row  # of rounding, in each column
+
+
+@lru_cache(maxsize=4096)
+def _meant(span: Span, data: bytes) -> tuple[Fraction, ...]:
+    given, basis = rationals.exact(np.frombuffer(data)[None])[0], _basis(span)
+    if basis is None:
+        return tuple(given)
+    shares = rationals.product([[given[i] for i in basis.columns]], basis.inverse, len(basis.rows))[0]
+    made = rationals.product([[_simple(share) for share in shares]], basis.rows, span.shape[1])[0]
+    near = [abs(x - z) <= reach for x, z, reach in zip(given, made, basis.reach, strict=False)]
+    if not all(near[: span.nodes]):
+        return tuple(given)
+    return tuple(z if so else x for x, z, so in zip(given, made, near, strict=False))
+
+
+def _simple(share: Fraction) -> Fraction:
+    """A simple fraction in place of a share that is it but for rounding: zero, one, a half."""
+    near = share.limit_denominator(_SIMPLE)
+    return near if abs(near - share) <= Fraction(RANK_TOLERANCE) else share
+
+
+@lru_cache(maxsize=256)
+def _basis(span: Span) -> _Basis | None:
+    """None where levers are whole numbers: these are not rounded."""
+    rows = np.frombuffer(span.data).reshape(span.shape)
+    nodes = rows[:, : span.nodes]
+    if np.array_equal(nodes, np.round(nodes)):
+        return None
+    sizes = np.abs(nodes).max(axis=0)
+    scaled = nodes / np.where(sizes > 0.0, sizes, 1.0)
+    chosen = independent_rows(scaled)
+    columns = scipy.linalg.qr(scaled[chosen], mode="r", pivoting=True)[1][: len(chosen)]
+    square = rationals.exact(nodes[chosen][:, columns])
+    inverse = rationals.weights(square, rationals.exact(np.eye(len(chosen))))
+    found = [row for row in inverse if row is not None]
+    reach = rationals.exact(RANK_TOLERANCE * np.abs(rows).max(axis=0)[None])[0]
+    return _Basis(rationals.exact(rows[chosen]), tuple(columns.tolist()), found, reach)
+
+
+def independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
+    """Numbers of the first rows that, with the orthonormal rows `spanned`, are independent and span all rows."""
+    directions = np.zeros((0, rows.shape[1])) if spanned is None else spanned
+    chosen: list[int] = []
+    for i, row in enumerate(rows):
+        size = np.linalg.norm(row)
+        if size == 0.0:
+            continue
+        residual = row / size
+        for _ in range(2):  # twice is enough for Gram-Schmidt
+            residual = residual - directions.T @ (directions @ residual)
+        if np.linalg.norm(residual) > RANK_TOLERANCE:
+            directions = np.vstack([directions, residual / np.linalg.norm(residual)])
+            chosen.append(i)
+    return chosen

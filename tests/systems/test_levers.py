@@ -1,0 +1,155 @@
+"""Levers that are one lever but for rounding: every analysis sees one mechanism, whichever way they were computed."""
+
+import math
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from nodal import Nodal
+from quadrature import h2_by_quadrature
+from strategies import random_network
+
+import inerter as it
+from inerter import Coordinate, Damper, Force, Friction, Mechanism, RoadInput, Spring, Strut, Tyre, assemble
+from inerter.systems.piecewise import piecewise
+
+OUTPUTS = ("body_acceleration", "roll_acceleration", "pitch_acceleration", "bar_travel", "diagonal_travel", "bar_force")
+
+
+def rounded(rng, lever):
+    """The lever as another way of computing it would round it."""
+    return float(lever * (1.0 + rng.integers(-4, 5) * 2.0**-52))
+
+
+def differing(rng, row):
+    return {name: lever if lever in (-1.0, 1.0) else rounded(rng, lever) for name, lever in row.items()}
+
+
+def summed(*terms):
+    """The travel that is so many times each of these travels, added up as it comes."""
+    row = {}
+    for share, travel in terms:
+        for name, lever in travel.items():
+            row[name] = row.get(name, 0.0) + share * lever
+    return {name: lever for name, lever in row.items() if lever != 0.0}
+
+
+def damped(rng, beside):
+    """A spring and a damper, with a random network beside them or none."""
+    both = Spring(float(rng.uniform(1e4, 4e4))) | Damper(float(rng.uniform(500.0, 3e3)))
+    return both | random_network(rng, 2, 3) if beside else both
+
+
+def full_car(rng, one_road=False):
+    """A body on four wheels, and struts whose travels are sums of those at the wheels; plain ones on one road."""
+    half, front, rear = (float(x) for x in rng.uniform(0.4, 1.7, 3))
+    places = [(front, half), (front, -half), (-rear, half), (-rear, -half)]
+    corners = [{"body": 1.0, "pitch": x, "roll": y, f"wheel{i}": -1.0} for i, (x, y) in enumerate(places)]
+    share = float(rng.uniform(0.2, 0.8))
+    others = {
+        "bar": summed((1.0, corners[0]), (-1.0, corners[1])),
+        "bar_rear": summed((1.0, corners[2]), (-1.0, corners[3])),
+        "diagonal": summed((share, corners[0]), (1.0 - share, corners[3])),
+        "twin": dict(corners[2]),
+        "mean": summed((0.5, corners[0]), (0.5, corners[1])),
+    }
+    struts = [Strut(f"corner{i}", damped(rng, not one_road), differing(rng, row), {}) for i, row in enumerate(corners)]
+    struts += [Strut(name, damped(rng, not one_road), differing(rng, row), {}) for name, row in others.items()]
+    roads = ["road"] if one_road else [f"road{i}" for i in range(4)]
+    return Mechanism(
+        coordinates=(
+            Coordinate("body", 900.0),
+            Coordinate("pitch", 1400.0, angle=True),
+            Coordinate("roll", 450.0, angle=True),
+            *(Coordinate(f"wheel{i}", float(rng.uniform(25.0, 50.0))) for i in range(4)),
+        ),
+        struts=tuple(struts),
+        tyres=tuple(Tyre(f"tyre{i}", Spring(2e5), {f"wheel{i}": 1.0}, roads[i % len(roads)]) for i in range(4)),
+        roads=tuple(map(RoadInput, roads)),
+        forces=(Force("load", {"body": 1.0}),),
+    )
+
+
+@pytest.mark.parametrize("chunk", sampled(range(20), [0]))
+def test_dependent_struts_agree_with_the_nodal_solve_however_their_levers_are_rounded(chunk):
+    for seed in range(5 * chunk, 5 * chunk + 5):
+        rng = np.random.default_rng([41, seed])
+        mechanism = full_car(rng)
+        omega = 2 * np.pi * 10 ** rng.uniform(-1, 2, 10)
+        system = assemble(mechanism, outputs=OUTPUTS)
+        G, nodal = it.frequency_response(system, omega), Nodal(mechanism, omega)
+        for i, output in enumerate(OUTPUTS):
+            for kind in (slice(0, 4), slice(4, 5)):
+                expected = np.array([nodal.response(output, name) for name in system.inputs[kind]]).T
+                error = np.abs(G[:, i, kind] - expected).max(axis=1) / np.abs(expected).max(axis=1)
+                assert error.max() < 1e-9, (seed, output)
+
+
+@pytest.mark.parametrize("seed", sampled(range(12), [0]))
+def test_norms_of_dependent_struts_are_those_of_quadrature(seed):
+    mechanism = full_car(np.random.default_rng([42, seed]), one_road=True)
+    for output in ("body_acceleration", "roll_acceleration", "diagonal_travel"):
+
+        def response(omega, output=output):
+            return np.array(Nodal(mechanism, omega).response(output, "road"), complex)[:, None]
+
+        norm = it.h2_norm(assemble(mechanism, "road", output))
+        assert norm == pytest.approx(h2_by_quadrature(response, [0.0], 1e4), rel=1e-8)
+
+
+def test_a_simulated_impulse_has_the_energy_of_the_norm():
+    """A step of the road is an impulse of its velocity: what an output is then, squared and added up, is its norm's."""
+    mechanism = full_car(np.random.default_rng(43), one_road=True)
+    run = it.simulate(mechanism, road=it.step(1.0, 0.0005), duration=12.0, step=5e-4, energy=False)
+    for output in ("body_acceleration", "diagonal_travel"):
+        squared = float(np.trapezoid(run[output] ** 2, run.time))
+        assert math.sqrt(squared) == pytest.approx(it.h2_norm(assemble(mechanism, "road", output)), rel=1e-3)
+
+
+def beam(rng, first, second):
+    """A beam on two struts at one place: nothing but `third` resists turning about it."""
+    third = [None, Damper(300.0), Spring(2e3) - Damper(300.0)][int(rng.integers(3))]
+    struts = [
+        Strut("one", Spring(3e4) | Damper(2e3), {"body": 1.0, "pitch": first}, {"wheel": 1.0}),
+        Strut("two", Spring(1e4) | Damper(1e3), {"body": 1.0, "pitch": second}, {"wheel": 1.0}),
+    ]
+    return Mechanism(
+        coordinates=(Coordinate("body", 1e3), Coordinate("pitch", 400.0, angle=True), Coordinate("wheel", 40.0)),
+        struts=(*struts, *([] if third is None else [Strut("third", third, {"body": 1.0, "pitch": -1.0}, {})])),
+        tyres=(Tyre("tyre", Spring(2e5), {"wheel": 1.0}, "road"),),
+        roads=(RoadInput("road"),),
+        forces=(Force("load", {"body": 1.0}), Force("turn", {"pitch": 1.0})),
+    )
+
+
+@pytest.mark.parametrize("seed", sampled(range(40), [0, 1, 2, 3]))
+def test_infinite_is_infinite_however_levers_are_rounded(seed):
+    rng = np.random.default_rng([44, seed])
+    lever = float(rng.uniform(0.2, 1.5))
+    other = lever * (1.0 + int(rng.integers(1, 5)) * 2.0**-52)
+    state = rng.bit_generator.state
+    alike = beam(rng, lever, lever)
+    rng.bit_generator.state = state
+    apart = beam(rng, lever, other)
+    found = []
+    for mechanism in (alike, apart):
+        systems = [
+            assemble(mechanism, name, output)
+            for name in ("road", "load", "turn")
+            for output in ("body_acceleration", "pitch_velocity", "pitch_displacement", "two_travel")
+        ]
+        found.append([value for s in systems for value in (s.order, it.h2_norm(s), it.hinf_norm(s).value)])
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
+    assert math.inf in found[0]
+
+
+def test_frictions_at_one_place_are_one_however_their_levers_are_rounded():
+    def held(first, second):
+        struts = [
+            Strut(f"strut{i}", Spring(2e4) | Friction(40.0), {"body": 1.0, "pitch": lever}, {})
+            for i, lever in enumerate((first, second, -1.0))
+        ]
+        return Mechanism((Coordinate("body", 500.0), Coordinate("pitch", 300.0, angle=True)), tuple(struts))
+
+    assert len(piecewise(held(0.3, 0.1 + 0.2)).nonlinear) == len(piecewise(held(0.3, 0.3)).nonlinear) == 2
+    assert len(piecewise(held(0.3, 0.300001)).nonlinear) == 3

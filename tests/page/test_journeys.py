@@ -209,6 +209,24 @@ def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: 
     assert page.locator(".problem").count() == 0
 
 
+def test_what_is_typed_stays_while_answers_arrive(visitor: Visitor) -> None:
+    page = visitor.page
+    page.fill("#network-text", "k | c | b")
+    page.locator(".element[data-name=b]").click()
+    page.get_by_role("tab", name="Road").click()
+    for field in ("#element-name", ".title", "label:has-text('for [s]') input"):
+        page.locator(field).fill("12")
+        page.evaluate(
+            """() => {
+                const colours = document.querySelector(".theme select");
+                colours.value = colours.value === "dark" ? "light" : "dark";
+                colours.dispatchEvent(new Event("change", { bubbles: true }));
+            }"""
+        )
+        page.wait_for_timeout(50)  # drawn anew
+        assert page.input_value(field) == "12"
+
+
 @pytest.mark.campaign
 def test_dragging_and_naming_by_mouse(visitor: Visitor) -> None:
     page = visitor.page

@@ -10,6 +10,7 @@ import { RigPanel } from "./panels/rig.js";
 import { TolerancePanel } from "./panels/tolerance.js";
 import { ValuesPanel } from "./panels/values.js";
 import { WorkPanel } from "./panels/work.js";
+import { Field } from "./parts/field.js";
 import { html, useEffect, useState } from "./parts/html.js";
 import { open } from "./remembering.js";
 import { openStudy } from "./working.js";
@@ -79,8 +80,8 @@ async function start(store, api) {
 function Title({ store }) {
   const { study } = store.get().history.present;
   if (Object.keys(study).length === 0) return null;
-  return html`<input class="title" aria-label="Title of the study" value=${study.title ?? ""} placeholder="Untitled study"
-    onChange=${(/** @type {Event} */ event) => store.change({ type: "placed", place: ["title"], value: /** @type {HTMLInputElement} */ (event.currentTarget).value || undefined })} />`;
+  return html`<${Field} class="title" aria-label="Title of the study" placeholder="Untitled study" text=${study.title ?? ""}
+    done=${(/** @type {string} */ title) => store.change({ type: "placed", place: ["title"], value: title || undefined })} />`;
 }
 
 /** @type {{[connection: string]: string}} */

@@ -1,6 +1,7 @@
 // The simulated road: histories with stick and open gaps shaded, and the car in motion.
 
 import { Plot } from "../plot.js";
+import { Field } from "../parts/field.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { Motion } from "./motion.js";
 import { shown } from "../state/scale.js";
@@ -24,8 +25,8 @@ export function HistoryPanel({ store }) {
   );
   const curves = useMemo(() => (signal ? [{ label: signal.label, values: signal.values }] : []), [signal]);
   /** @param {string} key @param {string} label @param {number} number @param {{min: number, max: number}} range */
-  const setting = (key, label, number, range) => html`<label>${label} <input type="number" class="short" ...${range} value=${number} onChange=${(/** @type {Event} */ event) => {
-    const entered = Number(/** @type {HTMLInputElement} */ (event.currentTarget).value);
+  const setting = (key, label, number, range) => html`<label>${label} <${Field} type="number" class="short" ...${range} text=${String(number)} done=${(/** @type {string} */ text) => {
+    const entered = Number(text);
     if (entered >= range.min && entered <= range.max) store.dispatch({ type: "viewed", view: { [key]: entered } });
   }} /></label>`;
   return html`<div aria-busy=${waiting === true}>

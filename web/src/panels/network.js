@@ -62,7 +62,7 @@ function Layouts({ store }) {
           if (name && !(name in (document.study.layouts ?? {}))) store.change({ type: "layoutRenamed", name });
           setRenaming(false);
         }}>
-          <label>New name <input name="name" value=${document.layout} autocomplete="off" /></label> <button>Rename</button>
+          <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout} autocomplete="off" /></label> <button>Rename</button>
         </form>`}
         <button type="button" disabled=${document.layout === baseline} onClick=${() => store.change({ type: "placed", place: ["study", "baseline"], value: document.layout })}>Make it the baseline</button>
         <button type="button" disabled=${Object.keys(document.study.layouts ?? {}).length < 2} onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
@@ -83,13 +83,13 @@ function Editor({ store }) {
     if (tree !== null) setLast(tree);
   }, [tree]);
   const shownTree = tree ?? last;
-  const path = shownTree !== null && partAt(shownTree, state.view.path) !== null ? state.view.path : [];
+  const path = pathIn(shownTree, state);
   const selected = shownTree && partAt(shownTree, path);
-  const editing = { store, tree, path, how };
-  return html`<${Toolbar} editing=${editing} selected=${selected} setHow=${setHow} />
+  const editing = { store, how };
+  return html`<${Toolbar} editing=${editing} off=${tree === null && text.trim() !== ""} selected=${selected} setHow=${setHow} />
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
-      : html`<${Schematic} editing=${editing} tree=${shownTree} stale=${tree === null} />`}
+      : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path} stale=${tree === null} />`}
     ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
     <${Text} store=${store} text=${text} />`;
@@ -110,7 +110,16 @@ function Trail({ store, tree, path }) {
 /** @param {Tree} part */
 const described = (part) => (part.kind === "element" ? `${part.name} is selected` : `${part.parts.length} parts in ${part.kind} are selected: ${written(part)}`);
 
-/** @typedef {{store: Store, tree: Tree | null, path: Path, how: Joint}} Editing */
+/** @typedef {{store: Store, how: Joint}} Editing */
+
+/** What is selected in a tree: the whole of it where there is no such part. @param {Tree | null} tree @param {State} state @returns {Path} */
+const pathIn = (tree, { view }) => (tree !== null && partAt(tree, view.path) !== null ? view.path : []);
+
+/** The tree and what is selected in it, as of now: what is drawn may be a frame older. @param {Store} store @returns {{tree: Tree | null, path: Path}} */
+function present(store) {
+  const tree = parse(textOf(store.get().history.present));
+  return { tree, path: pathIn(tree, store.get()) };
+}
 
 /** Puts another tree in the place of the present one, and selects a part of it. @param {Store} store @param {Tree} tree @param {Path} path @param {{[name: string]: string}} [added] */
 function draw(store, tree, path, added) {
@@ -122,7 +131,8 @@ function draw(store, tree, path, added) {
 const placeOf = (tree, name) => leaves(tree).findLast((one) => one.name === name)?.path ?? [];
 
 /** A part of this name joined to what is selected. @param {Editing} editing @param {string} name @param {{[name: string]: string}} [added] @param {"join" | "replace"} [by] */
-function add({ store, tree, path, how }, name, added, by = "join") {
+function add({ store, how }, name, added, by = "join") {
+  const { tree, path } = present(store);
   if (tree === null) {
     if (textOf(store.get().history.present).trim() === "") draw(store, leaf(name), [], added);
     return;
@@ -138,28 +148,29 @@ function addKind(editing, kind, by) {
   add(editing, name, { [name]: kind.example }, by);
 }
 
-/** @param {Editing} editing */
-function remove({ store, tree, path }) {
+/** @param {Store} store */
+function remove(store) {
+  const { tree, path } = present(store);
   if (tree === null) return;
   const left = removeAt(tree, path);
   if (left === null) store.change({ type: "drawn", text: "" });
   else draw(store, left, path.slice(0, -1));
 }
 
-/** @param {Editing} editing @param {-1 | 1} step */
-function shift({ store, tree, path }, step) {
+/** @param {Store} store @param {-1 | 1} step */
+function shift(store, step) {
+  const { tree, path } = present(store);
   if (tree === null || path.length === 0) return;
   const next = shiftAt(tree, path, step);
   if (next !== tree) draw(store, next, [...path.slice(0, -1), path[path.length - 1] + step]);
 }
 
-/** @param {{editing: Editing, selected: Tree | null, setHow: (how: Joint) => void}} props */
-function Toolbar({ editing, selected, setHow }) {
+/** @param {{editing: Editing, off: boolean, selected: Tree | null, setHow: (how: Joint) => void}} props */
+function Toolbar({ editing, off, selected, setHow }) {
   const { store, how } = editing;
   const state = store.get();
   const kinds = state.about?.elements ?? [];
   const known = Object.keys(state.history.present.study.elements ?? {});
-  const off = editing.tree === null && textOf(state.history.present).trim() !== "";
   return html`<div class="toolbar" role="toolbar" aria-label="Edit the network">
     <div class="row" role="group" aria-label="How a part is joined to what is selected">
       ${/** @type {Joint[]} */ (["series", "parallel"]).map(
@@ -195,7 +206,7 @@ function Toolbar({ editing, selected, setHow }) {
         ${kinds.map((/** @type {any} */ kind) => html`<option key=${kind.key} value=${`new ${kind.key}`}>a new ${kind.key}</option>`)}
         ${known.map((name) => html`<option key=${`old ${name}`} value=${name}>${name}</option>`)}
       </select></label>
-      <button type="button" disabled=${off || selected === null} onClick=${() => remove(editing)}>Delete</button>
+      <button type="button" disabled=${off || selected === null} onClick=${() => remove(store)}>Delete</button>
       <${Rename} store=${store} selected=${selected} />
     </div>
   </div>`;
@@ -217,19 +228,19 @@ function Rename({ store, selected }) {
       store.change({ type: "elementRenamed", old, name });
     }
   }}>
-    <label>Name <input id="element-name" class="name" name="name" disabled=${old === ""} defaultValue=${old} value=${old} autocomplete="off" spellcheck=${false} /></label>
+    <label>Name <input id="element-name" class="name" name="name" disabled=${old === ""} defaultValue=${old} autocomplete="off" spellcheck=${false} /></label>
     <button disabled=${old === ""}>Rename</button>${told && html`<span class="problem" role="alert">${told}</span>`}
   </form>`;
 }
 
-/** @param {{editing: Editing, tree: Tree, stale: boolean}} props */
-function Schematic({ editing, tree, stale }) {
-  const { store, path } = editing;
+/** @param {{editing: Editing, tree: Tree, path: Path, stale: boolean}} props */
+function Schematic({ editing, tree, path, stale }) {
+  const { store } = editing;
   const state = store.get();
   const plan = useMemo(() => drawing(tree), [tree]);
   const figure = useRef(/** @type {SVGSVGElement | null} */ (null));
   const [over, setOver] = useState(/** @type {{path: Path, kind: Joint, before: boolean} | null} */ (null));
-  const drag = useDrag(editing, tree, setOver);
+  const drag = (/** @type {PointerEvent} */ event, /** @type {Path} */ from) => beginDrag(store, event, from, setOver);
   useEffect(() => {
     const active = globalThis.document.activeElement;
     if (active && figure.current?.contains(active)) focusOn(figure.current, path);
@@ -242,29 +253,29 @@ function Schematic({ editing, tree, stale }) {
   const group = box && partAt(tree, path)?.kind !== "element" ? box : null;
   return html`<div class=${`drawing ${stale ? "stale" : ""}`}>
     <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`} style=${{ width: `${Math.min(1.7, Math.max(0.9, 300 / width)) * width}px` }} role="group" aria-label=${`Network ${written(tree)}`}
-      onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, editing, tree)}
+      onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, editing)}
       onDragOver=${(/** @type {DragEvent} */ event) => {
         event.preventDefault();
         setOver(targetAt(event.clientX, event.clientY));
       }}
       onDragLeave=${() => setOver(null)}
-      onDrop=${(/** @type {DragEvent} */ event) => dropKind(event, editing, tree, setOver)}>
+      onDrop=${(/** @type {DragEvent} */ event) => dropKind(event, store, setOver)}>
       ${group && html`<rect class="chosen" x=${group.left - 3} y=${group.top - 3} width=${group.right - group.left + 6} height=${group.bottom - group.top + 6} rx="4" />`}
       <path class="wire" d=${pathOf(plan.lines)} />
       <circle class="terminal" cx="0" cy=${-TERMINAL} r=${TERMINAL} /><circle class="terminal" cx="0" cy=${plan.height + TERMINAL} r=${TERMINAL} />
-      ${plan.placed.map((one) => html`<${Symbol} key=${one.path.join()} one=${one} state=${state} chosen=${same(one.path, path)} editing=${editing} drag=${drag} />`)}
+      ${plan.placed.map((one) => html`<${Symbol} key=${one.path.join()} one=${one} state=${state} chosen=${same(one.path, path)} entrance=${isEntrance(one.path, path)} store=${store} drag=${drag} />`)}
       ${target && over && html`<path class="landing" d=${landing(target, over)} />`}
     </svg>
   </div>`;
 }
 
-/** @param {{one: import("../network/drawing.js").Placed, state: State, chosen: boolean, editing: Editing, drag: (event: PointerEvent, path: Path) => void}} props */
-function Symbol({ one, state, chosen, editing, drag }) {
+/** @param {{one: import("../network/drawing.js").Placed, state: State, chosen: boolean, entrance: boolean, store: Store, drag: (event: PointerEvent, path: Path) => void}} props */
+function Symbol({ one, state, chosen, entrance, store, drag }) {
   const kind = kindOf(state, one.name);
   const value = valueOf(state, one.name);
   const label = [one.name, kind?.key ?? "unknown element", value].filter(Boolean).join(", ");
-  const select = () => chosen || editing.store.dispatch({ type: "viewed", view: { path: one.path } });
-  return html`<g class=${`element ${chosen ? "chosen" : ""} ${kind ? "" : "unknown"}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${isEntrance(one.path, editing.path) ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
+  const select = () => same(store.get().view.path, one.path) || store.dispatch({ type: "viewed", view: { path: one.path } });
+  return html`<g class=${`element ${chosen ? "chosen" : ""} ${kind ? "" : "unknown"}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${entrance ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
     onClick=${select} onFocus=${select}
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
@@ -296,24 +307,26 @@ function focusOn(figure, path) {
   there?.focus();
 }
 
-/** @param {KeyboardEvent} event @param {Editing} editing @param {Tree} tree */
-function onKey(event, editing, tree) {
-  const { store, path } = editing;
+/** @param {KeyboardEvent} event @param {Editing} editing */
+function onKey(event, editing) {
+  const { store } = editing;
+  const { tree, path } = present(store);
+  if (tree === null) return;
   /** @param {Path} to */
   const select = (to) => store.dispatch({ type: "viewed", view: { path: to } });
   const all = leaves(tree).map((one) => one.path);
   const at = all.findIndex((each) => path.every((i, level) => each[level] === i));
   /** @type {{[key: string]: () => void}} */
   const keys = {
-    ArrowRight: () => (event.altKey ? shift(editing, 1) : select(all[(at + 1) % all.length])),
-    ArrowDown: () => (event.altKey ? shift(editing, 1) : select(all[(at + 1) % all.length])),
-    ArrowLeft: () => (event.altKey ? shift(editing, -1) : select(all[(at - 1 + all.length) % all.length])),
-    ArrowUp: () => (event.altKey ? shift(editing, -1) : select(all[(at - 1 + all.length) % all.length])),
+    ArrowRight: () => (event.altKey ? shift(store, 1) : select(all[(at + 1) % all.length])),
+    ArrowDown: () => (event.altKey ? shift(store, 1) : select(all[(at + 1) % all.length])),
+    ArrowLeft: () => (event.altKey ? shift(store, -1) : select(all[(at - 1 + all.length) % all.length])),
+    ArrowUp: () => (event.altKey ? shift(store, -1) : select(all[(at - 1 + all.length) % all.length])),
     Home: () => select(all[0]),
     End: () => select(all[all.length - 1]),
     Escape: () => select(path.slice(0, -1)),
-    Delete: () => remove(editing),
-    Backspace: () => remove(editing),
+    Delete: () => remove(store),
+    Backspace: () => remove(store),
     F2: () => globalThis.document.getElementById("element-name")?.focus(),
   };
   if (event.ctrlKey || event.metaKey) return;
@@ -343,45 +356,47 @@ function landing(box, { kind, before }) {
   return kind === "series" ? `M${box.left - 4} ${y}H${box.right}` : `M${x} ${box.top}V${box.bottom}`;
 }
 
-/** @param {DragEvent} event @param {Editing} editing @param {Tree} tree @param {(over: null) => void} setOver */
-function dropKind(event, editing, tree, setOver) {
+/** @param {DragEvent} event @param {Store} store @param {(over: null) => void} setOver */
+function dropKind(event, store, setOver) {
   event.preventDefault();
   setOver(null);
   const key = event.dataTransfer?.getData("text/x-element");
-  const state = editing.store.get();
+  const state = store.get();
+  const { tree } = present(store);
   const kind = state.about?.elements.find((/** @type {any} */ each) => each.key === key);
   const target = targetAt(event.clientX, event.clientY);
-  if (!kind || !target) return;
+  if (!kind || !target || tree === null || partAt(tree, target.path) === null) return;
   event.stopPropagation();
   const name = freshName(kind.symbol, Object.keys(state.history.present.study.elements ?? {}));
   const next = joinAt(tree, target.path, target.kind, leaf(name), target.before);
-  draw(editing.store, next, placeOf(next, name), { [name]: kind.example });
+  draw(store, next, placeOf(next, name), { [name]: kind.example });
 }
 
-/** Dragging a symbol to another place of the network. @param {Editing} editing @param {Tree} tree @param {(over: any) => void} setOver */
-function useDrag(editing, tree, setOver) {
-  return (/** @type {PointerEvent} */ down, /** @type {Path} */ from) => {
-    if (down.button !== 0 || editing.tree === null) return;
-    let moved = false;
-    /** @param {PointerEvent} event */
-    const move = (event) => {
-      moved ||= Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > FAR;
-      if (moved) setOver(targetAt(event.clientX, event.clientY));
-    };
-    /** @param {PointerEvent} event */
-    const up = (event) => {
-      globalThis.removeEventListener("pointermove", move);
-      setOver(null);
-      const target = moved && event.type === "pointerup" ? targetAt(event.clientX, event.clientY) : null;
-      if (!target) return;
-      const name = /** @type {any} */ (partAt(tree, from)).name;
-      const next = moveTo(tree, from, target.path, target.kind, target.before);
-      if (next !== tree) draw(editing.store, next, placeOf(next, name));
-    };
-    globalThis.addEventListener("pointermove", move);
-    globalThis.addEventListener("pointerup", up, { once: true });
-    globalThis.addEventListener("pointercancel", up, { once: true });
+/** Dragging a symbol to another place of the network. @param {Store} store @param {PointerEvent} down @param {Path} from @param {(over: any) => void} setOver */
+function beginDrag(store, down, from, setOver) {
+  if (down.button !== 0) return;
+  const ended = new AbortController();
+  let moved = false;
+  /** @param {PointerEvent} event */
+  const move = (event) => {
+    moved ||= Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > FAR;
+    if (moved) setOver(targetAt(event.clientX, event.clientY));
   };
+  /** @param {PointerEvent} event */
+  const up = (event) => {
+    ended.abort();
+    setOver(null);
+    const target = moved && event.type === "pointerup" ? targetAt(event.clientX, event.clientY) : null;
+    const { tree } = present(store);
+    const part = tree && partAt(tree, from);
+    if (!target || tree === null || part?.kind !== "element" || partAt(tree, target.path) === null) return;
+    const next = moveTo(tree, from, target.path, target.kind, target.before);
+    if (next !== tree) draw(store, next, placeOf(next, part.name));
+  };
+  const { signal } = ended;
+  globalThis.addEventListener("pointermove", move, { signal });
+  globalThis.addEventListener("pointerup", up, { signal });
+  globalThis.addEventListener("pointercancel", up, { signal });
 }
 
 /** The text of the network, with what is wrong underlined. @param {{store: Store, text: string}} props */

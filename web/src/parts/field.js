@@ -1,0 +1,14 @@
+// A field of which the text is taken over with Enter, or on leaving it.
+import { html, useState } from "./html.js";
+
+/** What is being typed stays while answers arrive and the page is drawn anew.
+ * @param {{text: string, done: (text: string) => void, [attribute: string]: unknown}} props */
+export function Field({ text, done, ...attributes }) {
+  const [typed, setTyped] = useState(/** @type {string | null} */ (null));
+  /** @param {Event} event */
+  const finish = ({ currentTarget }) => {
+    setTyped(null);
+    done(/** @type {HTMLInputElement} */ (currentTarget).value);
+  };
+  return html`<input ...${attributes} value=${typed ?? text} onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onChange=${finish} />`;
+}

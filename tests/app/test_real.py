@@ -226,3 +226,12 @@ def test_processes_that_die_cost_what_they_did(tmp_path: Path) -> None:
                 assert answers[1].json()["designs"] == wanted
         process.terminate()
     assert (tmp_path / "kept" / "work").is_dir()
+
+
+def test_a_folder_that_can_be_none_is_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").touch()
+    command = [sys.executable, "-c", START, "serve", "--no-browser", "--folder", str(tmp_path / "mine.txt")]
+    told = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert told.returncode == 2
+    assert "mine.txt: cannot be a folder for work" in told.stderr
+    assert len(told.stderr.splitlines()) == 1

@@ -157,3 +157,15 @@ def test_a_server_that_begins_again_knows_what_was_left(client: TestClient, serv
     assert (known[number].title, known[number].told()["done"]) == ("mine", 4)
     assert known["cut"].sentence.endswith(".")
     assert known["cut"].told()["state"] == "stopped"
+
+
+@pytest.mark.parametrize("text", ['{"kind": "run", "title": "dear to me"}', "[]", '"run"', "no JSON"])
+def test_a_folder_of_somebody_elses_is_not_taken_for_work(tmp_path: Path, text: str) -> None:
+    """What is known can be forgotten with its folder, by age too."""
+    own = tmp_path / "mine"
+    own.mkdir()
+    (own / "request.json").write_text(text, encoding="utf-8")
+    with threads() as executor:
+        assert jobs.Jobs(tmp_path, executor).known == {}
+    assert [path.name for path in own.iterdir()] == ["request.json"]
+    assert (own / "request.json").read_text(encoding="utf-8") == text

@@ -23,6 +23,7 @@ _GRACE = 5.0  # seconds that work has to stop at its next check, before its proc
 _LOOK = 0.05  # seconds between two looks at what happened
 _MOST = 200  # pieces of work that are kept
 ENDED = ("done", "failed", "stopped")
+_OURS = {"made_by": "inerter serve"}  # in requests: a folder without it is somebody's own, and stays
 
 
 @dataclass
@@ -71,8 +72,10 @@ class Jobs:
     def __post_init__(self) -> None:
         """Know the work that an earlier server has left in the folder."""
         for path in sorted(self.root.glob(f"*/{REQUEST}"), key=lambda path: path.stat().st_mtime):
-            with suppress(OSError, ValueError, KeyError):
-                self.known[path.parent.name] = _left(path.parent)
+            with suppress(OSError, ValueError, KeyError, AttributeError):
+                request = json.loads(path.read_bytes())
+                if _OURS.items() <= request.items():
+                    self.known[path.parent.name] = _left(path.parent, request)
 
     def add(self, kind: str, request: Mapping[str, Any], title: str = "") -> Job:
         """Put work into the queue; raises `Refused` where too much is kept already."""
@@ -83,7 +86,7 @@ class Jobs:
         name = token_hex(8)
         job = Job(name, kind, title or KINDS[kind].title, self.root / name)
         job.folder.mkdir(parents=True)
-        (job.folder / REQUEST).write_bytes(encoded({**request, "kind": kind, "title": job.title}))
+        (job.folder / REQUEST).write_bytes(encoded({**request, "kind": kind, "title": job.title, **_OURS}))
         self.known[name] = job
         self._queue.put_nowait(job)
         return job
@@ -154,9 +157,9 @@ class Jobs:
         job.over.set()
 
 
-def _left(folder: Path) -> Job:
+def _left(folder: Path, request: Mapping[str, Any]) -> Job:
     """Work that an earlier server has left: as it ended, or stopped where it was."""
-    request, (events, _) = json.loads((folder / REQUEST).read_bytes()), events_of(folder)
+    events, _ = events_of(folder)
     last = events[-1] if events else {}
     if last.get("event") not in ENDED:
         last = {"event": "stopped", "sentence": "The server ended before this was done.", "time": last.get("time")}

@@ -134,7 +134,10 @@ def _listening(port: int | None) -> Iterator[socket.socket]:
 @contextmanager
 def _folder(folder: str | Path | None) -> Iterator[Path]:
     if folder is not None:
-        Path(folder).mkdir(parents=True, exist_ok=True)
+        try:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StudyError(f"{folder}: cannot be a folder for work ({error.strerror}). Name another one.") from None
         yield Path(folder).absolute()
         return
     with TemporaryDirectory(prefix="inerter-", ignore_cleanup_errors=True) as made:

@@ -20,6 +20,7 @@ from inerter import (
     Strut,
     Tyre,
     Weighted,
+    free,
 )
 from inerter.networks.elements import Element, Network
 from inerter.networks.transform import map_elements
@@ -149,3 +150,17 @@ def mechanisms(family: str, seed: int, count: int, extremes: float) -> list[Mech
         made = FAMILIES[family](rng, extremes)
         found.append(in_other_units(rng, made) if extremes > 1.0 and len(found) % 2 else made)
     return found
+
+
+def opened(mechanism: Mechanism) -> tuple[Mechanism, dict[str, float]]:
+    """The mechanism with its first elements free, and the values that they had."""
+    values: dict[str, float] = {}
+
+    def freed(element: Element) -> Element:
+        if len(values) >= 3 or not isinstance(element, Spring | Damper | Inerter):
+            return element
+        values[f"p{len(values)}"] = element.value
+        return element.with_value(free(0.5 * element.value, 2.0 * element.value, name=f"p{len(values) - 1}"))
+
+    struts = tuple(replace(strut, network=map_elements(strut.network, freed)) for strut in mechanism.struts)
+    return replace(mechanism, struts=struts), values

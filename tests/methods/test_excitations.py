@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from campaigns import in_parts, sampled
 from excited import ROAD, TwoSources, random_excitation, random_outputs
-from random_mechanisms import FAMILIES, mechanisms
+from random_mechanisms import FAMILIES, mechanisms, opened
 
 import inerter as it
 from inerter import Damper, Filter, Inerter, Spring, free
@@ -18,7 +18,6 @@ from inerter.errors import LinearSystemError, PerformanceIndexError, StatusKind
 from inerter.methods.forced import Forced
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.on_roads import mean_on_roads, on_roads
-from inerter.networks.transform import map_elements
 from inerter.systems.piecewise import piecewise
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")
@@ -49,20 +48,6 @@ def test_random_responses_of_random_mechanisms(seed):
         assert found.value == (math.inf if expected is rational.INFINITE else pytest.approx(expected, rel=1e-9))
         right += 1
     assert right >= 10
-
-
-def opened(mechanism):
-    """The mechanism with its first elements free, and the values that they had."""
-    values = {}
-
-    def freed(element):
-        if len(values) >= 3 or not isinstance(element, Spring | Damper | Inerter):
-            return element
-        values[f"p{len(values)}"] = element.value
-        return element.with_value(free(0.5 * element.value, 2.0 * element.value, name=f"p{len(values) - 1}"))
-
-    struts = tuple(replace(strut, network=map_elements(strut.network, freed)) for strut in mechanism.struts)
-    return replace(mechanism, struts=struts), values
 
 
 @pytest.mark.parametrize("seed", [100, *in_parts(range(101, 111), 3)])

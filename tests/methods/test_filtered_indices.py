@@ -12,14 +12,13 @@ from campaigns import in_parts, sampled
 from filtered import Weighed, iso_2631_wk, random_filter, some_filters
 from nodal import Nodal
 from quadrature import h2_by_quadrature
-from random_mechanisms import FAMILIES, mechanisms
+from random_mechanisms import FAMILIES, mechanisms, opened
 from strategies import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Filter, Friction, Inerter, Spring, free
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.realisations import realisation_seeds
-from inerter.networks.transform import map_elements
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -53,20 +52,6 @@ def test_norms_of_random_vehicles_with_random_filters(seed):
         assert found.value == (math.inf if expected is rational.INFINITE else pytest.approx(expected, rel=1e-9))
         right += 1
     assert right >= 15
-
-
-def opened(mechanism):
-    """The mechanism with its first elements free, and the values that they had."""
-    values = {}
-
-    def freed(element):
-        if len(values) >= 3 or not isinstance(element, Spring | Damper | Inerter):
-            return element
-        values[f"p{len(values)}"] = element.value
-        return element.with_value(free(0.5 * element.value, 2.0 * element.value, name=f"p{len(values) - 1}"))
-
-    struts = tuple(replace(strut, network=map_elements(strut.network, freed)) for strut in mechanism.struts)
-    return replace(mechanism, struts=struts), values
 
 
 @pytest.mark.parametrize("seed", [100, *in_parts(range(101, 121), 4)])

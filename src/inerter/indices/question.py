@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum, auto
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,6 +120,28 @@ class Index(Protocol):
     def question(self, mechanism: Mechanism) -> Question:
         """What it asks of `mechanism`; raises `PerformanceIndexError` if the mechanism has no answer."""
         ...
+
+
+@dataclass(frozen=True)
+class OfIndex:
+    """What is made of an index: it has that one's names and unit, but what it says otherwise."""
+
+    index: Any
+
+    @property
+    def symbol(self) -> str:
+        """That of the index."""
+        return str(self.index.symbol)
+
+    @property
+    def unit(self) -> str:
+        """That of the index."""
+        return str(self.index.unit)
+
+    @property
+    def response(self) -> str:
+        """That of the index."""
+        return str(self.index.response)
 
 
 class OnRoad(Index, Protocol):

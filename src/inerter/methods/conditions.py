@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, PerformanceIndexError, Status
-from inerter.indices.question import Index
+from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_composed, objective_of
 from inerter.methods.combined import Part, combined
 from inerter.methods.method import Estimate, Method, Objective, asked_of
@@ -116,7 +116,7 @@ class Conditions:
 
 
 @dataclass(frozen=True)
-class OverConditions:
+class OverConditions(OfIndex):
     """An index taken over conditions: its mean by their shares, or the worst of them."""
 
     index: Asked
@@ -130,24 +130,9 @@ class OverConditions:
             )
 
     @property
-    def symbol(self) -> str:
-        """That of the index."""
-        return self.index.symbol
-
-    @property
     def title(self) -> str:
         """That of the index, with how it is taken."""
         return f"{self.index.title}, {'worst' if self.worst else 'mean'} over conditions"
-
-    @property
-    def unit(self) -> str:
-        """That of the index."""
-        return self.index.unit
-
-    @property
-    def response(self) -> str:
-        """That of the index."""
-        return self.index.response
 
     def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, Asked]]:
         """The vehicle and the index in each condition; raises `DesignError` for a name that stands for nothing."""

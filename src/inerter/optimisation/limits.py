@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
-from inerter.indices.question import Combination, Index, Question
+from inerter.indices.question import Combination, Index, OfIndex, Question
 from inerter.methods.asking import Asked, is_composed, objective_of
 from inerter.methods.method import Differentiable, Method, Objective, check_request
 from inerter.units import format_quantity
@@ -78,31 +78,16 @@ def check_limits(subject_to: object) -> tuple[Limit, ...]:
 
 
 @dataclass(frozen=True)
-class OneOutput:
+class OneOutput(OfIndex):
     """An index of one output of another index."""
 
     index: Index
     output: str
 
     @property
-    def symbol(self) -> str:
-        """That of the index."""
-        return self.index.symbol
-
-    @property
     def title(self) -> str:
         """That of the index, with the output."""
         return f"{self.index.title} ({self.output})"
-
-    @property
-    def unit(self) -> str:
-        """That of the index."""
-        return self.index.unit
-
-    @property
-    def response(self) -> str:
-        """That of the index."""
-        return self.index.response
 
     def question(self, mechanism: Mechanism) -> Question:
         """The question of the index with that output alone."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
-from inerter.indices.question import Index
+from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, objective_of
 from inerter.methods.method import Differentiable, Estimate, Method, Objective, asked_of
 from inerter.optimisation.limits import Limit
@@ -29,7 +29,7 @@ _WEIGHT = 1e-6  # of a sample that counts in a gradient
 
 
 @dataclass(frozen=True)
-class Quantile:
+class Quantile(OfIndex):
     """An index: the value that another one stays below in this share of cases, when values scatter.
 
     Elements alone may scatter here. The quantile is a mean of all `samples` by weights that are those of their ranks
@@ -51,24 +51,9 @@ class Quantile:
             raise DesignError(f"The seed is a whole number from 0 on, got {self.seed!r}.")
 
     @property
-    def symbol(self) -> str:
-        """That of the index."""
-        return self.index.symbol
-
-    @property
     def title(self) -> str:
         """That of the index, with the share."""
         return f"{self.index.title}, {100.0 * self.share:g} % quantile"
-
-    @property
-    def unit(self) -> str:
-        """That of the index."""
-        return self.index.unit
-
-    @property
-    def response(self) -> str:
-        """That of the index."""
-        return self.index.response
 
     @property
     def factors(self) -> Array:

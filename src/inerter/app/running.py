@@ -147,7 +147,6 @@ def _folder(folder: str | Path | None) -> Iterator[Path]:
 def _many_connections() -> None:
     """As many connections at the same time as this machine allows."""
     with suppress(ImportError, ValueError, OSError):
-        import resource  # noqa: PLC0415 - not on all machines
-
+        resource = import_module("resource")  # not on all machines
         _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
         resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))

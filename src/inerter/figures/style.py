@@ -183,8 +183,9 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: boo
     files = [folder / f"{name}.{kind}" for kind, asked in wanted.items() if asked]
     with styled(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "constrained_layout not applied")  # no room between labels of 300 digits
-        figure.draw_without_rendering()  # the layout is found once for all files
-        figure.set_layout_engine(None)  # "none" would have each file drawn twice
+        if engine := figure.get_layout_engine():
+            engine.execute(figure)  # once for all files
+            figure.set_layout_engine(None)  # "none" would have each file drawn twice
         for file in files:
             with whole(file) as draft:
                 figure.savefig(draft, dpi=_DPI, metadata=_UNDATED[file.suffix])

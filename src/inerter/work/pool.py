@@ -21,7 +21,7 @@ from inerter.errors import WorkError
 from inerter.work import cluster
 from inerter.work.origin import origin
 from inerter.work.pieces import Cutter, Item, Piece, Result, Worked, loaded, worked
-from inerter.work.processes import Processes
+from inerter.work.processes import Processes, is_started
 
 KILLS = 3  # processes that an item may end
 _SHORT = 3.0  # seconds: to start processes takes about as long
@@ -119,7 +119,7 @@ class Pool:
 
     def _begun(self, work: Callable[[Any], object]) -> list[Future[Any]]:
         """Processes that start and load what `work` needs."""
-        return [self._processes().submit(loaded, work) for _ in range(self.jobs)]
+        return self._processes().start(loaded, work)
 
     def _handed_out(
         self, work: Callable[[Item], Result], cutter: Cutter[Item], lost: Callable[[Item], Result] | None
@@ -176,7 +176,7 @@ class _Start:
     def is_over(self, done: int, seconds: float) -> bool:
         """Whether processes are ready, which are started if work takes as long."""
         if self.starting or self.begin is None:
-            return any(future.done() for future in self.starting)
+            return is_started(self.starting)
         if done == 1:
             self.loading = seconds
         worked = seconds - self.loading

@@ -7,7 +7,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -70,6 +70,11 @@ class Processes(Executor):
             least.broken = True
             return self.submit(call, *args)
 
+    def start(self, call: Callable[..., Any], /, *args: object) -> list[Future[Any]]:
+        """Start all processes that there may be, none waiting for another, each with a call; see `is_started`."""
+        added = [self._added() for _ in range(self.jobs - len(self._singles))]
+        return [self._watched(single, call, *args) for single in added]
+
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End all processes: when they have done what they do, or at once, those that do not heed it by force."""
         for single in self._singles:
@@ -79,19 +84,15 @@ class Processes(Executor):
         self._singles = []
 
     def _started(self) -> _Single:
-        context = multiprocessing.get_context("spawn")
-        single = _Single(ProcessPoolExecutor(1, context, initializer=_begin_worker))
-        if not self._processes:  # the first: whether any can be started
-            try:
-                self._watched(single, os.getpid).result()
-            except BrokenExecutor:
-                raise WorkError(
-                    "no process can be started. A script that asks for several needs the line "
-                    '`if __name__ == "__main__":` before its first call, because processes are started afresh and '
-                    "import it; or ask for one process (jobs=1)."
-                ) from None
-        self._singles.append(single)
+        first, single = not self._processes, self._added()
+        if first:  # whether any can be started
+            is_started([self._watched(single, os.getpid)], wait=True)
         return single
+
+    def _added(self) -> _Single:
+        context = multiprocessing.get_context("spawn")
+        self._singles.append(_Single(ProcessPoolExecutor(1, context, initializer=_begin_worker)))
+        return self._singles[-1]
 
     def _watched(self, single: _Single, call: Callable[..., Any], *args: object) -> Future[Any]:
         others = set(multiprocessing.active_children()) - self._processes
@@ -99,6 +100,22 @@ class Processes(Executor):
             future = single.submit(call, *args)
         self._processes |= set(multiprocessing.active_children()) - others
         return future
+
+
+def is_started(first: Collection[Future[Any]], *, wait: bool = False) -> bool:
+    """Whether a process has done the first call that it was given, or failed in it.
+
+    Raises `WorkError` if all have ended before.
+    """
+    ready = [future for future in first if wait or future.done()]
+    broken = [future for future in ready if isinstance(future.exception(), BrokenExecutor)]
+    if broken and len(broken) == len(first):
+        raise WorkError(
+            "no process can be started. A script that asks for several needs the line "
+            '`if __name__ == "__main__":` before its first call, because processes are started afresh and '
+            "import it; or ask for one process (jobs=1)."
+        )
+    return len(ready) > len(broken)
 
 
 def _end(processes: Iterable[BaseProcess]) -> None:

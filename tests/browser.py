@@ -56,9 +56,13 @@ class Served:
             self.process = None
 
     def wait_until_ready(self) -> None:
-        request = urllib.request.Request(f"{self.origin}/api/ready", headers={"Authorization": f"Bearer {self.token}"})
+        self.get("ready")
+
+    def get(self, what: str) -> bytes:
+        """What the server answers to a script."""
+        request = urllib.request.Request(f"{self.origin}/api/{what}", headers={"Authorization": f"Bearer {self.token}"})
         with urllib.request.urlopen(request, timeout=_READY) as answer:
-            answer.read()
+            return bytes(answer.read())
 
 
 @dataclass

@@ -341,6 +341,25 @@ def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
 
 
 @pytest.mark.campaign
+def test_a_point_of_a_front_is_taken_into_the_editor(visitor: Visitor) -> None:
+    """Its values become those of the layout, and the indices that the page then shows are the point's, in all digits."""
+    page = visitor.page
+    page.click("#tab-work")
+    form = page.locator("form.begin", has_text="Trade-off front")
+    form.locator("[name=points]").fill("3")
+    form.get_by_role("button", name="Begin").click()
+    page.wait_for_selector(".job[data-state=done] circle.point", timeout=120_000)
+    (front,) = [job for job in json.loads(visitor.served.get("work"))["work"] if job["kind"] == "front"]
+    fronts = json.loads(visitor.served.get(f"work/{front['id']}/result"))["fronts"]
+    points = [(found["layout"], point) for found in fronts for point in found["points"]]
+    assert page.locator("circle.point").count() == len(points) == 3 * len(fronts)
+    layout, point = points[-2]
+    page.locator("circle.point").nth(len(points) - 2).press("Enter")
+    page.wait_for_selector(f"[aria-label=Layouts] [aria-pressed=true]:has-text('{layout}')")
+    wait_until(lambda: {index: visitor.values()[index] for index in point["values"]} == point["values"])
+
+
+@pytest.mark.campaign
 def test_limits_stand_in_the_answers(visitor: Visitor) -> None:
     visitor.open(EXAMPLES / "limits.toml")
     visitor.wait_for_text("k | c - b")

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, wait_until
+from browser import EXAMPLES, Served, Visitor, free_port, wait_until
 
 import inerter as it
 from inerter.app.designs import design_of
@@ -209,6 +209,27 @@ def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: 
     assert page.locator(".problem").count() == 0
 
 
+@pytest.mark.campaign
+def test_the_page_is_there_while_kernels_are_compiled(
+    visitors: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    fresh = Served(EXAMPLES / "quarter-car.toml", free_port())
+    fresh.begin()
+    try:
+        window = visitors(fresh)
+        window.page.goto(fresh.link)
+        window.page.wait_for_selector("[data-connection=compiling]")
+        assert "The numerical kernels are compiled" in window.page.inner_text("[data-connection=compiling]")
+        window.page.wait_for_function("() => /\\d of \\d/.test(document.querySelector('[data-connection]').innerText)")
+        window.page.fill("#network-text", "k | c | b")
+        window.page.wait_for_selector("[data-connection=ready]", state="attached", timeout=240_000)
+        assert window.text == "k | c | b"
+        assert window.values()["J1"] > 0.0
+    finally:
+        fresh.stop()
+
+
 def test_what_is_typed_stays_while_answers_arrive(visitor: Visitor) -> None:
     page = visitor.page
     page.fill("#network-text", "k | c | b")
@@ -342,7 +363,7 @@ def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
 
 @pytest.mark.campaign
 def test_a_point_of_a_front_is_taken_into_the_editor(visitor: Visitor) -> None:
-    """Its values become those of the layout, and the indices that the page then shows are the point's, in all digits."""
+    """Its values become those of the layout, and the page then shows the indices of the point in all digits."""
     page = visitor.page
     page.click("#tab-work")
     form = page.locator("form.begin", has_text="Trade-off front")

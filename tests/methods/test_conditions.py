@@ -9,6 +9,7 @@ import pytest
 from strategies import paper_quarter_car
 
 import inerter as it
+from inerter.errors import DesignError
 from inerter.methods.asking import objective_of
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -53,6 +54,28 @@ def test_mean_and_worst_are_those_of_the_conditions(index):
         assert many[i] == pytest.approx(expected, rel=1e-9)
         for over, value in zip((USE.mean(index), USE.worst(index)), expected, strict=False):
             assert it.evaluate(design, over, NORM).value == pytest.approx(value, rel=1e-12)
+
+
+def test_a_seat_over_conditions():
+    """Numbers of the vehicle below, of the occupant, and of elements that both have."""
+    below = paper_quarter_car(it.Spring(1.2e5) | it.Damper(it.free(100.0, 1e5, "c")))
+    seat = it.Seat(below, mass=70.0, network=it.Spring(2e4) | it.Damper(1.5e3, name="cs"))
+    use = it.Conditions(
+        [
+            it.Condition(1.0, vehicle={"mass": 100.0, "sprung_mass": 240.0}),
+            it.Condition(1.0, vehicle={"cs": 900.0, "k": 5e4, "tyre_stiffness": 1.5e5}),
+        ]
+    )
+    named = dataclasses.replace(seat, network=it.Spring(2e4, name="k") | it.Damper(1.5e3, name="cs"))
+    heavy = it.Seat(dataclasses.replace(below, sprung_mass=240.0), mass=100.0, network=named.network)
+    softer = paper_quarter_car(it.Spring(5e4) | below.strut.parts[1])
+    softer = dataclasses.replace(softer, tyre_stiffness=1.5e5)
+    soft = it.Seat(softer, mass=70.0, network=it.Spring(5e4, name="k") | it.Damper(900.0, name="cs"))
+    expected = [it.evaluate(one.with_values({"c": 3e3}), J1, NORM).value for one in (heavy, soft)]
+    found = it.evaluate(named.with_values({"c": 3e3}), use.mean(J1), NORM).value
+    assert found == pytest.approx(np.mean(expected), rel=1e-12)
+    with pytest.raises(DesignError, match="mass, sprung_mass, unsprung_mass"):
+        it.evaluate(seat.with_values({"c": 3e3}), it.Conditions([it.Condition(1.0, vehicle={"m": 1.0})]).mean(J1), NORM)
 
 
 @pytest.mark.parametrize("index", [J1, J5], ids=["J1", "J5"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 from inerter.checks import is_number
 from inerter.errors import DesignError
@@ -12,6 +12,7 @@ from inerter.fields import fields_of
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.seat import Seat
 from inerter.vehicle.vehicle import Vehicle, VehicleModel
 
 
@@ -19,7 +20,7 @@ def changed(vehicle: Vehicle, values: Mapping[str, float]) -> Vehicle:
     """The same vehicle with other numbers (SI), each by its name.
 
     That is a quantity of the vehicle such as `sprung_mass`, else the label of elements, else a coordinate of a
-    `Mechanism`, whose mass it is.
+    `Mechanism`, whose mass it is. Of a vehicle with a seat, `mass` is that of the occupant; all others are as below.
 
     Raises `DesignError` for a name that stands for nothing here, or for elements of several kinds.
     """
@@ -31,8 +32,11 @@ def changed(vehicle: Vehicle, values: Mapping[str, float]) -> Vehicle:
 
 
 def _one_changed(vehicle: Vehicle, name: str, value: float) -> Vehicle:
-    if isinstance(vehicle, VehicleModel) and name in {field.name for field in fields_of(type(vehicle))}:
-        return dataclasses.replace(vehicle, **{name: value})
+    if name in _quantities(vehicle):
+        stated: Any = vehicle
+        return cast(Vehicle, dataclasses.replace(stated, **{name: value}))
+    if isinstance(vehicle, Seat):
+        return _below_changed(vehicle, name, value)
     chosen = {id(element) for element in labelled(vehicle, name)}
     if chosen:
         return with_elements(vehicle, lambda e: e.with_value(value) if id(e) in chosen else e)
@@ -44,13 +48,32 @@ def _one_changed(vehicle: Vehicle, name: str, value: float) -> Vehicle:
                 dataclasses.replace(c, inertia=value) if c.name == name else c for c in mechanism.coordinates
             ),
         )
-    raise DesignError(f"There is nothing named {name!r} to change (there are: {', '.join(_known(vehicle))}).")
+    raise _nothing(vehicle, name)
+
+
+def _below_changed(seat: Seat, name: str, value: float) -> Seat:
+    """The vehicle below changed, and elements of the seat's network with that label."""
+    if name not in _known(seat):
+        raise _nothing(seat, name)
+    labelled(seat, name)
+    network = map_elements(seat.network, lambda e: e.with_value(value) if e.label == name else e)
+    below = _one_changed(seat.vehicle, name, value) if name in _known(seat.vehicle) else seat.vehicle
+    return dataclasses.replace(seat, vehicle=below, network=network)
+
+
+def _nothing(vehicle: Vehicle, name: str) -> DesignError:
+    return DesignError(f"There is nothing named {name!r} to change (there are: {', '.join(_known(vehicle))}).")
+
+
+def _quantities(vehicle: Vehicle) -> list[str]:
+    return [field.name for field in fields_of(type(vehicle))] if dataclasses.is_dataclass(vehicle) else []
 
 
 def _known(vehicle: Vehicle) -> list[str]:
-    quantities = [field.name for field in fields_of(type(vehicle))] if isinstance(vehicle, VehicleModel) else []
     masses = [c.name for c in vehicle.coordinates] if isinstance(vehicle, Mechanism) else []
-    return list(dict.fromkeys([*quantities, *(e.label for part in mounted(vehicle) for e in part), *masses]))
+    below = _known(vehicle.vehicle) if isinstance(vehicle, Seat) else []
+    labels = [e.label for part in mounted(vehicle) for e in part]
+    return list(dict.fromkeys([*_quantities(vehicle), *below, *labels, *masses]))
 
 
 def mounted(vehicle: Vehicle) -> tuple[list[Element], list[Element]]:

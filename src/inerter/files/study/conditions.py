@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 from inerter.fields import fields_of
 from inerter.files.common.shape import ROAD
+from inerter.files.common.vehicle_shapes import SEAT
 from inerter.files.study.places import Place, number_at, place_of
 from inerter.methods.conditions import Condition
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.seat import Seat
 
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
@@ -46,7 +48,8 @@ def what_of(study: Study, place: Place) -> tuple[str, str] | None:
 def _of_vehicle(study: Study) -> dict[str, tuple[str, str]]:
     coordinates = {f"coordinates.{name}": ("vehicle", name) for name in study.vehicle.get("coordinates", {})}
     fields = fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ()
-    return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates}
+    seat = {f"{SEAT}.{f.key}": ("vehicle", f.name) for f in fields_of(Seat)} if SEAT in study.vehicle else {}
+    return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates, **seat}
 
 
 def condition_of(study: Study, stated: StudyCondition) -> Condition:

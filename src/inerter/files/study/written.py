@@ -46,7 +46,12 @@ def write_resolved(study: Study) -> str:
 
     `load_study` reads an equal study from it, to the last bit of every value.
     """
-    return as_toml(_rewritten(study, study.resolved()))
+    remark = (
+        ""
+        if study.line is None
+        else f"# {study.line.note[0].upper()}{study.line.note[1:]}.\n# SHA-256 of the file: {study.line.digest}\n\n"
+    )
+    return remark + as_toml(_rewritten(study, study.resolved()))
 
 
 def _rewritten(study: Study, entry: Any) -> Any:

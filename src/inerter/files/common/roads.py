@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, model_validator
@@ -16,7 +17,6 @@ from inerter.fields import Field as Quantity
 from inerter.files.common.entries import TEXT, positive, word
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.schema import checked
-from inerter.files.common.shape import of_field
 from inerter.files.common.suggest import some
 from inerter.files.common.tables import Shape
 from inerter.roads.reading import read_profile
@@ -26,15 +26,17 @@ from inerter.signals.road import ROAD_CLASSES, Road
 from inerter.units import format_quantity, shown
 from inerter.vehicle.mechanism import TRACKS
 
-COHERENCE = (
-    Quantity("track", "m", "From track to track, of a surface as rough in every direction.", "1.5 m", "track"),
-    Quantity("wavenumber", "cycle/m", "Of first order: where it is half of its level.", "0.2 cycle/m", "wavenumber"),
+_TRACK = Quantity("track", "m", "From track to track, of a surface as rough in every direction.", "1.5 m", "track")
+_CORNER = Quantity(
+    "wavenumber", "cycle/m", "Of first order: where it is half of its level.", "0.2 cycle/m", "wavenumber"
 )
+COHERENCE = (_TRACK, _CORNER)  # what has a unit
 _LEVEL = "level"
 _FORMS = 'track = "1.5 m", level = 0.6 or wavenumber = "0.2 cycle/m"'
 _ROUGH = ("roughness", "class", "profile")  # keys that say how rough a road is
 _SIDES = tuple(filter(None, TRACKS))
 _WAVINESS, _TO = 1.5, 2.5  # of profiles for which a road of waviness 2 stands without a warning
+_WIDTH = 110  # of a remark
 _FEWEST = 12  # bands of a line, which are an octave, without a warning
 
 
@@ -47,11 +49,15 @@ def _from_minus_one(value: Any) -> float:
 class CoherenceTable(Shape):
     """How alike left and right track are: as on an isotropic surface, everywhere alike, or of first order."""
 
-    track: Annotated[float | None, positive("m")] = Field(default=None, **of_field(COHERENCE[0]))
+    track: Annotated[float | None, positive("m")] = Field(
+        default=None, description=_TRACK.sentence, examples=[f'track = "{_TRACK.example}"']
+    )
     level: Annotated[
         float | None, checked(_from_minus_one, lambda: {"type": "number", "minimum": -1, "maximum": 1})
     ] = Field(default=None, description="At all wavenumbers, or in long waves.", examples=["level = 0.6"])
-    wavenumber: Annotated[float | None, positive("cycle/m")] = Field(default=None, **of_field(COHERENCE[1]))
+    wavenumber: Annotated[float | None, positive("cycle/m")] = Field(
+        default=None, description=_CORNER.sentence, examples=[f'wavenumber = "{_CORNER.example}"']
+    )
 
     @model_validator(mode="after")
     def _of_one_form(self) -> CoherenceTable:
@@ -128,11 +134,12 @@ class MeasuredLine:
     @property
     def note(self) -> str:
         """What stands for the road, and what the profile says of itself."""
-        road = Road(self.roughness, 1.0)
+        letter = Road(self.roughness, 1.0).iso8608_class.letter
+        own = f"its own line, through {self.bands} bands from {self.lowest:.3g} to {self.highest:.3g} cycle/m,"
         return (
-            f"the road is the line of waviness 2 through {self.source}: {road.iso8608_class}, "
-            f"roughness {format_quantity(self.roughness, 'm^3/cycle', 6)}; its own line, through {self.bands} bands "
-            f"from {self.lowest:.3g} to {self.highest:.3g} cycle/m, has the waviness {self.waviness:.2f} and "
+            f"the road is the line of waviness 2 through {self.source}, of class {letter} of ISO 8608, with "
+            f"the roughness {format_quantity(self.roughness, 'm^3/cycle', 6)}; {own} "
+            f"has the waviness {self.waviness:.2f} and "
             f"a scatter by a factor of {self.scatter:.2f}"
         )
 
@@ -182,6 +189,14 @@ def line_through(table: RoadTable | None, beside: Path) -> tuple[MeasuredLine | 
 _PROFILE = 'a table of distances and heights, such as profile = "road.csv"'
 
 
+def remark(line: MeasuredLine | None) -> str:
+    """What a file says above the roughness that stands for a profile."""
+    if line is None:
+        return ""
+    text = f"{line.note[0].upper()}{line.note[1:]}. SHA-256 of the file: {line.digest}"
+    return "".join(f"# {part}\n" for part in wrap(text, _WIDTH)) + "\n"
+
+
 def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum) -> MeasuredLine:
     return MeasuredLine(
         path=path,
@@ -222,14 +237,19 @@ def coherence_entry(values: Mapping[str, float]) -> dict[str, str | float]:
     return {key: f"{value!r} {units[key]}" if key in units else value for key, value in values.items()}
 
 
-def coherence_problems(values: Mapping[str, float], tracks: Mapping[str, str] | None) -> Iterator[Problem]:
-    """Why a coherence does not suit a vehicle, of whose roads these are the `tracks`; none if they are not known."""
+def coherence_problems(
+    place: tuple[str, ...], values: Mapping[str, Any], tracks: Mapping[str, str] | None
+) -> Iterator[Problem]:
+    """Why tracks that differ do not suit a vehicle of whose roads these are the `tracks`; none if they are not known.
+
+    They are asked for at `place`, unless there are no `values`.
+    """
     if not values or tracks is None:
         return
-    loose, place = [name for name, track in tracks.items() if not track], ("road", "coherence")
+    loose = [name for name, track in tracks.items() if not track]
     if len(loose) == len(tracks):
         fault = "this vehicle does not meet the road on a left and a right track"
-        yield at(place, fault=fault, expected='one that does, such as model = "full-car", or no coherence')
+        yield at(place, fault=fault, expected='one that does, such as model = "full-car", or none of it')
     elif loose:
         fault = f"{some(loose)} is on neither track"
         yield at(place, fault=fault, expected='track = "left" or "right" for each road of the vehicle')

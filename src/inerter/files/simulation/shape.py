@@ -84,6 +84,7 @@ def shapes() -> tuple[type[SimulationFile], Shapes]:
         **vehicles,
         (): file,
         ("road",): PassedRoad,
+        ("road", "coherence"): CoherenceTable,
         **tables,
         **signals,
         ("simulation",): SimulationSettings,

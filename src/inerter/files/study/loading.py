@@ -128,7 +128,7 @@ def _road(shape: StudyFile, line: MeasuredLine | None) -> Road | None:
 
 
 def _road_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
-    yield from coherence_problems(study.coherence, tracks(study.model, study.vehicle))
+    yield from coherence_problems(("road", "coherence"), study.coherence, tracks(study.model, study.vehicle))
     asked = [*study.indices, *study.trade_off, *(name for name in shape.study.subject_to or {} if study.knows(name))]
     on_roads = [name for name in dict.fromkeys(asked) if is_on_road(study.symbol(name))]
     if study.road is None and on_roads:

@@ -13,9 +13,8 @@ from inerter.errors import RecordError, RowError, SignalError
 from inerter.files.common.entries import any_quantity, one_of, positive, text, whole, yes_or_no
 from inerter.roads.reading import profile, read_profile
 from inerter.rows import Rows, made_of_rows
-from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine, two_tracks
+from inerter.signals.harmonics import cosine, flat_multisine, random_road, sine
 from inerter.signals.records import held_noise, recorded
-from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
 from inerter.signals.transients import bump, chirp, step
@@ -80,10 +79,6 @@ class SignalKind:
     random: bool = False  # a road with the coherence that [road] says
 
 
-def _random_road(road: Road, **settings: Any) -> Signal | Mapping[str, Signal]:
-    return multisine(road, **settings) if road.coherence is None else two_tracks(road, **settings)
-
-
 def _measured(file: str, track: str, speed: float) -> Signal | Mapping[str, Signal]:
     if track != BOTH:
         return profile(file, speed, track)
@@ -99,7 +94,7 @@ def _measured(file: str, track: str, speed: float) -> Signal | Mapping[str, Sign
 _OWN = (
     SignalKind(
         "multisine",
-        _random_road,
+        random_road,
         {"seed": _SEED, "lowest": _frequency("lowest", "0.1", 0.1), "highest": _frequency("highest", "1000", 1000.0)},
         given=("road",),
         needs=("speed", "roughness"),

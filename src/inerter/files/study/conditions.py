@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inerter.fields import fields_of
+from inerter.files.common.roads import COHERENCE
 from inerter.files.common.shape import ROAD
 from inerter.files.common.vehicle_shapes import SEAT
-from inerter.files.study.places import Place, number_at, place_of
+from inerter.files.study.places import Place, number_at, place_of, with_numbers
 from inerter.methods.conditions import Condition
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
@@ -39,7 +40,10 @@ def what_of(study: Study, place: Place) -> tuple[str, str] | None:
     """Whether a place is one of the vehicle or of the road, and what it is called there; None if of neither."""
     names = {
         "vehicle": _of_vehicle(study),
-        "road": {f.key: ("road", f.name) for f in ROAD},
+        "road": {
+            **{f.key: ("road", f.name) for f in ROAD},
+            **{f"coherence.{f.key}": ("road", "coherence") for f in COHERENCE},
+        },
         "elements": {name: ("vehicle", name) for name in study.elements},
     }
     return names.get(place.section, {}).get(place.key)
@@ -54,10 +58,14 @@ def _of_vehicle(study: Study) -> dict[str, tuple[str, str]]:
 
 def condition_of(study: Study, stated: StudyCondition) -> Condition:
     """What a method takes."""
-    changed: dict[str, dict[str, float]] = {"vehicle": {}, "road": {}}
+    changed: dict[str, dict[str, Any]] = {"vehicle": {}, "road": {}}
+    there = with_numbers(
+        study, [(p, n) for label, n in stated.numbers.items() if (p := place_of(label)).section == "road"]
+    )
     for label, number in stated.numbers.items():
         found = what_of(study, place_of(label))
         assert found is not None, label
-        changed[found[0]][found[1]] = number
+        section, name = found
+        changed[section][name] = getattr(there.road, name) if section == "road" else number
     name = stated.name or ", ".join(f"{label} = {shown(number)}" for label, number in stated.numbers.items())
     return Condition(stated.share, changed["vehicle"], changed["road"], name)

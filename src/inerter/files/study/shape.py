@@ -31,13 +31,13 @@ from inerter.files.common.entries import (
     whole,
     word,
 )
+from inerter.files.common.roads import CoherenceTable, RoadTable
 from inerter.files.common.schema import OrDeeper, checked, words_schema
 from inerter.files.common.shape import (
     ROAD,
     ElementEntry,
     ElementName,
     Range,
-    RoadTable,
     WithVehicle,
     if_given,
     layouts,
@@ -300,6 +300,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         (): file,
         **vehicles,
         ("road",): RoadShape,
+        ("road", "coherence"): CoherenceTable,
         **kinds,
         ("elements", "*", "<own>", "<range>"): Range,
         **tables,

@@ -11,6 +11,7 @@ from inerter.errors import NetworkError, StudyError
 from inerter.files.common.kind_entry import entry_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
+from inerter.files.common.roads import MeasuredLine, coherence_entry
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.vehicles import in_si, vehicle_entry
@@ -67,6 +68,8 @@ class Study:
     evaluate: tuple[str, ...] = (DEFAULT,)
     baseline: str | None = None  # the layout that the others are compared with; None if there is but one
     sweeps: tuple[Sweep, ...] = ()  # each value of one with each of the others
+    coherence: dict[str, float] = field(default_factory=dict)  # of the road, as the file says it
+    line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
     seed: int = 0
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
@@ -87,6 +90,11 @@ class Study:
     def methods(self) -> tuple[str, ...]:
         """All methods that it uses."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it is read from."""
+        return (self.path,) if self.line is None else (self.path, self.line.path)
 
     def knows(self, name: str) -> bool:
         """Whether there is an index that the study can call so."""
@@ -197,8 +205,9 @@ class Study:
             **({"methods": own} if (own := self._of_methods()) else {}),
         }
 
-    def _road(self) -> dict[str, str]:
-        return in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
+    def _road(self) -> dict[str, Any]:
+        own = in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
+        return {**own, "coherence": coherence_entry(self.coherence)} if self.coherence else own
 
     def _of_methods(self) -> dict[str, Any]:
         return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}

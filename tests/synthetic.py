@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from inerter.methods.registry import brief_words_of
+
 UNITS = {"J1": "m/s^2", "J3": "N", "J5": "m/N"}
 TITLES = {"J1": "ride comfort", "J3": "dynamic tyre load", "J5": "dynamic load carrying"}
 SIZES = {"J1": 2.5, "J3": 550.0, "J5": 2.4e-5}
@@ -58,6 +60,8 @@ def judged(data: xr.Dataset, methods: Sequence[str] = ("norm", "expected-value")
         realisations=(dims, np.full(error.shape, roads)),
     )
     data = improved(data) if data.attrs["baseline"] else data.assign(improvement=data["value"] * np.nan)
+    words = [f"by {brief_words_of(method)}" for method in methods] if len(methods) > 1 else [""]
+    data = data.assign_coords(method_words=("method", words))
     return data.assign(improvement_error=data["standard_error"] * 0.0 + 0.31)
 
 

@@ -13,9 +13,9 @@ from synthetic import designs, judged, with_value
 import inerter as it
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
+from inerter.files.study.ways import ways
 from inerter.report.answers import answers
 from inerter.report.findings import best_layouts
-from inerter.report.ways import ways
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BY_BOTH = ("norm", "expected-value")
@@ -31,6 +31,11 @@ def with_losses(study, *losses):
     parts = {f"part{i}": loss for i, loss in enumerate(losses)}
     layouts = {**study.layouts, "S3": replace(study.layouts["S3"], struts={"strut": " | ".join(["k", *parts])})}
     return replace(study, elements={**study.elements, **parts}, layouts=layouts)
+
+
+def told_apart(results, study):
+    """The results with the words for methods that a run of the study gives them."""
+    return results.assign_coords(method_words=("method", list(ways(study).values())))
 
 
 @pytest.mark.parametrize(
@@ -60,7 +65,7 @@ def test_methods_are_told_by_what_they_see(study, losses, methods, told):
 
 def test_no_name_of_a_method_is_in_an_answer(study):
     asked = replace(with_losses(study, it.Friction(10.0)), evaluate=BY_BOTH)
-    told = answers(judged(designs()), asked)
+    told = answers(told_apart(judged(designs()), asked), asked)
     assert len(told) == 3
     for sentence in told:
         assert re.match(
@@ -71,7 +76,7 @@ def test_no_name_of_a_method_is_in_an_answer(study):
 
 def test_another_layout_may_be_the_best_with_friction(study):
     asked = replace(with_losses(study, it.Friction(10.0)), evaluate=BY_BOTH)
-    results = judged(designs())
+    results = told_apart(judged(designs()), asked)
     results["value"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = 1.0
     results["improvement"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = 60.0
     assert "; with friction S2, 1.0000 +- " in answers(results, asked)[0]

@@ -58,7 +58,7 @@ def test_tables_by_method_fit_a_terminal(names, value, swept, count):
 
 def test_methods_side_by_side_with_their_errors():
     lines = summary_table(judged(designs())).split("\n")
-    assert lines[0] == "J1: ride comfort, by norm, compared with S1"
+    assert lines[0] == "J1: ride comfort, by exact norms, compared with S1"
     assert lines[6:13] == [
         "  by each method, in m/s^2",
         "  layout  norm     expected-value",

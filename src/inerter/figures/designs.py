@@ -25,6 +25,7 @@ from inerter.figures.labels import (
     percent,
     scale,
     typeset,
+    way,
 )
 from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
 
@@ -69,7 +70,7 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
             values = np.where(np.isfinite(row["improvement"].values), row["improvement"].values, np.nan)
             at, heights = places + (number - (len(methods(results)) - 1) / 2) * width, np.maximum(values, WORST)
             look: dict[str, Any] = {"linestyle": "", "color": colour(number)}
-            ax.plot(at, heights, marker=marker(number), markersize=4.5, label=method, **look)
+            ax.plot(at, heights, marker=marker(number), markersize=4.5, label=way(results, method), **look)
             _error_bars(ax, row, at, heights, **look)
         ax.axhline(0.0, color="black", linestyle="--", linewidth=0.8)
         ax.set_xlim(-0.5, len(names) - 0.5)

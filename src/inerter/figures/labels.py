@@ -37,12 +37,17 @@ def one_method(results: xr.Dataset) -> xr.Dataset:
     if "method" not in results.dims:
         return results
     first = results.isel(method=0, drop=True)
-    return first if results.sizes["method"] == 1 else first.assign_attrs(method=methods(results)[0])
+    return first if results.sizes["method"] == 1 else first.assign_attrs(way=way(results, methods(results)[0]))
 
 
 def by_which(results: xr.Dataset) -> str:
     """Words for titles: by which of several methods the results are; empty if there is but one."""
-    return f", by {results.attrs['method']}" if "method" in results.attrs else ""
+    return f", {results.attrs['way']}" if "way" in results.attrs else ""
+
+
+def way(results: xr.Dataset, method: str) -> str:
+    """What a method is called beside others, such as "with friction"; a single one may have no words."""
+    return str(results["method_words"].sel({"method": method}).item())
 
 
 def methods(results: xr.Dataset) -> list[str]:

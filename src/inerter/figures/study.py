@@ -62,7 +62,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
         yield StudyFigure(
             "improvement",
             f"Improvement over {baseline}, each layout with its own best design for each index"
-            + (f", by {methods(every)[0]}." if several else ".")
+            + f"{by_which(results)}."
             + _uncertain(results, " Bars with caps: one standard error.")
             + (" Bars with a triangle are cut." if bool((results["improvement"] < WORST).any()) else ""),
             partial(_improvement, results),

@@ -28,6 +28,7 @@ from inerter.figures.labels import (
     swept_element,
     swept_label,
     titled,
+    way,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
 
@@ -103,7 +104,7 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
         ax.set_ylim(bottom=max(ax.get_ylim()[0], WORST))
         ax.set_ylabel(IMPROVEMENT)
     for name, line in zip(names, lines, strict=True) if len(names) > 1 else ():
-        left.plot([], [], color="0.4", **line | {"label": name})
+        left.plot([], [], color="0.4", **line | {"label": way(results, name)})
     sweep.finish(axes)
     return axes
 

@@ -14,7 +14,7 @@ from inerter.files.study.study import Study
 from inerter.report.budgets import end_of_range
 from inerter.report.findings import Telling, Writer, best_layouts, headlines, listed
 from inerter.report.fronts import front_sentences
-from inerter.report.ways import ways
+from inerter.report.question import spoken
 
 
 def answers(
@@ -24,7 +24,7 @@ def answers(
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     return [
         *(() if study.line is None else study.line.warnings),
-        *headlines(results, Telling(write, ways(study), static)),
+        *headlines(results, Telling(write, static)),
         *front_sentences(results, write),
         *_of_budgets(results, study, budgets, write),
         *_of_limits(study, write),
@@ -32,14 +32,9 @@ def answers(
 
 
 def _of_limits(study: Study, write: Writer) -> Iterator[str]:
-    told = [f"{_spoken(one.words)} {write(one.value, one.unit, nan).strip()}" for one in study.limits]
+    told = [f"{spoken(one.words)} {write(one.value, one.unit, nan).strip()}" for one in study.limits]
     if told:
         yield f"These are the best of all designs with {listed(told)}."
-
-
-def _spoken(words: str) -> str:
-    """Words of a file as they are said: static-stiffness.strut is the static stiffness of strut."""
-    return words.replace("-", " ").replace(".", " of ")
 
 
 def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome], write: Writer) -> Iterator[str]:

@@ -8,6 +8,7 @@ from textwrap import wrap
 from inerter.figures.labels import printed, with_unit
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.study import Study
+from inerter.methods.registry import brief_words_of
 from inerter.report.tables import Cell, Row, Table
 
 Writer = Callable[[float, str, float], str]
@@ -44,7 +45,8 @@ def _by_element(budgets: Sequence[BudgetOutcome]) -> dict[str, list[BudgetOutcom
 
 
 def _caption(name: str, found: BudgetOutcome, study: Study) -> str:
-    return f"Budget of {name}: for which {name} each layout is better than {study.baseline}, by {found.method}"
+    by = f"by {brief_words_of(found.method)}"
+    return f"Budget of {name}: for which {name} each layout is better than {study.baseline}, {by}"
 
 
 def _answer(found: BudgetOutcome, write: Writer) -> str:

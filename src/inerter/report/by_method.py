@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from textwrap import wrap
 from typing import NamedTuple
@@ -12,6 +13,7 @@ import xarray as xr
 from inerter.figures.labels import (
     Scale,
     by_method,
+    capital,
     compared,
     error_of,
     index_title,
@@ -26,13 +28,14 @@ from inerter.figures.labels import (
     swept_places,
     titled,
     typeset,
+    way,
     with_unit,
 )
 from inerter.report.findings import extremes, place_text
 from inerter.report.tables import Cell, Row, Table
 
 _LONGEST_NAME = 20
-_LONGEST_METHOD = 18  # a longer name is cut at a hyphen
+_LONGEST_METHOD = 18  # longer words are cut in two
 
 
 class _Entry(NamedTuple):
@@ -48,7 +51,10 @@ def method_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
     yield from wrap(_what(results, unit), width, initial_indent="  ", subsequent_indent="    ")
     labels = [_Entry("layout"), *(_Entry(name[:_LONGEST_NAME]) for name in names)]
     columns = [
-        [_Entry(*_two_lines(method)), *(_entry(by_method(results, method), index, name, unit) for name in names)]
+        [
+            _Entry(*_two_lines(way(results, method))),
+            *(_entry(by_method(results, method), index, name, unit) for name in names),
+        ]
         for method in methods(results)
     ]
     while columns:
@@ -71,7 +77,9 @@ def _table(results: xr.Dataset, index: str) -> Table:
         entries = [_entry(by_method(results, method), index, name, unit) for method in methods(results)]
         rows.append(Row(name, [Cell(_typeset(entry.first), _typeset(entry.second)) for entry in entries]))
     caption = f"{titled(index_title(results, index), index)} {_what(results, unit)}"
-    return Table(typeset(caption[:1].upper() + caption[1:]), ["Layout", *methods(results)], rows)
+    return Table(
+        typeset(capital(caption)), ["Layout", *(capital(way(results, method)) for method in methods(results))], rows
+    )
 
 
 def _what(results: xr.Dataset, unit: Scale) -> str:
@@ -116,12 +124,11 @@ def _typeset(text: str) -> str:
     return typeset(text).replace(" ", "\N{NO-BREAK SPACE}")
 
 
-def _two_lines(name: str) -> tuple[str, str]:
-    """A long name in two parts, cut after its first hyphen."""
-    if len(name) <= _LONGEST_METHOD:
-        return name, ""
-    first, hyphen, second = name.partition("-")
-    return first + hyphen, second
+def _two_lines(words: str) -> tuple[str, str]:
+    """Long words in two parts as even as they can be, cut at a space or after a hyphen."""
+    cuts = [found.end() for found in re.finditer(r"[ -](?=.)", words)] if len(words) > _LONGEST_METHOD else []
+    cut = min(cuts, key=lambda place: abs(2 * place - len(words)), default=len(words))
+    return words[:cut].rstrip(), words[cut:]
 
 
 def _fitting(columns: list[list[_Entry]], width: int) -> int:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -26,6 +26,7 @@ from inerter.figures.labels import (
     swept_element,
     swept_places,
     swept_words,
+    way,
     with_unit,
 )
 from inerter.methods.ties import equally_least
@@ -40,17 +41,11 @@ _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 class Telling:
     """How findings are told: `write` turns a number, its unit and its error into text.
 
-    `ways` are words for methods, such as "with friction"; `static` are indices and layouts whose largest gain is that
-    under a steady force.
+    `static` are indices and layouts whose largest gain is that under a steady force.
     """
 
     write: Writer = with_unit
-    ways: Mapping[str, str] = field(default_factory=dict)
     static: frozenset[tuple[str, str]] = frozenset()
-
-    def way(self, results: xr.Dataset, method: str) -> str:
-        """Words for a method of these results; empty where there is but one and nothing to tell of it."""
-        return self.ways.get(method, f"by {method}" if len(methods(results)) > 1 else "")
 
 
 PLAIN = Telling()
@@ -188,7 +183,11 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
     words = results[element].attrs["long_name"]
     several = len(methods(results)) > 1
-    ways = {f" by {m}": by_method(results, m) for m in methods(results)} if several else {"": one_method(results)}
+    ways = (
+        {f" {way(results, m)}": by_method(results, m) for m in methods(results)}
+        if several
+        else {"": one_method(results)}
+    )
     sentences = []
     for index in indices(results):
         for name in compared(results):
@@ -217,16 +216,16 @@ def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
     names = best_layouts(results, index)
     if not names:
         return f"{title}: {_none(results, index)}."
-    ways = {method: telling.way(results, method) for method in methods(results)} or {"": ""}
+    ways = {method: way(results, method) for method in methods(results)} or {"": ""}
     parts: list[str] = []
-    for method, way in ways.items():
+    for method, words in ways.items():
         one = by_method(results, method) if method else results
         if not parts:
-            parts.append(f"{' '.join(filter(None, (title, way)))}: {_verdict(one, index, telling)}")
+            parts.append(f"{' '.join(filter(None, (title, words)))}: {_verdict(one, index, telling)}")
         elif best_layouts(one, index)[:1] == names[:1]:
-            parts.append(f"{way} still {_still(one, index, names[0])}")
+            parts.append(f"{words} still {_still(one, index, names[0])}")
         else:
-            parts.append(f"{way} {_verdict(one, index, telling)}")
+            parts.append(f"{words} {_verdict(one, index, telling)}")
     return f"{'; '.join(parts)}."
 
 
@@ -263,8 +262,8 @@ def _better(design: xr.Dataset) -> str:
 
 def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
     results, write = one_method(every), telling.write
-    way = next((telling.way(every, method) for method in methods(every)), "")
-    by = f", {way}" if way else ""
+    words = next((way(every, method) for method in methods(every)), "")
+    by = f", {words}" if words else ""
     swept, title, baseline = swept_words(results), index_title(results, index), results.attrs["baseline"]
     layouts = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)

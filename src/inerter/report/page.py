@@ -26,7 +26,15 @@ from inerter.report.by_method import method_tables
 from inerter.report.findings import over_the_sweep
 from inerter.report.fronts import front_tables
 from inerter.report.limits import limit_tables
-from inerter.report.question import computation, condition_rows, element_rows, index_rows, layout_rows, vehicle_rows
+from inerter.report.question import (
+    computation,
+    condition_rows,
+    element_rows,
+    further_rows,
+    index_rows,
+    layout_rows,
+    vehicle_rows,
+)
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
 from inerter.report.tolerances import tolerance_tables
 from inerter.writing import write_text
@@ -81,6 +89,7 @@ def report(
             headlines=[printed_sentence(sentence) for sentence in answers(results, study, budgets, printed)],
             vehicle=vehicle_rows(study),
             elements=element_rows(study),
+            further=further_rows(study),
             layouts=layout_rows(study),
             drawings=dict(_layout_drawings(study, figures)),
             indices=index_rows(results),

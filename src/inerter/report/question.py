@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import pi
+from math import isclose, pi
 
 import numpy as np
 import xarray as xr
@@ -15,17 +15,27 @@ from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
 from inerter.files.study.study import Study
+from inerter.files.study.ways import ways
 from inerter.files.study.written import as_written
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.registry import is_blind, method_settings, words_of
+from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
 from inerter.networks.elements import Free, Tied
+from inerter.signals.road import Road
 from inerter.units import format_quantity
 
 _ALSO = {  # the same value in the unit in which it is usually told
     "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
     "rad/s": lambda value: f" ({value / (2.0 * pi):.3g} Hz)",
+    "m^3/cycle": lambda value: f" ({_road_class(value)})",
 }
+
+
+def _road_class(roughness: float) -> str:
+    """Where a road lies among the classes of ISO 8608."""
+    found = Road(roughness, speed=1.0).iso8608_class
+    mean = isclose(roughness, found.roughness, rel_tol=1e-9)
+    return f"{'mean of' if mean else 'in'} class {found.letter} of ISO 8608"
 
 
 @dataclass(frozen=True)
@@ -74,6 +84,24 @@ def element_rows(study: Study) -> list[tuple[str, str, str]]:
     return [(name, element.key, _told(study, name)) for name, element in study.elements.items()]
 
 
+def further_rows(study: Study) -> list[tuple[str, str]]:
+    """What is asked beyond the least value of each index: limits, a trade-off, tolerances, budgets."""
+    spread = [f"{label} ± {100.0 * part:.4g} %" for label, part in study.tolerance.items()]
+    given = {
+        "Limits": [f"{spoken(limit.words)} {_given(study, limit.value, limit.unit)}" for limit in study.limits],
+        "Trade-off": [" against ".join(map(spoken, study.trade_off))] if study.trade_off else [],
+        "Tolerances": spread,
+        "Best at": [f"the {100.0 * study.quantile:.4g} % quantile"] if study.quantile is not None else [],
+        "Budgets of": list(study.budgets),
+    }
+    return [(what, ", ".join(told)) for what, told in given.items() if told]
+
+
+def spoken(words: str) -> str:
+    """Words of a file as they are said: static-stiffness.strut is the static stiffness of strut."""
+    return words.replace("-", " ").replace(".", " of ")
+
+
 def condition_rows(study: Study) -> list[tuple[str, str, str]]:
     """The operating conditions: name or number, share of all, and the numbers that are others."""
     total, known = sum(condition.share for condition in study.conditions), places(study)
@@ -101,9 +129,9 @@ def index_rows(results: xr.Dataset) -> list[tuple[str, str]]:
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
     """How the numbers were computed, in sentences."""
-    several = len(study.evaluate) > 1
+    told = ways(study) if len(study.evaluate) > 1 else {}
     for name in study.evaluate:
-        yield f"Values{f' by {name}' if several else ''} are {words_of(name)}."
+        yield f"Values{f' {told[name]} (in files: {name})' if told else ''} are {words_of(name)}."
     yield from _of_roads(study, results)
     if study.optimise is None:
         yield "Every layout was evaluated as it is given; nothing was optimised."
@@ -116,9 +144,11 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
             "searches that ended at the best value found."
         )
         if not is_blind(study.optimise):
-            yield f"What was made smallest is the value by {study.optimise}: {words_of(study.optimise)}."
+            what = brief_words_of(study.optimise)
+            yield f"What was made smallest is the value by {what}: {words_of(study.optimise)}."
     if study.limits:
-        yield f"Every design keeps these limits: {'; '.join(limit.label for limit in study.limits)}."
+        limits = "; ".join(f"{spoken(limit.words)} {_given(study, limit.value, limit.unit)}" for limit in study.limits)
+        yield f"Every design has to keep these limits: {limits}."
     if study.conditions:
         how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
         yield f"An index is its {how}; limits hold in each. Frequency responses are those of the vehicle as it stands."

@@ -31,6 +31,7 @@ from inerter.figures.labels import (
     swept_words,
     titled,
     typeset,
+    way,
     with_unit,
 )
 from inerter.files.study.running import DATASET, SUMMARY
@@ -100,7 +101,7 @@ def sweep_tables(results: xr.Dataset) -> list[Table]:
     if len(methods(results)) < 2:
         return [_sweep_table(one_method(results), index) for index in indices(results)]
     return [
-        _sweep_table(by_method(results, method), index, f", by {method}")
+        _sweep_table(by_method(results, method), index, f", {way(results, method)}")
         for index in indices(results)
         for method in methods(results)
     ]

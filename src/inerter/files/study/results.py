@@ -17,6 +17,7 @@ from inerter.files.study.cases import Case, Outcome, cases
 from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
 from inerter.files.study.study import Study
+from inerter.files.study.ways import ways
 from inerter.methods.compare import difference_of
 from inerter.methods.method import Estimate
 from inerter.methods.registry import is_blind
@@ -201,6 +202,7 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "elements": ("layout", [_count(study, layout) for layout in study.layouts]),
         "index": list(indices),
         "method": list(study.evaluate),
+        "method_words": ("method", list(ways(study).values())),
         "other": list(indices),
         "parameter": list(parameters),
         "parameter_unit": ("parameter", list(parameters.values())),

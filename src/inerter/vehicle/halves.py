@@ -19,7 +19,34 @@ def half_of(mechanism: Mechanism) -> Mechanism:
     """
     if not mechanism.mirror or not _is_its_image(mechanism):
         return mechanism
-    follows: dict[str, Port] = {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror}
+    return _folded(mechanism, {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror})
+
+
+def other_half_of(mechanism: Mechanism) -> Mechanism:
+    """What moves where the right side moves against the left, on roads that do so too, if both sides are alike; else
+    the mechanism itself.
+
+    What is its own image lies still, and what turns round moves. Tyres of the right are turned over, onto the roads of
+    the left.
+    """
+    merged = mechanism.on_one_track()
+    if not mechanism.mirror or any(road.track != "left" for road in merged.roads) or not _is_its_image(merged):
+        return mechanism
+    follows: dict[str, Port] = {b: {a: -1.0} for a, b in mechanism.mirror if a != b}
+    moved = {a for a, _ in mechanism.mirror}
+    follows |= {c.name: {} for c in mechanism.coordinates if c.name not in {*moved, *follows}}
+    half = _folded(replace(mechanism, tyres=merged.tyres, roads=merged.roads), follows)
+    if half.mirror:
+        return mechanism
+    turned = (
+        one if one.road == own.road else replace(one, port={name: -lever for name, lever in one.port.items()})
+        for one, own in zip(half.tyres, mechanism.tyres, strict=True)
+    )
+    return replace(half, tyres=tuple(turned))
+
+
+def _folded(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
+    """The mechanism whose coordinates follow others so; itself if a mount that nothing moves then has a free value."""
     doubled = {a for a, b in mechanism.mirror if a != b}
 
     def folded(port: Port) -> Port:

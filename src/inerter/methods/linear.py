@@ -114,14 +114,16 @@ class LinearProblem:
         return replace(self, question=question, unfiltered=descriptor)
 
     def of_source(self, source: str) -> LinearProblem:
-        """The problem with one of its sources alone, of half the mechanism where that moves as the whole does."""
+        """The problem with one of its sources alone, of half the mechanism where that moves as the whole does.
+
+        Free values of mounts that lie still there are none of it.
+        """
         names = [output.output for output in self.question.outputs]
         mechanism = self.unfiltered.mechanism
         half = on_one_side(mechanism, [a for a in self.question.arrivals(mechanism) if a.source == source])
         if half is not None:
             described = describe(half[0], inputs_of(half[1]), names)
-            if list(described.free) == list(self.unfiltered.free):
-                return replace(self, unfiltered=fed(described, half[1]), arrivals=tuple(columns_of(half[1])))
+            return replace(self, unfiltered=fed(described, half[1]), arrivals=tuple(columns_of(half[1])))
         d, chosen = self.unfiltered, [i for i, of in enumerate(self.sources) if of == source]
         S, R, F, Y_eta, Y_x, Y_u = d.sizes
         descriptor = replace(

@@ -8,7 +8,7 @@ from dataclasses import replace
 from inerter.networks.elements.roles import Linear
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
-from inerter.vehicle.halves import half_of, other_half_of
+from inerter.vehicle.halves import alike_half, opposed_half
 from inerter.vehicle.mechanism import Mechanism
 
 
@@ -26,7 +26,7 @@ def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mech
     if len(signs) != 1 or signs == {0.0}:
         return None
     alike = signs == {1.0}
-    half = half_of(merged) if alike else other_half_of(mechanism)
+    half = alike_half(merged) if alike else opposed_half(mechanism)
     if len(half.coordinates) == len(mechanism.coordinates):
         return None
     arriving = tuple(at[road.name] for road in half.roads)

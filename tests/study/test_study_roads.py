@@ -18,7 +18,9 @@ from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import write_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.checking import study_notes
+from inerter.files.study.conditions import condition_of
 from inerter.files.study.loading import load_study
+from inerter.files.study.results import dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.schema import study_schema
 from inerter.files.study.study import Study
@@ -41,8 +43,8 @@ track_rear = "1.5 m"
 """
 OWN = 'model = "mechanism"\n[vehicle.coordinates]\nbody = "250 kg"\nwheel = "35 kg"\n' + (
     "[vehicle.struts]\nstrut = { upper = { body = 1 }, lower = { wheel = 1 } }\n"
-    '[vehicle.tyres]\nleft = { port = { wheel = 1 }, road = "left", network = "k" }\n'
-    'right = { port = { wheel = 1 }, road = "right", network = "k" }\n'
+    '[vehicle.tyres]\nfirst = { port = { wheel = 1 }, road = "left", network = "k" }\n'
+    'second = { port = { wheel = 1 }, road = "right", network = "k" }\n'
     '[vehicle.roads]\nleft = { track = "left" }\nright = {}\n'
     "[vehicle.measures]\ncomfort = { body_acceleration = 1 }\n"
 )
@@ -135,10 +137,8 @@ def test_numbers_of_a_coherence_are_swept_and_vary_between_conditions(load, key,
     make = {"track": it.Coherence.isotropic, "wavenumber": it.Coherence.first_order}[key]
     assert [swept.at([v]).road.coherence for v in (1.0, other)] == [make(1.0), make(other)]
     more = f'[[conditions]]\n[[conditions]]\n"road.coherence.{key}" = "{other} {unit}"\nroad.speed = "20 m/s"\n'
-    first, second = (
-        one.of(it.RideComfort(it.Road(5e-7, 25.0, coherence=FORMS[form]))).road
-        for one in load(f"{ROUGH}\ncoherence = {{ {form} }}", vehicle=CAR, more=more).asked("J1", "S1").conditions
-    )
+    study = load(f"{ROUGH}\ncoherence = {{ {form} }}", vehicle=CAR, more=more)
+    first, second = (condition_of(study, one).of(study.index("J1")).road for one in study.conditions)
     assert (first.coherence, first.speed) == (FORMS[form], 25.0)
     assert (second.coherence, second.speed) == (make(other), 20.0)
 
@@ -168,7 +168,7 @@ def test_a_profile_that_has_changed_is_another_study(load, tmp_path):
     assert run_study(load(**text), folder, resume=True).computed == 0
     before = (folder / "summary.csv").read_bytes()
     write_profile(tmp_path / "road.csv", 1.001 * heights(1), heights(2))
-    with pytest.raises(StudyError, match="journal"):
+    with pytest.raises(StudyError, match="another study"):
         run_study(load(**text), folder, resume=True)
     assert (folder / "summary.csv").read_bytes() == before
 
@@ -203,18 +203,30 @@ def test_a_waviness_that_is_not_two_is_told_first(load, tmp_path, waviness, belo
     (note,) = study_notes(study)[:1]
     assert f"has the waviness {study.line.waviness:.2f}" in note
     assert study.line.waviness == pytest.approx(waviness, abs=0.1)
-    first = answers(run_study(study, tmp_path / "results").data, study)[0]
-    assert first.startswith("Beware") == bool(below)
-    assert below in first
+    warnings = list(study.line.warnings)
+    assert len(warnings) == bool(below)
     if below:  # where both lines are alike, the roughness is that of the profile
+        (first,) = warnings
+        assert below in first
         n = float(first.split("below ")[1].split()[0])
         assert 16e-6 * (n / 0.1) ** -waviness == pytest.approx(2 * study.road.roughness / n**2, rel=0.3)
 
 
+def test_a_warning_is_the_first_line_of_the_answer(load, tmp_path):
+    write_profile(tmp_path / "road.csv", heights(3, 3.1, class_of=16e-6))
+    study = load('profile = "road.csv"')
+    case = next(iter(cases(study)))
+    data = dataset(study, {case: run_case(study, case)})
+    assert answers(data, study)[0] == next(iter(study.line.warnings))
+    assert len(answers(data, study)) > 1
+
+
 def test_a_line_through_few_bands_is_told_first(load, tmp_path):
     write_profile(tmp_path / "road.csv", heights(4, points=20, spacing=1.0), spacing=1.0)
-    (first,) = load('profile = "road.csv"').line.warnings
-    assert "bands of road.csv alone" in first
+    study = load('profile = "road.csv"')
+    told = list(study.line.warnings)
+    assert f"{study.line.bands} bands of road.csv alone" in told[-1]
+    assert told == [one for one in told if one.startswith("Beware")]
 
 
 def test_what_explains_files_knows_roads():
@@ -227,6 +239,7 @@ def test_what_explains_files_knows_roads():
 
 # --- what is said about a bad one ---
 
+RANDOM = 'kind = "multisine"\nseed = 3'
 COHERENT = f"{ROUGH}\ncoherence = "
 BAD = {
     "roughness and profile": (f'{ROUGH}\nprofile = "road.csv"', "", "road", "both roughness and profile"),
@@ -314,8 +327,8 @@ def test_the_page_reads_profiles_beside_it_alone(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("form", FORMS)
 def test_a_simulation_drives_over_both_tracks(tmp_path, form):
-    request = simulation(tmp_path, f"{COHERENT}{{ {form} }}", 'kind = "multisine"\nseed = 3')
-    expected = it.two_tracks(it.Road(5e-7, 25.0, coherence=FORMS[form]), seed=3)
+    request = simulation(tmp_path, f"{COHERENT}{{ {form} }}", f'{RANDOM}\nlowest = "1 Hz"\nhighest = "30 Hz"')
+    expected = it.two_tracks(it.Road(5e-7, 25.0, coherence=FORMS[form]), 3, 1.0, 30.0)
     assert_same(request.signals(), expected)
     again = tmp_path / "again.toml"
     again.write_text(write_simulation(request), encoding="utf-8")

@@ -65,6 +65,23 @@ def judged(data: xr.Dataset, methods: Sequence[str] = ("norm", "expected-value")
     return data.assign(improvement_error=data["standard_error"] * 0.0 + 0.31)
 
 
+def limited(data: xr.Dataset, active: np.ndarray, missed: np.ndarray) -> xr.Dataset:
+    """The same results within two limits: where each holds the design back, and where no design keeps them.
+
+    `missed` has the dimensions of the status, and `active` one more.
+    """
+    dims, limits = data["status"].dims, ["suspension-travel at most 9 mm", "tyre-load at most 1.3 kN"]
+    size = np.where(active | missed[..., None], 1.0, 0.8) * np.where(missed[..., None], 1.2, 1.0)
+    data = data.assign_coords(limit=limits, limit_unit=("limit", ["m", "N"]))
+    data = data.assign(
+        limit_value=((*dims, "limit"), size * [9e-3, 1300.0]),
+        limit_active=((*dims, "limit"), active | missed[..., None]),
+        limit_cost=((*dims, "limit"), np.where(active, -0.4, 0.0)),
+        status=(dims, np.where(missed, "infeasible: no design was found that keeps the limits", "ok").astype(object)),
+    )
+    return improved(data.assign(value=data["value"].where(~data["status"].str.startswith("infeasible"))))
+
+
 def improved(data: xr.Dataset) -> xr.Dataset:
     """The same results with improvements that belong to their values."""
     base = data["value"].sel(layout=data.attrs["baseline"], drop=True)

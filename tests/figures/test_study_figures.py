@@ -69,7 +69,8 @@ def test_methods_differ_by_line_and_layouts_by_colour():
         drawn = figure.draw()
         assert figure.caption.endswith("Bands: one standard error to both sides.")
     left, right = drawn.axes
-    assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2", "S3", *METHODS]
+    words = [f"by {brief_words_of(method)}" for method in METHODS]
+    assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2", "S3", *words]
     curves = [line for line in left.lines if len(line.get_xdata())]
     assert len(curves) == 3 * len(METHODS)
     assert {line.get_linestyle() for line in curves} == {"-", "--", "-."}  # of dotted lines matplotlib says "--" too

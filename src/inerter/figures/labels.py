@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from inerter.errors import StatusKind
 from inerter.units import PURE, format_quantity, parse_quantity
 
 _POWER = re.compile(r"\^(-?\d)")
@@ -86,6 +87,20 @@ def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
     """The label of an axis of swept values: what an element is called stays as it is."""
     words = str(results[place].attrs["long_name"])
     return axis_label(words if words == place else capital(words), unit)
+
+
+def infeasible(results: xr.Dataset) -> xr.DataArray:
+    """Where no design keeps the limits."""
+    kind = StatusKind.INFEASIBLE.value
+    status = results["status"]
+    return status.copy(data=np.vectorize(lambda text: str(text).startswith(kind), otypes=[bool])(status.values))
+
+
+def held_back(results: xr.Dataset) -> xr.DataArray:
+    """Where a limit holds the best design back; nowhere in a study without limits."""
+    if "limit_active" not in results:
+        return xr.zeros_like(results["status"], dtype=bool)
+    return results["limit_active"].any("limit") & ~infeasible(results)
 
 
 def layouts(results: xr.Dataset) -> list[str]:

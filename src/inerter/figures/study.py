@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
 from inerter.figures.fronts import front_curves, pairs
@@ -18,18 +19,21 @@ from inerter.figures.labels import (
     compared,
     criteria,
     criterion_title,
+    held_back,
     index_title,
     indices,
+    infeasible,
     layouts,
     methods,
     one_method,
     swept_places,
     swept_words,
     titled,
+    way,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, styled
-from inerter.figures.sweeps import parameter_curves, sweep_curves
+from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 
 _MOST_MAPS = 3  # side by side
 _MOST_ENTRIES = 9  # of a legend below a figure of the usual height
@@ -58,7 +62,7 @@ def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:
 def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     baseline, every, results = results.attrs["baseline"], results, one_method(results)
     several = len(methods(every)) > 1
-    if compared(results):
+    if compared(results) and bool(np.isfinite(results["value"].sel(layout=compared(results))).any()):
         yield StudyFigure(
             "improvement",
             f"Improvement over {baseline}, each layout with its own best design for each index"
@@ -86,7 +90,8 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
-                f"{linear} of the designs that are best for {titled(index_title(results, index), index)}.",
+                f"{linear} of the designs that are best for {titled(index_title(results, index), index)}."
+                + _nearest(results.sel(index=index), "Of a layout that does not keep the limits, that"),
                 partial(_response, results, index),
             )
 
@@ -100,22 +105,28 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"sweep-{index}",
             f"Best {title} for each value of {element}{versus}."
             + _uncertain(results, " Bands: one standard error to both sides.")
-            + (f" Below {WORST:g} % the curves are cut." if bool((results["improvement"] < WORST).any()) else ""),
+            + (f" Below {WORST:g} % the curves are cut." if bool((results["improvement"] < WORST).any()) else "")
+            + _limits(results.sel(index=index), "Open markers" if markers_shown(results) else "", "No curve"),
             partial(_sweep, results, index),
         )
         if results.sizes["parameter"]:
+            here = results.sel(index=index)
+            at_bound, flat = here["at_bound"], here["parameter_high"] > here["parameter_low"]
             yield StudyFigure(
                 f"parameters-{index}",
-                f"Parameters that are best for {title} for each value of {element}. Open markers: at a bound. "
-                "Bands: equally good designs.",
+                f"Parameters that are best for {title} for each value of {element}."
+                + (" Open markers: at a bound." if markers_shown(results) and _any(at_bound != "") else "")
+                + (" Bands: equally good designs." if _any(flat) else "")
+                + _nearest(here, "Where no design keeps the limits, those"),
                 partial(_parameters, results, index),
             )
 
 
 def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
-    words, results = " and ".join(swept_words(results)), one_method(results)
-    baseline = results.attrs["baseline"]
+    words, every, results = " and ".join(swept_words(results)), results, one_method(results)
+    baseline, others = results.attrs["baseline"], " and ".join(way(every, name) for name in methods(every)[1:])
     for index in indices(results):
+        here = results.sel(index=index)
         title = titled(index_title(results, index), index)
         versus = f" of {baseline}, and improvement over it of every other layout" if compared(results) else ""
         yield StudyFigure(
@@ -123,7 +134,9 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"Best {title}{versus}, over {words}{by_which(results)}."
             + (f" Heavy line: as good as {baseline}." if compared(results) else "")
             + " Dots: the designs that were found; between them the map is interpolated."
-            + (" Grey: no finite value." if not bool(np.isfinite(results["value"].sel(index=index)).all()) else ""),
+            + _limits(here, "Black dots", "Grey")
+            + (" Grey: no finite value." if _any(~np.isfinite(here["value"]) & ~infeasible(here)) else "")
+            + (f" The values {others} are in summary.csv." if others else ""),
             partial(_map, results, index),
         )
         for parameter in results["parameter"].values.tolist():
@@ -131,9 +144,29 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
             if shown:
                 yield StudyFigure(
                     f"map-{parameter}-{index}",
-                    f"Best {parameter} for {title}, over {words}. Open circles: at a bound.",
+                    f"Best {parameter} for {title}, over {words}."
+                    + (" Open circles: at a bound." if _any(here["at_bound"].sel(parameter=parameter) != "") else "")
+                    + _limits(here, "Black dots", "")
+                    + _nearest(here, "Where no design keeps the limits, that"),
                     partial(_parameter_map, results, index, parameter),
                 )
+
+
+def _limits(here: xr.Dataset, held: str, missed: str) -> str:
+    """What marks designs that a limit holds back, and where no design keeps the limits, if there are any."""
+    told = [
+        (held, "a limit holds the design back", held_back(here)),
+        (missed, "no design keeps the limits", infeasible(here)),
+    ]
+    return "".join(f" {mark}: {meaning}." for mark, meaning, where in told if mark and _any(where))
+
+
+def _nearest(here: xr.Dataset, what: str) -> str:
+    return f" {what} of the design that is nearest to them." if _any(infeasible(here)) else ""
+
+
+def _any(where: ArrayLike) -> bool:
+    return bool(np.any(where))
 
 
 def _uncertain(results: xr.Dataset, sentence: str) -> str:

@@ -46,6 +46,16 @@ def sweep(
     return _results(layouts, baseline, np.asarray(stiffness, dtype=float))
 
 
+def a_map(layouts: Sequence[str] = ("S1", "S2", "S3"), baseline: str = "S1") -> xr.Dataset:
+    """Results of a study that sweeps the speed and the spring."""
+    speeds = [10.0, 20.0, 30.0, 40.0]
+    data = _results(layouts, baseline, np.array([10e3, 60e3, 120e3, 200e3]))
+    data = data.expand_dims({"road.speed": speeds}).transpose("layout", "index", "k", "road.speed", ...)
+    data["road.speed"].attrs = {"units": "m/s", "long_name": "speed"}
+    faster = xr.DataArray(np.linspace(1.0, 1.4, len(speeds)), dims="road.speed")
+    return data.assign(value=(data["value"] * faster).transpose(*data["value"].dims)).copy(deep=True)
+
+
 def judged(data: xr.Dataset, methods: Sequence[str] = ("norm", "expected-value"), roads: int = 8) -> xr.Dataset:
     """The same results by several methods: the first is exact, each further one a little worse, with errors."""
     factors = xr.DataArray(1.0 + 0.01 * np.arange(len(methods)), coords={"method": list(methods)}, dims="method")

@@ -1,4 +1,4 @@
-"""What an editor would ask of pages and terminals: methods by their words, limits told wherever they hold designs back."""
+"""What an editor asks of pages and terminals: methods by their words, limits told wherever they hold designs back."""
 
 import re
 from dataclasses import replace
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic import LONG, designs, judged, limited, sweep
+from synthetic import LONG, a_map, designs, judged, limited, sweep
 
 from inerter.figures.study import study_figures
 from inerter.figures.style import styled
@@ -26,15 +26,6 @@ from inerter.signals.road import ROAD_CLASSES
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KEYS = re.compile("|".join(rf"\b{key}\b" for key in METHODS))  # "norms" is another word
 LIMITS = (StudyLimit("suspension-travel", "at_most", 9e-3, "m"), StudyLimit("tyre-load", "at_most", 1300.0, "N"))
-
-
-def a_map(layouts=("S1", "S2", "S3")):
-    """Results over two swept values."""
-    speeds = [10.0, 20.0, 30.0, 40.0]
-    data = sweep(layouts).expand_dims({"road.speed": speeds}, axis=3)
-    data["road.speed"].attrs = {"units": "m/s", "long_name": "speed"}
-    values = data["value"] * np.linspace(1.0, 1.4, len(speeds)).reshape(1, 1, 1, -1)
-    return data.assign_coords(data.coords).assign(value=values)
 
 
 @pytest.fixture(scope="module")
@@ -173,3 +164,26 @@ def test_a_road_is_told_with_its_class(study, letter, factor):
     roughness = ROAD_CLASSES[letter].roughness * factor
     told = dict(vehicle_rows(replace(study, road=replace(study.road, roughness=roughness))))["Road roughness"]
     assert told.endswith(f"({'mean of' if factor == 1.0 else 'in'} class {letter} of ISO 8608)")
+
+
+def test_two_indices_of_one_kind_are_told_apart_in_the_answer():
+    results = designs().assign_coords(
+        index=["comfort", "whole-body-motion", "force-of-c"],
+        index_title=("index", ["ride comfort", "ride comfort", "force of an element"]),
+    )
+    for data in (results, results.expand_dims(k=[1.0]).transpose("layout", "index", "k", ...)):
+        if "k" in data.dims:
+            data["k"].attrs = {"units": "N/m", "long_name": "k"}
+        told = [sentence.removeprefix("Best ") for sentence in headlines(data)]
+        assert told[0].startswith(("ride comfort:", "ride comfort compared"))
+        assert told[1].startswith("ride comfort (whole-body-motion)")
+        assert told[2].startswith("force of an element (force-of-c)")
+
+
+@pytest.mark.parametrize("worst", [-150.0, -99.0, -np.inf])
+def test_a_caption_says_that_something_is_cut_where_it_is(worst):
+    for make, kind in ((designs, "improvement"), (sweep, "sweep")):
+        data = make()
+        data["improvement"].loc[{"layout": "S3", "index": "J3"}] = worst
+        cut = {figure.name: " cut." in figure.caption for figure in study_figures(data) if kind in figure.name}
+        assert cut == {name: worst == -150.0 and name in ("improvement", "sweep-J3") for name in cut}

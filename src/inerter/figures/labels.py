@@ -19,6 +19,7 @@ _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
+WIDE_RANGE = 1.01  # of equally good values, the highest over the lowest, from which on it is told
 NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -159,7 +160,7 @@ def flat_range(entry: xr.Dataset) -> str:
     """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
-    return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > 1.01 * low else ""
+    return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > WIDE_RANGE * low else ""
 
 
 def capital(text: str) -> str:

@@ -83,7 +83,7 @@ def parameter_maps(results: xr.Dataset, index: str, parameter: str, axes: Sequen
         _draw(row, numbers, ax, _sequential(numbers), label)
         x, y = _places(data)
         held = np.argwhere(row["at_bound"].values != "")
-        ax.plot(x[held[:, 0]], y[held[:, 1]], linestyle="", marker="o", markersize=4.5, **_OPEN)
+        _mark(ax, x[held[:, 0]], y[held[:, 1]], markersize=4.5, **_OPEN)
         ax.set_title(name)
     return axes
 
@@ -132,14 +132,20 @@ def _draw(data: xr.Dataset, numbers: Array, ax: Axes, look: dict[str, Any], labe
     bands = ax.contourf(x, y, shown, **look)
     bands.set_edgecolor("face")  # no hairlines between bands where the page is printed
     if numbers.size <= _MOST_DOTS:
-        ax.plot(*(grid.ravel() for grid in np.meshgrid(x, y)), linestyle="", marker="o", markersize=2.0, **_OPEN)
+        _mark(ax, *(grid.ravel() for grid in np.meshgrid(x, y)), markersize=2.0, **_OPEN)
         held = np.argwhere(held_back(data).values)
-        ax.plot(x[held[:, 0]], y[held[:, 1]], linestyle="", marker="o", markersize=2.4, color="black", clip_on=False)
+        _mark(ax, x[held[:, 0]], y[held[:, 1]], markersize=2.4, color="black", clip_on=False)
     plain = FuncFormatter(lambda value, _: typeset(f"{value:.6g}"))
     bar = ax.figure.colorbar(bands, ax=ax, location="bottom", fraction=0.06, pad=0.02, format=plain)
     bar.set_label(label.replace("\n", " "))
     bar.ax.locator_params(nbins=5)
     _label(data, ax, x, y)
+
+
+def _mark(ax: Axes, x: Array, y: Array, **look: Any) -> None:
+    """Markers over the edge of a map too; without any there is nothing to draw, for which a layout has no room."""
+    if x.size:
+        ax.plot(x, y, linestyle="", marker="o", **look)
 
 
 def _draw_zero(data: xr.Dataset, numbers: Array, ax: Axes) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
 from inerter.figures.fronts import front_curves, pairs
 from inerter.figures.labels import (
+    WIDE_RANGE,
     by_which,
     compared,
     criteria,
@@ -68,7 +69,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"Improvement over {baseline}, each layout with its own best design for each index"
             + f"{by_which(results)}."
             + _uncertain(results, " Bars with caps: one standard error.")
-            + (" Bars with a triangle are cut." if bool((results["improvement"] < WORST).any()) else ""),
+            + (" Bars with a triangle are cut." if _any(_cut(results)) else ""),
             partial(_improvement, results),
         )
     if compared(results) and several:
@@ -99,19 +100,19 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
 def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
     (element,), baseline = swept_words(results), results.attrs["baseline"]
     for index in indices(results):
+        here = results.sel(index=index)
         title = titled(index_title(results, index), index)
         versus = f", and improvement over the best {baseline} of the same {element}" if compared(results) else ""
         yield StudyFigure(
             f"sweep-{index}",
             f"Best {title} for each value of {element}{versus}."
             + _uncertain(results, " Bands: one standard error to both sides.")
-            + (f" Below {WORST:g} % the curves are cut." if bool((results["improvement"] < WORST).any()) else "")
-            + _limits(results.sel(index=index), "Open markers" if markers_shown(results) else "", "No curve"),
+            + (f" Below {WORST:g} % the curves are cut." if _any(_cut(here)) else "")
+            + _limits(here, "Open markers" if markers_shown(results) else "", "No curve"),
             partial(_sweep, results, index),
         )
         if results.sizes["parameter"]:
-            here = results.sel(index=index)
-            at_bound, flat = here["at_bound"], here["parameter_high"] > here["parameter_low"]
+            at_bound, flat = here["at_bound"], here["parameter_high"] > WIDE_RANGE * here["parameter_low"]
             yield StudyFigure(
                 f"parameters-{index}",
                 f"Parameters that are best for {title} for each value of {element}."
@@ -162,7 +163,12 @@ def _limits(here: xr.Dataset, held: str, missed: str) -> str:
 
 
 def _nearest(here: xr.Dataset, what: str) -> str:
-    return f" {what} of the design that is nearest to them." if _any(infeasible(here)) else ""
+    return f" {what} of the design nearest to them." if _any(infeasible(here)) else ""
+
+
+def _cut(results: xr.Dataset) -> xr.DataArray:
+    """Improvements that are too bad for a figure, but numbers."""
+    return (results["improvement"] < WORST) & np.isfinite(results["improvement"])
 
 
 def _any(where: ArrayLike) -> bool:

@@ -24,6 +24,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.report.findings import Writer, listed
+from inerter.report.question import spoken
 from inerter.report.tables import Cell, Row, Table
 
 _MOST_RANGES = 3  # of swept values, in a remark
@@ -34,7 +35,7 @@ def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
     if "limit" not in results.dims:
         return
     for limit in results["limit"].values.tolist():
-        yield from wrap(f"within {limit}:", width, initial_indent="  ", subsequent_indent="    ")
+        yield from wrap(f"within {_spoken(limit)}:", width, initial_indent="  ", subsequent_indent="    ")
         for name in layouts(results):
             told = ", ".join(filter(None, _told(_entry(results, name, index, limit), index)))
             yield from wrap(f"{name}: {told}", width, initial_indent="    ", subsequent_indent="      ")
@@ -64,8 +65,14 @@ def _table(results: xr.Dataset, index: str) -> Table:
     caption = f"Limits of the designs that are best for {titled(index_title(results, index), index)}"
     over = f", over {' and '.join(swept_words(results))}" if swept else ""
     return Table(
-        f"{caption}{over}", ["Layout", *map(typeset, limits), *(["No design keeps all"] if swept else [])], rows
+        f"{caption}{over}", ["Layout", *map(_spoken, limits), *(["No design keeps all"] if swept else [])], rows
     )
+
+
+def _spoken(limit: str) -> str:
+    """A limit as it is said: its first word is a name of the file."""
+    name, space, value = limit.partition(" ")
+    return f"{spoken(name)}{space}{typeset(value)}"
 
 
 def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = None) -> xr.Dataset:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, log10
 from textwrap import fill
@@ -156,11 +157,28 @@ def criterion_unit(results: xr.Dataset, name: str) -> str:
     return str(results["criterion_unit"].sel(criterion=name).item())
 
 
+def which_front(results: xr.Dataset) -> str:
+    """Words for titles: by which of several methods the fronts are."""
+    words = results["front_value"].attrs.get("method_words", "")
+    return f", {words}" if words else ""
+
+
+def trade_off_title(results: xr.Dataset) -> str:
+    """Between which indices the trade-off of the study is, and by which of several methods."""
+    titles = [criterion_title(results, name) for name in criteria(results)]
+    return f"Trade-off between {listed(titles)}{which_front(results)}"
+
+
 def flat_range(entry: xr.Dataset) -> str:
     """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
     return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > WIDE_RANGE * low else ""
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words one after another, as a sentence has them."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def capital(text: str) -> str:

@@ -19,7 +19,6 @@ from inerter.figures.labels import (
     by_which,
     compared,
     criteria,
-    criterion_title,
     held_back,
     index_title,
     indices,
@@ -30,6 +29,7 @@ from inerter.figures.labels import (
     swept_places,
     swept_words,
     titled,
+    trade_off_title,
     way,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
@@ -81,8 +81,8 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     if criteria(every) and bool(np.isfinite(every["front_value"]).any()):
         yield StudyFigure(
             "front",
-            f"Trade-off between {' and '.join(criterion_title(every, name) for name in criteria(every))}: no design of "
-            "a layout is better in all of them. Large open markers: the knee, beyond which either is bought dearly."
+            f"{trade_off_title(every)}: no design of a layout is better in all of them. Large open markers: the knee, "
+            f"beyond which {'either' if len(criteria(every)) == 2 else 'each'} is bought dearly."
             + (" Gaps: there the front leaps to another kind of design." if bool(every["front_jump"].any()) else ""),
             partial(_front, every),
         )

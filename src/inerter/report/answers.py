@@ -8,12 +8,12 @@ from math import nan
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import capital, index_title, infeasible, layouts, swept_words, with_unit
+from inerter.figures.labels import capital, index_title, infeasible, layouts, listed, swept_words, with_unit
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.report.budgets import end_of_range
-from inerter.report.findings import Telling, Writer, best_layouts, headlines, listed
+from inerter.report.findings import Telling, Writer, best_layouts, headlines
 from inerter.report.fronts import front_sentences
 from inerter.report.question import spoken
 
@@ -95,5 +95,5 @@ def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutco
             ends = [f"{end} in {index_title(results, o.index)}" for o in own if (end := end_of_range(o, write))]
             told = [f"{what}: {layout} is better than {study.baseline} {listed(ends)}."] if ends else []
             others = [found for found in own if not end_of_range(found, write)]
-            told += [f"{what}, {layout}, {index_title(results, o.index)}: {o.message}." for o in others]
+            told += [f"{what}, {layout}, {index_title(results, o.index)}: {o.message.rstrip('.')}." for o in others]
             yield " ".join(told)

@@ -20,6 +20,7 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     indices,
+    listed,
     methods,
     one_method,
     percent,
@@ -209,10 +210,6 @@ def _places(found: list[tuple[float, float]], unit: str, write: Writer) -> str:
     return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def listed(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
 def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
     title = f"Best {_called(results, index)}"
     names = best_layouts(results, index)
@@ -223,7 +220,8 @@ def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
     for method, words in ways.items():
         one = by_method(results, method) if method else results
         if not parts:
-            parts.append(f"{' '.join(filter(None, (title, words)))}: {_verdict(one, index, telling)}")
+            pause = "," if words and "," in title else ""
+            parts.append(f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_verdict(one, index, telling)}")
         elif best_layouts(one, index)[:1] == names[:1]:
             parts.append(f"{words} still {_still(one, index, names[0])}")
         else:

@@ -15,6 +15,7 @@ from inerter.figures.labels import (
     indices,
     infeasible,
     layouts,
+    listed,
     one_method,
     printed,
     swept_places,
@@ -23,7 +24,7 @@ from inerter.figures.labels import (
     typeset,
     with_unit,
 )
-from inerter.report.findings import Writer, listed
+from inerter.report.findings import Writer
 from inerter.report.question import spoken
 from inerter.report.tables import Cell, Row, Table
 

@@ -46,6 +46,16 @@ def sweep(
     return _results(layouts, baseline, np.asarray(stiffness, dtype=float))
 
 
+def a_map(layouts: Sequence[str] = ("S1", "S2", "S3"), baseline: str = "S1") -> xr.Dataset:
+    """Results of a study that sweeps the speed and the spring."""
+    speeds = [10.0, 20.0, 30.0, 40.0]
+    data = _results(layouts, baseline, np.array([10e3, 60e3, 120e3, 200e3]))
+    data = data.expand_dims({"road.speed": speeds}).transpose("layout", "index", "k", "road.speed", ...)
+    data["road.speed"].attrs = {"units": "m/s", "long_name": "speed"}
+    faster = xr.DataArray(np.linspace(1.0, 1.4, len(speeds)), dims="road.speed")
+    return data.assign(value=(data["value"] * faster).transpose(*data["value"].dims)).copy(deep=True)
+
+
 def judged(data: xr.Dataset, methods: Sequence[str] = ("norm", "expected-value"), roads: int = 8) -> xr.Dataset:
     """The same results by several methods: the first is exact, each further one a little worse, with errors."""
     factors = xr.DataArray(1.0 + 0.01 * np.arange(len(methods)), coords={"method": list(methods)}, dims="method")
@@ -63,6 +73,23 @@ def judged(data: xr.Dataset, methods: Sequence[str] = ("norm", "expected-value")
     words = [f"by {brief_words_of(method)}" for method in methods] if len(methods) > 1 else [""]
     data = data.assign_coords(method_words=("method", words))
     return data.assign(improvement_error=data["standard_error"] * 0.0 + 0.31)
+
+
+def limited(data: xr.Dataset, active: np.ndarray, missed: np.ndarray) -> xr.Dataset:
+    """The same results within two limits: where each holds the design back, and where no design keeps them.
+
+    `missed` has the dimensions of the status, and `active` one more.
+    """
+    dims, limits = data["status"].dims, ["suspension-travel at most 9 mm", "tyre-load at most 1.3 kN"]
+    size = np.where(active | missed[..., None], 1.0, 0.8) * np.where(missed[..., None], 1.2, 1.0)
+    data = data.assign_coords(limit=limits, limit_unit=("limit", ["m", "N"]))
+    data = data.assign(
+        limit_value=((*dims, "limit"), size * [9e-3, 1300.0]),
+        limit_active=((*dims, "limit"), active | missed[..., None]),
+        limit_cost=((*dims, "limit"), np.where(active, -0.4, 0.0)),
+        status=(dims, np.where(missed, "infeasible: no design was found that keeps the limits", "ok").astype(object)),
+    )
+    return improved(data.assign(value=data["value"].where(~data["status"].str.startswith("infeasible"))))
 
 
 def improved(data: xr.Dataset) -> xr.Dataset:

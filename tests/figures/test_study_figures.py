@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from matplotlib.colors import to_hex
-from synthetic import LONG, designs, improved, judged, sweep, with_value
+from synthetic import LONG, a_map, designs, improved, judged, sweep, with_value
 
 from inerter.errors import StudyError
 from inerter.figures.designs import frequency_responses, improvement_bars
 from inerter.figures.study import draw_study, study_figures
 from inerter.figures.style import new_figure, styled
 from inerter.figures.sweeps import parameter_curves, sweep_curves
+from inerter.methods.registry import brief_words_of
 
 METHODS = ["norm", "statistical-linearisation", "expected-value", "approximate-linear"]
 UNSTABLE = "unstable: the design has no finite norm"
@@ -34,6 +35,9 @@ CASES = {
     "one method with errors": judged(designs(), ["expected-value"]),
     "two methods over a sweep": judged(sweep()),
     "four methods over a sweep": judged(sweep(LONG), METHODS),
+    "map": a_map(),
+    "map with values at bounds in one layout": a_map(LONG[:5]),
+    "map of two methods": judged(a_map()),
     "nothing finite": improved(sweep().assign(value=sweep()["value"] * np.nan)),
 }
 
@@ -69,7 +73,8 @@ def test_methods_differ_by_line_and_layouts_by_colour():
         drawn = figure.draw()
         assert figure.caption.endswith("Bands: one standard error to both sides.")
     left, right = drawn.axes
-    assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2", "S3", *METHODS]
+    words = [f"by {brief_words_of(method)}" for method in METHODS]
+    assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2", "S3", *words]
     curves = [line for line in left.lines if len(line.get_xdata())]
     assert len(curves) == 3 * len(METHODS)
     assert {line.get_linestyle() for line in curves} == {"-", "--", "-."}  # of dotted lines matplotlib says "--" too

@@ -177,8 +177,8 @@ def test_both_struts_of_a_half_car_change():
     root = scipy.optimize.brentq(lambda f: same(f) - value(base, J3, Norm()), 1.0, 1e4)
     assert found.value == pytest.approx(root, rel=3e-5)
     changed = with_element(half_car(), "k", 5e4)
-    assert [next(iter(s.network.elements())).value for s in changed.struts] == [5e4, 5e4]
-    assert [t.network.value for t in changed.tyres] == [120e3, 100e3]  # tyres keep theirs
+    assert [next(iter(s.network.elements())).value for s in changed.mechanism().struts] == [5e4, 5e4]
+    assert [t.network.value for t in changed.mechanism().tyres] == [120e3, 100e3]  # tyres keep theirs
 
 
 def test_bounds_by_default_lie_about_the_present_value():

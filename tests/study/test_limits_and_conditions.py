@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -248,3 +249,18 @@ def test_limits_need_a_search(load: Callable[..., Study]) -> None:
     fixed = 'k = "20 kN/m"\nc = "1 kN s/m"\nb = "30 kg"'
     with pytest.raises(StudyError, match="nothing is optimised"):
         load('indices = ["J1"]\nsubject_to = { J3 = { at_most = "1 N" } }', elements=fixed)
+
+
+def test_a_budget_holds_over_conditions_of_the_vehicle(load: Callable[..., Study], tmp_path: Path) -> None:
+    """One condition of all the time is the study of the numbers in it."""
+    elements = 'k = "60 kN/m"\nc = "3 kN s/m"\nc2 = "6 kN s/m"\nb = "300 kg"\nf = "5 N"'
+    layouts = 'S1 = "k | c"\nS3 = "k | c2 - (b | f)"'
+    settings = 'indices = ["J1"]\nevaluate = ["statistical-linearisation"]\nbudgets = ["f"]'
+    one = '[[conditions]]\nvehicle.sprung_mass = "320 kg"\n'
+    over = run_study(load(settings, one, elements, layouts=layouts), tmp_path / "over")
+    study = load(settings, "", elements, layouts=layouts)
+    alone = run_study(replace(study, vehicle={**study.vehicle, "sprung_mass": 320.0}), tmp_path / "alone")
+    (found,), (expected,) = over.budgets, alone.budgets
+    assert found.ok
+    assert expected.ok
+    assert found.value == pytest.approx(expected.value, rel=1e-9)

@@ -48,7 +48,7 @@ def test_a_note_of_a_method_and_of_its_design_is_one(tmp_path: Path) -> None:
     (case,) = cases(study)
     data = dataset(study, {case: run_case(study, case)})
     lines = data.attrs["notes"].splitlines()
-    assert "S: norm: friction 'f' in 'strut' left out" in lines
+    assert "S: exact norms: friction 'f' in 'strut' left out" in lines
     assert len(lines) == len(set(lines)) == 2
 
 

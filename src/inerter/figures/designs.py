@@ -126,7 +126,7 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
             rotation=90 if upright else 0,
             fontsize=6.5,
         )
-    cut = values < WORST
+    cut = np.isfinite(values) & (values < WORST)
     ax.plot(places[cut], heights[cut] * 0.95, linestyle="", marker="v", color="white", markersize=4.0)
 
 

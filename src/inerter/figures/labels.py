@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, log10
 from textwrap import fill
@@ -11,6 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from inerter.errors import StatusKind
 from inerter.units import PURE, format_quantity, parse_quantity
 
 _POWER = re.compile(r"\^(-?\d)")
@@ -18,6 +20,7 @@ _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
+WIDE_RANGE = 1.01  # of equally good values, the highest over the lowest, from which on it is told
 NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -88,6 +91,20 @@ def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
     return axis_label(words if words == place else capital(words), unit)
 
 
+def infeasible(results: xr.Dataset) -> xr.DataArray:
+    """Where no design keeps the limits."""
+    kind = StatusKind.INFEASIBLE.value
+    status = results["status"]
+    return status.copy(data=np.vectorize(lambda text: str(text).startswith(kind), otypes=[bool])(status.values))
+
+
+def held_back(results: xr.Dataset) -> xr.DataArray:
+    """Where a limit holds the best design back; nowhere in a study without limits."""
+    if "limit_active" not in results:
+        return xr.zeros_like(results["status"], dtype=bool)
+    return results["limit_active"].any("limit") & ~infeasible(results)
+
+
 def layouts(results: xr.Dataset) -> list[str]:
     """Names of all layouts, the baseline (if there is one) first, the others in the order of the study."""
     names: list[str] = results["layout"].values.tolist()
@@ -140,11 +157,28 @@ def criterion_unit(results: xr.Dataset, name: str) -> str:
     return str(results["criterion_unit"].sel(criterion=name).item())
 
 
+def which_front(results: xr.Dataset) -> str:
+    """Words for titles: by which of several methods the fronts are."""
+    words = results["front_value"].attrs.get("method_words", "")
+    return f", {words}" if words else ""
+
+
+def trade_off_title(results: xr.Dataset) -> str:
+    """Between which indices the trade-off of the study is, and by which of several methods."""
+    titles = [criterion_title(results, name) for name in criteria(results)]
+    return f"Trade-off between {listed(titles)}{which_front(results)}"
+
+
 def flat_range(entry: xr.Dataset) -> str:
     """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
-    return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > 1.01 * low else ""
+    return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > WIDE_RANGE * low else ""
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words one after another, as a sentence has them."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def capital(text: str) -> str:

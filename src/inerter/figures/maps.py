@@ -17,6 +17,7 @@ from inerter.figures.labels import (
     axis_label,
     capital,
     compared,
+    held_back,
     index_title,
     index_unit,
     layouts,
@@ -53,13 +54,13 @@ def index_maps(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequenc
     values = data["value"].sel(layout=valued) * unit.factor
     label = axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit)
     for ax, name in zip(axes, valued, strict=False):
-        _draw(data, values.sel(layout=name).values, ax, _sequential(values.values), label)
+        _draw(data.sel(layout=name), values.sel(layout=name).values, ax, _sequential(values.values), label)
         ax.set_title(f"{name} (baseline)" if others else name)
     better = data["improvement"].sel(layout=others).clip(min=WORST)
     look = _diverging(better.values) if others else {}
     for ax, name in zip(axes[len(valued) :], others, strict=True):
         numbers = better.sel(layout=name).values
-        _draw(data, numbers, ax, look, IMPROVEMENT)
+        _draw(data.sel(layout=name), numbers, ax, look, IMPROVEMENT)
         _draw_zero(data, numbers, ax)
         ax.set_title(name)
     return axes
@@ -79,10 +80,10 @@ def parameter_maps(results: xr.Dataset, index: str, parameter: str, axes: Sequen
     for ax, name in zip(axes, parameter_panels(results, index, parameter), strict=True):
         row = data.sel(layout=name)
         numbers = row["parameter_value"].values * unit.factor
-        _draw(data, numbers, ax, _sequential(numbers), label)
+        _draw(row, numbers, ax, _sequential(numbers), label)
         x, y = _places(data)
         held = np.argwhere(row["at_bound"].values != "")
-        ax.plot(x[held[:, 0]], y[held[:, 1]], linestyle="", marker="o", markersize=4.5, **_OPEN)
+        _mark(ax, x[held[:, 0]], y[held[:, 1]], markersize=4.5, **_OPEN)
         ax.set_title(name)
     return axes
 
@@ -123,7 +124,7 @@ def _levels(numbers: Array) -> Array:
 
 
 def _draw(data: xr.Dataset, numbers: Array, ax: Axes, look: dict[str, Any], label: str) -> None:
-    """One map with its scale: bands of colour, and where designs were found."""
+    """One map of a layout with its scale: bands of colour, and where designs were found, in black at a limit."""
     x, y = _places(data)
     shown = np.ma.masked_invalid(numbers.T)
     ax.set_facecolor(_NO_VALUE)
@@ -131,12 +132,20 @@ def _draw(data: xr.Dataset, numbers: Array, ax: Axes, look: dict[str, Any], labe
     bands = ax.contourf(x, y, shown, **look)
     bands.set_edgecolor("face")  # no hairlines between bands where the page is printed
     if numbers.size <= _MOST_DOTS:
-        ax.plot(*(grid.ravel() for grid in np.meshgrid(x, y)), linestyle="", marker="o", markersize=2.0, **_OPEN)
+        _mark(ax, *(grid.ravel() for grid in np.meshgrid(x, y)), markersize=2.0, **_OPEN)
+        held = np.argwhere(held_back(data).values)
+        _mark(ax, x[held[:, 0]], y[held[:, 1]], markersize=2.4, color="black", clip_on=False)
     plain = FuncFormatter(lambda value, _: typeset(f"{value:.6g}"))
     bar = ax.figure.colorbar(bands, ax=ax, location="bottom", fraction=0.06, pad=0.02, format=plain)
     bar.set_label(label.replace("\n", " "))
     bar.ax.locator_params(nbins=5)
     _label(data, ax, x, y)
+
+
+def _mark(ax: Axes, x: Array, y: Array, **look: Any) -> None:
+    """Markers over the edge of a map too; without any there is nothing to draw, for which a layout has no room."""
+    if x.size:
+        ax.plot(x, y, linestyle="", marker="o", **look)
 
 
 def _draw_zero(data: xr.Dataset, numbers: Array, ax: Axes) -> None:

@@ -10,26 +10,31 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
 from inerter.figures.fronts import front_curves, pairs
 from inerter.figures.labels import (
+    WIDE_RANGE,
     by_which,
     compared,
     criteria,
-    criterion_title,
+    held_back,
     index_title,
     indices,
+    infeasible,
     layouts,
     methods,
     one_method,
     swept_places,
     swept_words,
     titled,
+    trade_off_title,
+    way,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, styled
-from inerter.figures.sweeps import parameter_curves, sweep_curves
+from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 
 _MOST_MAPS = 3  # side by side
 _MOST_ENTRIES = 9  # of a legend below a figure of the usual height
@@ -58,13 +63,13 @@ def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:
 def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     baseline, every, results = results.attrs["baseline"], results, one_method(results)
     several = len(methods(every)) > 1
-    if compared(results):
+    if compared(results) and bool(np.isfinite(results["value"].sel(layout=compared(results))).any()):
         yield StudyFigure(
             "improvement",
             f"Improvement over {baseline}, each layout with its own best design for each index"
             + f"{by_which(results)}."
             + _uncertain(results, " Bars with caps: one standard error.")
-            + (" Bars with a triangle are cut." if bool((results["improvement"] < WORST).any()) else ""),
+            + (" Bars with a triangle are cut." if _any(_cut(results)) else ""),
             partial(_improvement, results),
         )
     if compared(results) and several:
@@ -76,8 +81,8 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     if criteria(every) and bool(np.isfinite(every["front_value"]).any()):
         yield StudyFigure(
             "front",
-            f"Trade-off between {' and '.join(criterion_title(every, name) for name in criteria(every))}: no design of "
-            "a layout is better in all of them. Large open markers: the knee, beyond which either is bought dearly."
+            f"{trade_off_title(every)}: no design of a layout is better in all of them. Large open markers: the knee, "
+            f"beyond which {'either' if len(criteria(every)) == 2 else 'each'} is bought dearly."
             + (" Gaps: there the front leaps to another kind of design." if bool(every["front_jump"].any()) else ""),
             partial(_front, every),
         )
@@ -86,7 +91,8 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
-                f"{linear} of the designs that are best for {titled(index_title(results, index), index)}.",
+                f"{linear} of the designs that are best for {titled(index_title(results, index), index)}."
+                + _nearest(results.sel(index=index), "Of a layout that does not keep the limits, that"),
                 partial(_response, results, index),
             )
 
@@ -94,28 +100,34 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
 def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
     (element,), baseline = swept_words(results), results.attrs["baseline"]
     for index in indices(results):
+        here = results.sel(index=index)
         title = titled(index_title(results, index), index)
         versus = f", and improvement over the best {baseline} of the same {element}" if compared(results) else ""
         yield StudyFigure(
             f"sweep-{index}",
             f"Best {title} for each value of {element}{versus}."
             + _uncertain(results, " Bands: one standard error to both sides.")
-            + (f" Below {WORST:g} % the curves are cut." if bool((results["improvement"] < WORST).any()) else ""),
+            + (f" Below {WORST:g} % the curves are cut." if _any(_cut(here)) else "")
+            + _limits(here, "Open markers" if markers_shown(results) else "", "No curve"),
             partial(_sweep, results, index),
         )
         if results.sizes["parameter"]:
+            at_bound, flat = here["at_bound"], here["parameter_high"] > WIDE_RANGE * here["parameter_low"]
             yield StudyFigure(
                 f"parameters-{index}",
-                f"Parameters that are best for {title} for each value of {element}. Open markers: at a bound. "
-                "Bands: equally good designs.",
+                f"Parameters that are best for {title} for each value of {element}."
+                + (" Open markers: at a bound." if markers_shown(results) and _any(at_bound != "") else "")
+                + (" Bands: equally good designs." if _any(flat) else "")
+                + _nearest(here, "Where no design keeps the limits, those"),
                 partial(_parameters, results, index),
             )
 
 
 def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
-    words, results = " and ".join(swept_words(results)), one_method(results)
-    baseline = results.attrs["baseline"]
+    words, every, results = " and ".join(swept_words(results)), results, one_method(results)
+    baseline, others = results.attrs["baseline"], " and ".join(way(every, name) for name in methods(every)[1:])
     for index in indices(results):
+        here = results.sel(index=index)
         title = titled(index_title(results, index), index)
         versus = f" of {baseline}, and improvement over it of every other layout" if compared(results) else ""
         yield StudyFigure(
@@ -123,7 +135,9 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"Best {title}{versus}, over {words}{by_which(results)}."
             + (f" Heavy line: as good as {baseline}." if compared(results) else "")
             + " Dots: the designs that were found; between them the map is interpolated."
-            + (" Grey: no finite value." if not bool(np.isfinite(results["value"].sel(index=index)).all()) else ""),
+            + _limits(here, "Black dots", "Grey")
+            + (" Grey: no finite value." if _any(~np.isfinite(here["value"]) & ~infeasible(here)) else "")
+            + (f" The values {others} are in summary.csv." if others else ""),
             partial(_map, results, index),
         )
         for parameter in results["parameter"].values.tolist():
@@ -131,9 +145,34 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
             if shown:
                 yield StudyFigure(
                     f"map-{parameter}-{index}",
-                    f"Best {parameter} for {title}, over {words}. Open circles: at a bound.",
+                    f"Best {parameter} for {title}, over {words}."
+                    + (" Open circles: at a bound." if _any(here["at_bound"].sel(parameter=parameter) != "") else "")
+                    + _limits(here, "Black dots", "")
+                    + _nearest(here, "Where no design keeps the limits, that"),
                     partial(_parameter_map, results, index, parameter),
                 )
+
+
+def _limits(here: xr.Dataset, held: str, missed: str) -> str:
+    """What marks designs that a limit holds back, and where no design keeps the limits, if there are any."""
+    told = [
+        (held, "a limit holds the design back", held_back(here)),
+        (missed, "no design keeps the limits", infeasible(here)),
+    ]
+    return "".join(f" {mark}: {meaning}." for mark, meaning, where in told if mark and _any(where))
+
+
+def _nearest(here: xr.Dataset, what: str) -> str:
+    return f" {what} of the design nearest to them." if _any(infeasible(here)) else ""
+
+
+def _cut(results: xr.Dataset) -> xr.DataArray:
+    """Improvements that are too bad for a figure, but numbers."""
+    return (results["improvement"] < WORST) & np.isfinite(results["improvement"])
+
+
+def _any(where: ArrayLike) -> bool:
+    return bool(np.any(where))
 
 
 def _uncertain(results: xr.Dataset, sentence: str) -> str:

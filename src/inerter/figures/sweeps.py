@@ -19,6 +19,7 @@ from inerter.figures.labels import (
     by_method,
     capital,
     compared,
+    held_back,
     index_title,
     index_unit,
     layouts,
@@ -35,6 +36,11 @@ from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_l
 Array = NDArray[np.float64]
 
 _MOST_MARKERS = 40
+
+
+def markers_shown(results: xr.Dataset) -> bool:
+    """Whether there are so few swept values that each has its marker."""
+    return results.sizes[str(swept_element(results))] <= _MOST_MARKERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,14 +65,16 @@ class _Sweep:
         marker: dict[str, Any] = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
         finite = np.where(np.isfinite(numbers), numbers, np.nan)
         ax.plot(*thinned(self.values, finite), **style.curve() | (line or {}), **marker)
-        if open_where is not None:
+        if open_where is not None and few:
             look: dict[str, Any] = {
+                **marker,
+                "marker": style.marker or "o",
                 "color": style.colour,
                 "linestyle": "",
                 "markerfacecolor": "white",
                 "zorder": style.zorder + 0.1,
             }
-            ax.plot(self.values[open_where], finite[open_where], **marker, **look)
+            ax.plot(self.values[open_where], finite[open_where], **look)
 
     def band(self, ax: Axes, layout: str, low: Array, high: Array, alpha: float) -> None:
         """What lies between two curves."""
@@ -120,7 +128,7 @@ def _curve(sweep: _Sweep, ax: Axes, layout: str, what: str, factor: float, line:
     errors = row[error].values * factor if error in row else np.zeros(0)
     if np.any(errors > 0.0):  # one standard error to both sides
         sweep.band(ax, layout, numbers - errors, numbers + errors, alpha=0.2)
-    sweep.draw(ax, layout, numbers, line=line)
+    sweep.draw(ax, layout, numbers, held_back(row).values, line)
 
 
 def parameter_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequence[Axes]:

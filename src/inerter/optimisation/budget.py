@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -17,9 +17,8 @@ from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element
-from inerter.networks.transform import map_elements
 from inerter.units import format_quantity
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.changed import mounted, with_elements
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -95,7 +94,7 @@ def budget(
     """
     check_request(design, index, method)
     check_request(baseline, index, method)
-    chosen = _elements(design.mechanism(), parameter)
+    chosen = _elements(design, parameter)
     between = _bounds(chosen, parameter, bounds)
     with running_on(executor):
         return _budget(design, baseline, index, parameter, method, chosen, between)
@@ -147,25 +146,18 @@ def _budget(
     )
 
 
-def with_element(vehicle: Vehicle, parameter: str, value: float) -> Mechanism:
-    """The vehicle's mechanism with another value (SI) of the elements of its struts that `parameter` names.
+def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
+    """The vehicle with another value (SI) of the elements of its struts that `parameter` names.
 
     Raises `DesignError` if there is none, or if they are of several kinds.
     """
-    mechanism = vehicle.mechanism()
-    chosen = {id(element) for element in _elements(mechanism, parameter)}
-
-    def change(element: Element) -> Element:
-        return element.with_value(value) if id(element) in chosen else element
-
-    return replace(
-        mechanism, struts=tuple(replace(s, network=map_elements(s.network, change)) for s in mechanism.struts)
-    )
+    chosen = {id(element) for element in _elements(vehicle, parameter)}
+    return with_elements(vehicle, lambda element: element.with_value(value) if id(element) in chosen else element)
 
 
-def _elements(mechanism: Mechanism, parameter: str) -> list[Element]:
+def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
     """The elements that a name stands for; raises `DesignError` if there is none, or if they are of several kinds."""
-    all_elements = [element for strut in mechanism.struts for element in strut.network.elements()]
+    all_elements, _ = mounted(vehicle)
     named = [e for e in all_elements if e.label == parameter]
     kind: list[Element] = [e for e in all_elements if e.may_vanish and e.key == parameter]
     chosen = named or kind
@@ -187,7 +179,7 @@ def _elements(mechanism: Mechanism, parameter: str) -> list[Element]:
 
 def _has(vehicle: Vehicle, parameter: str) -> bool:
     try:
-        return bool(_elements(vehicle.mechanism(), parameter))
+        return bool(_elements(vehicle, parameter))
     except DesignError:
         return False
 

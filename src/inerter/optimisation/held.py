@@ -65,12 +65,12 @@ def held_at(problem: Limited, design: Vehicle, method: Method, point: Array, *, 
     return tuple(found)
 
 
-def infeasible(held: Sequence[Held], parameters: Mapping[str, float]) -> Status:
-    """That no design keeps the limits, and which comes nearest."""
+def infeasible(held: Sequence[Held], parameters: Mapping[str, float], units: Mapping[str, str]) -> Status:
+    """That no design keeps the limits, and which comes nearest, with its parameters in their units."""
     missed = [one for one in held if not one.excess <= KEPT_COSTLY] or list(held)
     limits = " with ".join(one.label for one in held)
     nearest = " and ".join(f"{one.limit.of.title} {format_quantity(one.value, one.limit.of.unit)}" for one in missed)
-    at = ", ".join(f"{name} = {value:.4g}" for name, value in parameters.items())
+    at = ", ".join(f"{name} = {format_quantity(value, units[name])}" for name, value in parameters.items())
     return Status(
         StatusKind.INFEASIBLE,
         f"no design was found between the bounds that has {limits}; the nearest, at {at}, has {nearest}",

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import nan
 
+import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import capital, index_title, with_unit
+from inerter.figures.labels import capital, index_title, infeasible, layouts, listed, swept_words, with_unit
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.report.budgets import end_of_range
-from inerter.report.findings import Telling, Writer, best_layouts, headlines, listed
+from inerter.report.findings import Telling, Writer, best_layouts, headlines
 from inerter.report.fronts import front_sentences
 from inerter.report.question import spoken
+
+_SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
 
 def answers(
@@ -27,14 +30,60 @@ def answers(
         *headlines(results, Telling(write, static)),
         *front_sentences(results, write),
         *_of_budgets(results, study, budgets, write),
-        *_of_limits(study, write),
+        *_of_limits(results, study, write),
     ]
 
 
-def _of_limits(study: Study, write: Writer) -> Iterator[str]:
-    told = [f"{spoken(one.words)} {write(one.value, one.unit, nan).strip()}" for one in study.limits]
-    if told:
-        yield f"These are the best of all designs with {listed(told)}."
+def _of_limits(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str]:
+    """What the limits are, and which layouts have no design that keeps them."""
+    swept = {sweep.words for sweep in study.sweeps}
+    limits = [
+        f"{spoken(one.words)} {'what is swept' if one.words in swept else _number(one.value, one.unit, write)}"
+        for one in study.limits
+    ]
+    missed = infeasible(results)
+    if limits and bool(missed.all()):
+        yield f"No design has {listed(limits)}{_nearest(results, study, write)}."
+    elif limits:
+        none = [
+            f" Of {name} there is none{at}."
+            for name in layouts(results)
+            if (at := _missed_at(results, name)) is not None
+        ]
+        yield f"These are the best of all designs with {listed(limits)}.{''.join(none)}"
+
+
+def _missed_at(results: xr.Dataset, layout: str) -> str | None:
+    """At how many swept values no design of the layout keeps the limits; None if there is one everywhere."""
+    missed = infeasible(results).sel(layout=layout).all("index").values
+    if not missed.any():
+        return None
+    words = " and ".join(swept_words(results))
+    return "" if missed.all() else f" at {int(missed.sum())} of {missed.size} values of {words}"
+
+
+def _nearest(results: xr.Dataset, study: Study, write: Writer) -> str:
+    """The design that misses the limits least, and what it has instead; nothing over a sweep."""
+    if study.sweeps:
+        return ""
+    values = results["limit_value"].stack(design=("layout", "index")).transpose("design", "limit")
+    with np.errstate(divide="ignore"):
+        beyond = np.log(values.values / [limit.value for limit in study.limits])
+    sides = np.array([_SIDES[limit.sense] for limit in study.limits])
+    missed = np.where(sides == 0.0, np.abs(beyond), sides * beyond).max(axis=1)
+    if np.isnan(missed).all():
+        return ""
+    best = int(np.nanargmin(missed))
+    of = str(values["design"].values[best][0])
+    told = [
+        f"{spoken(limit.of)} {_number(float(value), limit.unit, write)}"
+        for limit, value in zip(study.limits, values.values[best], strict=True)
+    ]
+    return f"; the nearest, one of {of}, has {listed(told)}"
+
+
+def _number(value: float, unit: str, write: Writer) -> str:
+    return write(value, unit, nan).strip()
 
 
 def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome], write: Writer) -> Iterator[str]:
@@ -47,5 +96,5 @@ def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutco
             ends = [f"{end} in {index_title(results, o.index)}" for o in own if (end := end_of_range(o, write))]
             told = [f"{what}: {layout} is better than {study.baseline} {listed(ends)}."] if ends else []
             others = [found for found in own if not end_of_range(found, write)]
-            told += [f"{what}, {layout}, {index_title(results, o.index)}: {o.message}." for o in others]
+            told += [f"{what}, {layout}, {index_title(results, o.index)}: {o.message.rstrip('.')}." for o in others]
             yield " ".join(told)

@@ -20,15 +20,18 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     indices,
+    listed,
     methods,
     one_method,
     percent,
     swept_element,
     swept_places,
     swept_words,
+    titled,
     way,
     with_unit,
 )
+from inerter.indices.registry import INDICES
 from inerter.methods.ties import equally_least
 
 Writer = Callable[[float, str, float], str]
@@ -207,12 +210,8 @@ def _places(found: list[tuple[float, float]], unit: str, write: Writer) -> str:
     return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def listed(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
 def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
-    title = f"Best {index_title(results, index)}"
+    title = f"Best {_called(results, index)}"
     names = best_layouts(results, index)
     if not names:
         return f"{title}: {_none(results, index)}."
@@ -221,12 +220,19 @@ def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
     for method, words in ways.items():
         one = by_method(results, method) if method else results
         if not parts:
-            parts.append(f"{' '.join(filter(None, (title, words)))}: {_verdict(one, index, telling)}")
+            pause = "," if words and "," in title else ""
+            parts.append(f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_verdict(one, index, telling)}")
         elif best_layouts(one, index)[:1] == names[:1]:
             parts.append(f"{words} still {_still(one, index, names[0])}")
         else:
             parts.append(f"{words} {_verdict(one, index, telling)}")
     return f"{'; '.join(parts)}."
+
+
+def _called(results: xr.Dataset, index: str) -> str:
+    """What an index is, and which of the file's own it is where that does not say it."""
+    title = index_title(results, index)
+    return title if index in INDICES else titled(title, index)
 
 
 def _verdict(results: xr.Dataset, index: str, telling: Telling) -> str:
@@ -264,7 +270,7 @@ def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
     results, write = one_method(every), telling.write
     words = next((way(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
-    swept, title, baseline = swept_words(results), index_title(results, index), results.attrs["baseline"]
+    swept, title, baseline = swept_words(results), _called(results, index), results.attrs["baseline"]
     layouts = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
     found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name))) is not None}

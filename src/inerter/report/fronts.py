@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from textwrap import wrap
+from textwrap import TextWrapper, wrap
 
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import criteria, criterion_title, criterion_unit, layouts, printed, with_unit
+from inerter.figures.labels import (
+    criteria,
+    criterion_unit,
+    layouts,
+    listed,
+    printed,
+    trade_off_title,
+    which_front,
+    with_unit,
+)
 from inerter.report.findings import Writer
 from inerter.report.tables import Cell, Row, Table
 
@@ -21,20 +30,21 @@ def front_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[str]
     names, baseline = criteria(results), results.attrs["baseline"]
     if not names:
         return []
-    titles = " and ".join(criterion_title(results, name) for name in names)
     found = []
     for layout in layouts(results):
         knee = np.flatnonzero(results["front_knee"].sel(layout=layout).values)
         if not knee.size:
             continue
         values = results["front_value"].sel(layout=layout).values[knee[0]]
-        told = " with ".join(
-            write(float(value), criterion_unit(results, name), np.nan)
-            for name, value in zip(names, values, strict=True)
+        told = listed(
+            [
+                write(float(value), criterion_unit(results, name), np.nan)
+                for name, value in zip(names, values, strict=True)
+            ]
         )
         better = _bettered(results, layout, baseline) if baseline and layout != baseline else ""
         found.append(f"{layout} {told}{better}")
-    return [f"Trade-off between {titles}, at the knee: {'; '.join(found)}."] if found else []
+    return [f"{trade_off_title(results)}, at the knee: {'; '.join(found)}."] if found else []
 
 
 def front_lines(results: xr.Dataset, width: int) -> Iterator[str]:
@@ -43,14 +53,16 @@ def front_lines(results: xr.Dataset, width: int) -> Iterator[str]:
     if not names:
         return
     yield ""
-    yield from wrap(f"trade-off of {', '.join(names)}: designs at the ends and the knee", width)
+    by = which_front(results)
+    yield from wrap(f"trade-off of {', '.join(names)}{by}: designs at the ends and the knee", width)
     for layout in layouts(results):
         status = str(results["front_status"].sel(layout=layout).item())
         yield f"  {layout}" if status == "ok" else f"  {layout}: {status}"
         for what, point in _told_points(results, layout):
             items = [*_values(results, layout, point, with_unit), *_parameters(results, layout, point, with_unit)]
             text = ", ".join(item.replace(" ", _NO_BREAK_SPACE) for item in items)
-            lines = wrap(f"{what}: {text}", width, initial_indent="    ", subsequent_indent="      ")
+            hanging = TextWrapper(width, "    ", "      ", break_on_hyphens=False)
+            lines = hanging.wrap(f"{what}: {text}")
             yield from (line.replace(_NO_BREAK_SPACE, " ") for line in lines)
 
 
@@ -68,8 +80,7 @@ def front_tables(results: xr.Dataset) -> list[Table]:
                 zip(_own(results, layout, point), _parameters(results, layout, point, printed, bare=True), strict=True)
             )
             rows.append(Row(f"{layout}, {what}", [*cells, *(Cell(told.get(name, "–")) for name in parameters)]))
-    caption = f"Trade-off between {' and '.join(criterion_title(results, name) for name in names)}"
-    return [Table(caption, ["Design", *names, *parameters], rows)]
+    return [Table(trade_off_title(results), ["Design", *names, *parameters], rows)]
 
 
 def _told_points(results: xr.Dataset, layout: str) -> list[tuple[str, int]]:

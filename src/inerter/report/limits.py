@@ -3,59 +3,119 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import groupby
 from textwrap import wrap
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
-from inerter.errors import StatusKind
-from inerter.figures.labels import index_title, indices, layouts, one_method, swept_places, titled, with_unit
+from inerter.figures.labels import (
+    index_title,
+    indices,
+    infeasible,
+    layouts,
+    listed,
+    one_method,
+    printed,
+    swept_places,
+    swept_words,
+    titled,
+    typeset,
+    with_unit,
+)
+from inerter.report.findings import Writer
+from inerter.report.question import spoken
 from inerter.report.tables import Cell, Row, Table
+
+_MOST_RANGES = 3  # of swept values, in a remark
 
 
 def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
-    """A line for each limit and layout; nothing where there are no limits, or where something is swept."""
-    if not _has_limits(results):
+    """A line for each limit and layout; nothing where there are no limits."""
+    if "limit" not in results.dims:
         return
     for limit in results["limit"].values.tolist():
-        yield f"  within {limit}:"
+        yield from wrap(f"within {_spoken(limit)}:", width, initial_indent="  ", subsequent_indent="    ")
         for name in layouts(results):
-            told = _told(one_method(results).sel(layout=name, index=index, limit=limit), index)
+            told = ", ".join(filter(None, _told(_entry(results, name, index, limit), index)))
             yield from wrap(f"{name}: {told}", width, initial_indent="    ", subsequent_indent="      ")
+    for name in layouts(results) if swept_places(results) else ():
+        none = _where(_entry(results, name, index), _missed(_entry(results, name, index)))
+        if none[0]:
+            text = f"no {name} keeps the limits {none[0]}{f', {none[1]}' if none[1] else ''}"
+            yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
 
 
 def limit_tables(results: xr.Dataset) -> list[Table]:
-    """For each index, what is limited in each layout's best design; none where there are no limits."""
-    if not _has_limits(results):
-        return []
-    results = one_method(results)
-    return [_table(results, index) for index in indices(results)]
+    """For each index, what is limited in each layout's best design; none where there are no limits.
 
-
-def _has_limits(results: xr.Dataset) -> bool:
-    return "limit" in results.dims and not swept_places(results)
+    Over a sweep, where each limit holds the best designs back, and where no design keeps all of them.
+    """
+    return [_table(one_method(results), index) for index in indices(results)] if "limit" in results.dims else []
 
 
 def _table(results: xr.Dataset, index: str) -> Table:
-    limits = results["limit"].values.tolist()
+    limits, swept = results["limit"].values.tolist(), bool(swept_places(results))
     rows = []
     for name in layouts(results):
-        cells = []
-        for limit in limits:
-            value, _, cost = _told(results.sel(layout=name, index=index, limit=limit), index).partition(", ")
-            cells.append(Cell(value, cost.replace(" -", " \N{MINUS SIGN}")))
-        rows.append(Row(name, cells))
+        told = [_told(_entry(results, name, index, limit), index, printed) for limit in limits]
+        entry = _entry(results, name, index)
+        told += [_where(entry, _missed(entry), printed)] if swept else []
+        rows.append(Row(name, [Cell(text or "–", remark.replace(" -", " \N{MINUS SIGN}")) for text, remark in told]))
     caption = f"Limits of the designs that are best for {titled(index_title(results, index), index)}"
-    return Table(caption, ["Layout", *limits], rows)
+    over = f", over {' and '.join(swept_words(results))}" if swept else ""
+    return Table(
+        f"{caption}{over}", ["Layout", *map(_spoken, limits), *(["No design keeps all"] if swept else [])], rows
+    )
 
 
-def _told(entry: xr.Dataset, index: str) -> str:
-    """What is limited in a design, whether its limit holds it back, and what that costs."""
+def _spoken(limit: str) -> str:
+    """A limit as it is said: its first word is a name of the file."""
+    name, space, value = limit.partition(" ")
+    return f"{spoken(name)}{space}{typeset(value)}"
+
+
+def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = None) -> xr.Dataset:
+    where = {"layout": layout, "index": index} | ({} if limit is None else {"limit": limit})
+    return one_method(results).sel(where)
+
+
+def _told(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str, str]:
+    """What is limited in a design, and whether its limit holds it back and what that costs; over a sweep, where."""
+    if swept_places(entry):
+        where, which = _where(entry, entry["limit_active"].values & ~_missed(entry), write)
+        return (f"at its limit {where}", which) if where else ("nowhere at its limit", "")
     value, cost = float(entry["limit_value"]), float(entry["limit_cost"])
     text = with_unit(value, str(entry["limit_unit"].item())).strip()
-    if str(entry["status"].item()).startswith(StatusKind.INFEASIBLE.value):
-        return f"{text}, the nearest design"
+    if bool(infeasible(entry)):
+        return text, "the nearest design"
     if not bool(entry["limit_active"]):
-        return text
-    told = f"{text}, at its limit"
-    return told if np.isnan(cost) else f"{told}: 1 % more of it changes {index} by {cost:+.2g} %"
+        return text, ""
+    return text, "at its limit" + ("" if np.isnan(cost) else f": 1 % more of it changes {index} by {cost:+.2g} %")
+
+
+def _missed(entry: xr.Dataset) -> NDArray[np.bool_]:
+    return np.asarray(infeasible(entry).values)
+
+
+def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_unit) -> tuple[str, str]:
+    """At how many swept values, or points of a map, and the ranges of those values; empty texts for none."""
+    if not wanted.any():
+        return "", ""
+    count, size = int(wanted.sum()), wanted.size
+    places = swept_places(entry)
+    if len(places) > 1:
+        return f"at {'all' if count == size else f'{count} of'} {size} points", ""
+    (words,), (place,) = swept_words(entry), places
+    if count == size:
+        return f"at all {size} values", ""
+    order = np.argsort(entry[place].values)
+    runs = [
+        [i for _, i in run]
+        for holds, run in groupby(zip(wanted[order], order, strict=True), lambda one: one[0])
+        if holds
+    ]
+    ends = [[float(entry[place][i]) for i in dict.fromkeys((run[0], run[-1]))] for run in runs]
+    told = [" to ".join(write(end, entry[place].attrs["units"], np.nan) for end in pair) for pair in ends]
+    return f"at {count} of {size} values", f"{words} = {listed(told)}" if len(told) <= _MOST_RANGES else ""

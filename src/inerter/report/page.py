@@ -88,6 +88,7 @@ def report(
             searched=study.optimise is not None,
             headlines=[printed_sentence(sentence) for sentence in answers(results, study, budgets, printed)],
             vehicle=vehicle_rows(study),
+            on_road=study.road is not None,
             elements=element_rows(study),
             further=further_rows(study),
             layouts=layout_rows(study),

@@ -152,7 +152,8 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
     if study.conditions:
         how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
         yield f"An index is its {how}; limits hold in each. Frequency responses are those of the vehicle as it stands."
-    yield CONVENTIONS[study.conventions].sentence
+    if study.road is not None:
+        yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."
 
 

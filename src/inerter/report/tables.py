@@ -18,6 +18,7 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     indices,
+    infeasible,
     layouts,
     measured,
     methods,
@@ -168,7 +169,9 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
         values = [float(design["other_value"].sel(other=other)) for other in others]
         units = [index_unit(results, other) for other in others]
         texts = [printed(value, unit) for value, unit in zip(values, units, strict=True)]
-        rows.append(Row(name, [Cell(t, strong=other == index) for t, other in zip(texts, others, strict=True)]))
+        missed = "misses the limits" if bool(infeasible(design)) else ""
+        own = [other == index for other in others]
+        rows.append(Row(name, [Cell(t, missed * is_own, strong=is_own) for t, is_own in zip(texts, own, strict=True)]))
     return Table(f"Designs that are best for {_title(results, index)}{by_which(results)}", ["Layout", *others], rows)
 
 

@@ -32,7 +32,7 @@ from inerter.report.limits import limit_lines
 
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
-_MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?")
+_MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?|\d %")
 _LONGEST_NAME = 20  # a longer name of a layout has a line of its own
 
 

@@ -16,7 +16,7 @@ from inerter.files.study.limits import kept, limits_in
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.note import after, parts_of
-from inerter.methods.registry import is_blind
+from inerter.methods.registry import brief_words_of, is_blind
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.systems.descriptor import is_held_by_springs
@@ -168,8 +168,8 @@ def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
 
 
 def _prefix(study: Study, method: str) -> str:
-    """The name of the method before its note, where there are several."""
-    return f"{method}: " if len(study.methods) > 1 else ""
+    """What the method is, before its note, where there are several."""
+    return f"{brief_words_of(method)}: " if len(study.methods) > 1 else ""
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
@@ -208,7 +208,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
-    bad = next((f"{method}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
+    bad = next((f"{brief_words_of(method)}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
     left_out = design_notes(study, vehicle.mechanism())
     notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
     notes += [parts_of(note) for note in left_out]

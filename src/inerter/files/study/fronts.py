@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
+from inerter.files.study.ways import ways
 from inerter.networks.elements import Free
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
@@ -140,8 +141,10 @@ def with_fronts(study: Study, data: xr.Dataset, found: Sequence[FrontOutcome]) -
         criterion_title=("criterion", [index.title for index in indices.values()]),
         criterion_unit=("criterion", [study.unit(name) for name in indices]),
     )
+    by = ways(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
+    told = {"long_name": "index at a point of the front", "method_words": by}
     return labelled.assign(
-        front_value=(("layout", "front_point", "criterion"), values, {"long_name": "index at a point of the front"}),
+        front_value=(("layout", "front_point", "criterion"), values, told),
         front_parameter=(("layout", "front_point", "parameter"), designs, {"long_name": "parameter at that point"}),
         front_knee=(("layout", "front_point"), knees, {"long_name": "whether it is the knee"}),
         front_jump=(("layout", "front_point"), leaps, {"long_name": "whether the front leaps after it"}),

@@ -210,7 +210,8 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "index_title": ("index", [index.title for index in indices.values()]),
     }
     if study.limits:
-        coords["limit"] = [limit.label for limit in study.limits]
+        swept_words = {sweep.words for sweep in study.sweeps}
+        coords["limit"] = [f"{one.words} (swept)" if one.words in swept_words else one.label for one in study.limits]
         coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
     for sweep in study.sweeps:
         attributes = {"units": sweep.unit, "long_name": sweep.words}

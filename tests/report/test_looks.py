@@ -1,0 +1,189 @@
+"""What an editor asks of pages and terminals: methods by their words, limits told wherever they hold designs back."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic import LONG, a_map, designs, judged, limited, sweep
+
+from inerter.figures.study import study_figures
+from inerter.figures.style import styled
+from inerter.files.study.limits import StudyLimit
+from inerter.files.study.loading import load_study
+from inerter.methods.registry import METHODS
+from inerter.report.answers import answers
+from inerter.report.by_method import method_tables
+from inerter.report.findings import headlines, over_the_sweep
+from inerter.report.limits import limit_tables
+from inerter.report.page import report
+from inerter.report.question import vehicle_rows
+from inerter.report.tables import tables_of, trade_off_tables
+from inerter.report.text import WIDTH, summary_table
+from inerter.signals.road import ROAD_CLASSES
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+KEYS = re.compile("|".join(rf"\b{key}\b" for key in METHODS))  # "norms" is another word
+LIMITS = (StudyLimit("suspension-travel", "at_most", 9e-3, "m"), StudyLimit("tyre-load", "at_most", 1300.0, "N"))
+
+
+@pytest.fixture(scope="module")
+def study():
+    return load_study(EXAMPLES / "quarter-car.toml")
+
+
+@pytest.fixture(scope="module")
+def sweep_study():
+    return load_study(EXAMPLES / "stiffness-sweep.toml")
+
+
+@pytest.mark.parametrize("count", [2, 4])
+@pytest.mark.parametrize("make", [designs, sweep, a_map])
+def test_whatever_is_said_names_methods_by_their_words(make, count):
+    results = judged(make(), list(METHODS)[:count])
+    tables = [*tables_of(results), *method_tables(results)]
+    said = [
+        *(table.caption for table in tables),
+        *(text for table in tables for text in table.header),
+        *(figure.caption for figure in study_figures(results)),
+        *headlines(results),
+        *(sentence for _, sentence in over_the_sweep(results) if make is not designs),
+        summary_table(results),
+    ]
+    assert not [text for text in said if KEYS.search(text)]
+    with styled():
+        drawn = study_figures(results)[1 if make is designs else 0].draw()
+    assert not [text for legend in drawn.legends for text in legend.get_texts() if KEYS.search(text.get_text())]
+
+
+@pytest.mark.parametrize("make", [sweep, a_map])
+def test_a_figure_of_one_method_of_several_says_where_the_others_are(make):
+    (caption, *_) = [figure.caption for figure in study_figures(judged(make()))]
+    assert ("The values by simulation are in summary.csv." in caption) == (make is a_map)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("make", [sweep, a_map])
+def test_limits_over_a_sweep_are_told_by_table_terminal_and_figure(make, seed):
+    random = np.random.default_rng(seed)
+    data = make(LONG[: random.integers(1, 5)])
+    shape = data["status"].shape
+    active = random.random((*shape, 2)) < random.choice([0.0, 0.3, 1.0])
+    missed = random.random(shape) < random.choice([0.0, 0.2])
+    results = limited(data, active, missed)
+    text = summary_table(results)
+    assert all(len(line) <= WIDTH for line in text.split("\n"))
+    joined = re.sub(r"\s+", " ", text)
+    for j, table in enumerate(limit_tables(results)):
+        for i, row in enumerate(table.rows):
+            here = active[i, j].reshape(-1, 2) & ~missed[i, j].reshape(-1, 1)
+            for k, cell in enumerate(row.cells[:2]):
+                assert count_of(cell.text) == here[:, k].sum()
+                assert f"{row.label}: {cell.text}" in joined
+            assert count_of(row.cells[2].text) == missed[i, j].sum()
+    figures = [f for f in study_figures(results) if f.name in ("sweep-J1", "map-J1")]
+    mark = "Open markers" if make is sweep else "Black dots"
+    assert (f"{mark}: a limit holds the design back." in figures[0].caption) == bool(
+        (active.any(-1) & ~missed)[:, 0].any()
+    )
+    assert ("no design keeps the limits." in figures[0].caption) == bool(missed[:, 0].any())
+    with styled():
+        panels = figures[0].draw().axes
+    marks = sum(len(line.get_xdata()) for ax in panels for line in ax.lines if marked(line, make is sweep))
+    times = np.array([1 if i == 0 or make is not sweep else 2 for i in range(shape[0])])  # value and improvement
+    shown = (active.any(-1) & ~missed)[:, 0].reshape(shape[0], -1)
+    assert marks == (shown.sum(axis=1) * times).sum()
+
+
+def marked(line, opened):
+    colour = line.get_markerfacecolor()
+    return line.get_linestyle() == "None" and colour == ("white" if opened else "black")
+
+
+def count_of(text):
+    """How many values or points a cell tells."""
+    found = re.search(r"at (?:all )?(\d+)", text)
+    return int(found[1]) if found else 0
+
+
+def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study, tmp_path):
+    data = designs()
+    missed = np.ones(data["status"].shape, dtype=bool)
+    results = limited(data, np.zeros((*missed.shape, 2), dtype=bool), missed)
+    results["limit_value"].loc[{"layout": "S2", "index": "J3"}] = [9.9e-3, 1290.0]
+    told = answers(results, replace(study, limits=LIMITS))
+    assert told[-1] == (
+        "No design has suspension travel at most 9 mm and tyre load at most 1.3 kN; the nearest, one of S2, has "
+        "suspension travel 9.9 mm and tyre load 1.29 kN."
+    )
+    assert not any("best of all designs" in sentence for sentence in told)
+    assert "improvement" not in [figure.name for figure in study_figures(results)]
+    for figure in study_figures(results):
+        assert figure.caption.endswith("Of a layout that does not keep the limits, that of the design nearest to them.")
+    for table, index in zip(trade_off_tables(results), ["J1", "J3", "J5"], strict=True):
+        assert [[cell.remark for cell in row.cells] for row in table.rows] == [
+            ["misses the limits" if other == index else "" for other in ("J1", "J3", "J5")]
+        ] * 3
+
+
+@pytest.mark.parametrize("where", [[], ["S2"], ["S1", "S3"]])
+def test_layouts_that_keep_no_limit_are_named(study, sweep_study, where):
+    for make, asked in ((designs, study), (sweep, sweep_study)):
+        data = make()
+        missed = np.zeros(data["status"].shape, dtype=bool)
+        for name in where:
+            missed[["S1", "S2", "S3"].index(name)] = True
+        if make is sweep:
+            missed[..., 1:] = False
+        told = answers(limited(data, np.zeros((*missed.shape, 2), dtype=bool), missed), replace(asked, limits=LIMITS))
+        at = " at 1 of 5 values of k" if make is sweep else ""
+        assert told[-1].split(". ")[1:] == [f"Of {name} there is none{at}".rstrip(".") for name in where[:-1]] + [
+            f"Of {name} there is none{at}." for name in where[-1:]
+        ]
+
+
+def test_the_page_tells_limits_tolerances_and_budgets_where_the_question_is(study, tmp_path):
+    asked = replace(study, limits=LIMITS, tolerance={"k": 0.05, "c": 0.15}, quantile=0.95, budgets=("b",))
+    missed = np.zeros(designs()["status"].shape, dtype=bool)
+    page = report(limited(designs(), np.zeros((*missed.shape, 2), dtype=bool), missed), asked, tmp_path)
+    question = re.sub(r"<[^>]*>", " ", page.split('<h2 id="part-1">')[1].split("<h2")[0]).replace("\xa0", " ")
+    question = re.sub(r"\s+", " ", question)
+    for told in (
+        "Limits suspension travel at most 9 mm, tyre load at most 1.3 kN",
+        "Tolerances k ± 5 %, c ± 15 %",
+        "Best at the 95 % quantile",
+        "Budgets of b",
+    ):
+        assert told in question
+
+
+@pytest.mark.parametrize("letter", ROAD_CLASSES)
+@pytest.mark.parametrize("factor", [1.0, 0.6, 1.7])
+def test_a_road_is_told_with_its_class(study, letter, factor):
+    roughness = ROAD_CLASSES[letter].roughness * factor
+    told = dict(vehicle_rows(replace(study, road=replace(study.road, roughness=roughness))))["Road roughness"]
+    assert told.endswith(f"({'mean of' if factor == 1.0 else 'in'} class {letter} of ISO 8608)")
+
+
+def test_two_indices_of_one_kind_are_told_apart_in_the_answer():
+    results = designs().assign_coords(
+        index=["comfort", "whole-body-motion", "force-of-c"],
+        index_title=("index", ["ride comfort", "ride comfort", "force of an element"]),
+    )
+    for data in (results, results.expand_dims(k=[1.0]).transpose("layout", "index", "k", ...)):
+        if "k" in data.dims:
+            data["k"].attrs = {"units": "N/m", "long_name": "k"}
+        told = [sentence.removeprefix("Best ") for sentence in headlines(data)]
+        assert told[0].startswith(("ride comfort:", "ride comfort compared"))
+        assert told[1].startswith("ride comfort (whole-body-motion)")
+        assert told[2].startswith("force of an element (force-of-c)")
+
+
+@pytest.mark.parametrize("worst", [-150.0, -99.0, -np.inf])
+def test_a_caption_says_that_something_is_cut_where_it_is(worst):
+    for make, kind in ((designs, "improvement"), (sweep, "sweep")):
+        data = make()
+        data["improvement"].loc[{"layout": "S3", "index": "J3"}] = worst
+        cut = {figure.name: " cut." in figure.caption for figure in study_figures(data) if kind in figure.name}
+        assert cut == {name: worst == -150.0 and name in ("improvement", "sweep-J3") for name in cut}

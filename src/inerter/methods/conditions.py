@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, PerformanceIndexError, Status
+from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_composed, objective_of
 from inerter.methods.combined import Part, combined
@@ -210,8 +211,11 @@ def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, no
 
 def _on_other_road(value: Any, road: Road | Mapping[str, Any]) -> Any:
     """The same with another road wherever it holds one."""
-    if isinstance(value, Road):
-        return road if isinstance(road, Road) else dataclasses.replace(value, **road)
+    if isinstance(road, Road):
+        if isinstance(value, Road | MeasuredRoad):
+            return road
+    elif isinstance(value, Road):
+        return dataclasses.replace(value, **road)
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return value
     held = {f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.init}

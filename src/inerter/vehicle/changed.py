@@ -15,19 +15,21 @@ from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Stage, Vehicle, VehicleModel
 
 
-def changed(vehicle: Vehicle, values: Mapping[str, float]) -> Vehicle:
+def changed(vehicle: Vehicle, values: Mapping[str, float], *, if_there: bool = False) -> Vehicle:
     """The same vehicle with other numbers (SI), each by its name.
 
     That is a quantity of the vehicle such as `sprung_mass`, or of what stands on it, else the label of elements, else a
     coordinate of a `Mechanism`, whose mass it is.
 
-    Raises `DesignError` for a name that stands for nothing here, or for elements of several kinds.
+    Raises `DesignError` for a name that stands for nothing here, unless what is not there may be named (`if_there`), or
+    for elements of several kinds.
     """
     vehicle = opened(vehicle)
     for name, value in values.items():
         if not is_number(value):
             raise DesignError(f"The value of {name!r} must be a finite number in SI units, got {value!r}.")
-        vehicle = _one_changed(vehicle, name, float(value))
+        if not if_there or name in _known(vehicle):
+            vehicle = _one_changed(vehicle, name, float(value))
     return vehicle
 
 

@@ -155,3 +155,64 @@ def test_simulated_means_have_errors():
 def test_conditions_that_cannot_be(given, said):
     with pytest.raises(it.InerterError, match=said):
         given()
+
+
+def seated(given, mass):
+    return it.Seat(given, mass, it.Spring(12e3, "ks") | it.Damper(300.0, "cs"))
+
+
+CAR = it.QuarterCar(250.0, 35.0, 1.8e5, it.Spring(2.5e4, "k1") | it.Damper(1500.0))
+TRAIN = it.Mechanism(
+    coordinates=(it.Coordinate("sprung", 250.0), it.Coordinate("bogie", 35.0)),
+    struts=(it.Strut("strut", CAR.strut, upper={"sprung": 1.0}, lower={"bogie": 1.0}),),
+    tyres=(it.Tyre("tyre", it.Spring(1.8e5, "kt"), port={"bogie": 1.0}, road="road"),),
+    roads=(it.RoadInput("road"),),
+)
+
+
+class Given:
+    """A vehicle that says nothing of what it is made of, and makes its elements anew whenever it is asked."""
+
+    def mechanism(self):
+        return dataclasses.replace(TRAIN, tyres=(dataclasses.replace(TRAIN.tyres[0], network=it.Spring(1.8e5, "kt")),))
+
+    def free_values(self):
+        return {}
+
+    def with_values(self, values):
+        return self
+
+
+SEATED = {
+    "sprung_mass": (CAR, lambda: seated(dataclasses.replace(CAR, sprung_mass=200.0), 70.0), 200.0),
+    "tyre_stiffness": (CAR, lambda: seated(dataclasses.replace(CAR, tyre_stiffness=2e5), 70.0), 2e5),
+    "mass": (CAR, lambda: seated(CAR, 90.0), 90.0),
+    "k1": (CAR, lambda: seated(dataclasses.replace(CAR, strut=it.Spring(3e4) | it.Damper(1500.0)), 70.0), 3e4),
+    "kt": (TRAIN, lambda: seated(dataclasses.replace(CAR, tyre_stiffness=2e5), 70.0), 2e5),
+    "bogie": (TRAIN, lambda: seated(dataclasses.replace(CAR, unsprung_mass=50.0), 70.0), 50.0),
+}
+
+
+@pytest.mark.parametrize("name", SEATED)
+def test_numbers_of_a_vehicle_that_carries_a_seat(name):
+    below, other, value = SEATED[name]
+    use = it.Conditions([it.Condition(vehicle={name: value})])
+    expected = it.evaluate(other(), J1, NORM).value
+    assert it.evaluate(seated(below, 70.0), use.mean(J1), NORM).value == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("carried", [False, True])
+def test_elements_of_a_vehicle_that_makes_them_anew(carried):
+    given, same = (seated(Given(), 70.0), seated(TRAIN, 70.0)) if carried else (Given(), TRAIN)
+    use = it.Conditions([it.Condition(vehicle={"kt": 3e5})])
+    index = it.RandomResponse({"sprung_acceleration": 1.0}, ROAD)
+    expected = it.evaluate(same, use.mean(index), NORM).value
+    assert it.evaluate(given, use.mean(index), NORM).value == pytest.approx(expected, rel=1e-12)
+    scattered = [it.tolerance(one, index, NORM, spread={"kt": 0.1}, samples=16).mean for one in (given, same)]
+    assert scattered[0] == pytest.approx(scattered[1], rel=1e-12)
+
+
+def test_what_stands_for_the_tyre_of_a_model_is_not_its_name():
+    for vehicle in (CAR, seated(CAR, 70.0)):
+        with pytest.raises(it.InerterError, match="nothing named 'k' to change"):
+            it.evaluate(vehicle, it.Conditions([it.Condition(vehicle={"k": 3e5})]).mean(J1), NORM)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from inerter.fields import fields_of
 from inerter.files.common.roads import COHERENCE
 from inerter.files.common.shape import ROAD
+from inerter.files.common.ties import with_known_values
 from inerter.files.common.vehicle_shapes import SEAT
-from inerter.files.study.places import Place, number_at, place_of, with_numbers
+from inerter.files.study.places import Place, element_at, number_at, place_of, with_numbers
 from inerter.methods.conditions import Condition
+from inerter.networks.elements import Element, Tied
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
-from inerter.vehicle.seat import Seat
 
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
@@ -52,8 +54,17 @@ def what_of(study: Study, place: Place) -> tuple[str, str] | None:
 def _of_vehicle(study: Study) -> dict[str, tuple[str, str]]:
     coordinates = {f"coordinates.{name}": ("vehicle", name) for name in study.vehicle.get("coordinates", {})}
     fields = fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ()
-    seat = {f"{SEAT}.{f.key}": ("vehicle", f.name) for f in fields_of(Seat)} if SEAT in study.vehicle else {}
+    seat = {f"{SEAT}.mass": ("vehicle", "mass")} if SEAT in study.vehicle else {}
     return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates, **seat}
+
+
+def following(study: Study, numbers: Mapping[str, float]) -> dict[str, Element]:
+    """The elements whose values follow from others that have these numbers, with what they then are."""
+    changed = [(place_of(label), number) for label, number in numbers.items()]
+    there = with_known_values(with_numbers(study, changed).elements)
+    sources = {element_at(place) for place, _ in changed}
+    tied = {name: e.value.names for name, e in study.elements.items() if isinstance(e.value, Tied)}
+    return {name: there[name] for name, names in tied.items() if sources.intersection(names)}
 
 
 def condition_of(study: Study, stated: StudyCondition) -> Condition:
@@ -67,5 +78,6 @@ def condition_of(study: Study, stated: StudyCondition) -> Condition:
         assert found is not None, label
         section, name = found
         changed[section][name] = getattr(there.road, name) if section == "road" else number
+    changed["vehicle"] |= {name: float(e.value) for name, e in following(study, stated.numbers).items()}
     name = stated.name or ", ".join(f"{label} = {shown(number)}" for label, number in stated.numbers.items())
-    return Condition(stated.share, changed["vehicle"], changed["road"], name)
+    return Condition(stated.share, changed["vehicle"], changed["road"], name, if_there=True)

@@ -286,7 +286,14 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
             Field(description="What the vehicle drives on, and how fast.", examples=[ROAD_EXAMPLE]),
         ),
         layouts=(layout, Field(description="How elements are joined: | side by side, - end to end.")),
-        indices=(index, Field(default_factory=dict, description="Indices of your own: a kind, with its settings.")),
+        indices=(
+            index,
+            Field(
+                default_factory=dict,
+                description="Indices of your own: a kind, with its settings.",
+                examples=['a section [indices.comfort] with kind = "ride-comfort"'],
+            ),
+        ),
         study=(
             settings,
             Field(

@@ -259,6 +259,12 @@ BAD = {
     "track of nothing": (f'{ROUGH}\ntrack = "left"', "", "road", "no profile"),
     "one track": (COHERENT + '{ track = "1.5 m" }', "", "road.coherence", "left and a right track"),
     "one of two": (COHERENT + "{ level = 0.5 }", OWN, "road.coherence", "right is on neither track"),
+    "a vehicle that cannot be": (
+        COHERENT + "{ level = 0.5 }",
+        OWN.replace('road = "right"', 'road = "middle"'),
+        "vehicle.tyres.second.road",
+        "a road",
+    ),
     "two forms": (COHERENT + '{ track = "1.5 m", level = 0.5 }', CAR, "road.coherence", "track alone"),
     "three forms": (
         COHERENT + '{ track = "1.5 m", wavenumber = "1 cycle/m" }',

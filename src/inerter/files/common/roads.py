@@ -237,14 +237,12 @@ def coherence_entry(values: Mapping[str, float]) -> dict[str, str | float]:
     return {key: f"{value!r} {units[key]}" if key in units else value for key, value in values.items()}
 
 
-def coherence_problems(
-    place: tuple[str, ...], values: Mapping[str, Any], tracks: Mapping[str, str] | None
-) -> Iterator[Problem]:
-    """Why tracks that differ do not suit a vehicle of whose roads these are the `tracks`; none if they are not known.
+def track_problems(place: tuple[str, ...], tracks: Mapping[str, str] | None) -> Iterator[Problem]:
+    """Why tracks that differ, asked for at `place`, do not suit a vehicle of whose roads these are the `tracks`.
 
-    They are asked for at `place`, unless there are no `values`.
+    None if they are not known.
     """
-    if not values or tracks is None:
+    if tracks is None:
         return
     loose = [name for name, track in tracks.items() if not track]
     if len(loose) == len(tracks):

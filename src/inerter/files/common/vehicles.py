@@ -116,8 +116,11 @@ def inputs(model: str, values: Values) -> dict[str, str]:
 
 def tracks(model: str, values: Values) -> dict[str, str] | None:
     """The track of each of its roads, empty where there is but one; None if the vehicle cannot be."""
+    if any(vehicle_problems(model, values)):
+        return None
+    own = _without_seat(values)
     try:
-        roads = made(model, values, dict.fromkeys(mounts(model, values), _ANY)).mechanism().roads
+        roads = made(model, own, dict.fromkeys(mounts(model, own), _ANY)).mechanism().roads
     except InerterError:
         return None
     return {road.name: road.track for road in roads}

@@ -9,7 +9,7 @@ from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.roads import MeasuredLine, coherence_problems, coherence_values, line_through
+from inerter.files.common.roads import MeasuredLine, coherence_values, line_through, track_problems
 from inerter.files.common.shape import ROAD
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
@@ -108,10 +108,9 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
 
 def _of_tracks(request: SimulationRequest) -> Iterator[Problem]:
     """A road that differs from left to right, where the vehicle or the signal cannot have it."""
-    there = tracks(request.model, request.vehicle)
-    yield from coherence_problems(("road", "coherence"), request.coherence, there)
-    if request.signal.on_tracks:
-        yield from coherence_problems(("signal", "track"), request.signal.values, there)
+    asked = {("road", "coherence"): bool(request.coherence), ("signal", "track"): request.signal.on_tracks}
+    for place in (place for place, wanted in asked.items() if wanted):
+        yield from track_problems(place, tracks(request.model, request.vehicle))
     if request.coherence and not SIGNALS[request.signal.kind].random:
         random = some(shown(kind.key) for kind in SIGNALS.values() if kind.random)
         fault = f"a {request.signal.kind} has none"

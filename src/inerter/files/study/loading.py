@@ -10,7 +10,7 @@ from typing import Any
 from inerter.files.common.layouts import StrutLayout, elements_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.roads import MeasuredLine, coherence_of, coherence_problems, coherence_values, line_through
+from inerter.files.common.roads import MeasuredLine, coherence_of, coherence_values, line_through, track_problems
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
 from inerter.files.common.toml import read_tables, shape_of
@@ -128,7 +128,8 @@ def _road(shape: StudyFile, line: MeasuredLine | None) -> Road | None:
 
 
 def _road_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
-    yield from coherence_problems(("road", "coherence"), study.coherence, tracks(study.model, study.vehicle))
+    if study.coherence:
+        yield from track_problems(("road", "coherence"), tracks(study.model, study.vehicle))
     asked = [*study.indices, *study.trade_off, *(name for name in shape.study.subject_to or {} if study.knows(name))]
     on_roads = [name for name in dict.fromkeys(asked) if is_on_road(study.symbol(name))]
     if study.road is None and on_roads:

@@ -134,3 +134,18 @@ def test_the_same_run_gives_the_same_bytes(tmp_path):
     first, second = (draw_simulation(case_of("rig"), tmp_path / name) for name in "12")
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
     assert np.array([path.suffix in (".svg", ".png") for path in first]).all()
+
+
+def test_each_tyre_that_would_lift_off_is_shaded_in_its_own_row():
+    case = result("half_car_friction", 0.5, roughness=1e-4)
+    offs, tyres = case.run.lift_offs, list(case.run.static_loads)
+    assert {one.tyre for one in offs} == set(tyres)
+    figure = drawn(case, (0.0, 0.5))
+    (ax,) = [ax for ax in figure.axes if ax.get_ylabel().startswith("Tyre load")]
+    spans = [patch for patch in ax.patches if "would lift off" in patch.get_label()]
+    assert len(spans) == len(offs)
+    for one, span in zip(offs, spans, strict=True):
+        (begin, low), (end, high) = span.get_path().get_extents(span.get_patch_transform()).get_points()
+        assert (begin, end) == pytest.approx((one.begin, one.end), abs=2e-9)
+        assert (low, high) == ((0.5, 1.0) if one.tyre == tyres[0] else (0.0, 0.5))
+        assert span.get_label().startswith(one.tyre.replace("_", " "))

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 from synthetic import LONG, a_map, designs, judged, limited, sweep
 
+import inerter as it
 from inerter.figures.study import study_figures
 from inerter.figures.style import styled
+from inerter.files.study.cases import cases
 from inerter.files.study.limits import StudyLimit
 from inerter.files.study.loading import load_study
+from inerter.files.study.responses import responses
 from inerter.methods.registry import METHODS
 from inerter.report.answers import answers
 from inerter.report.by_method import method_tables
@@ -187,3 +190,53 @@ def test_a_caption_says_that_something_is_cut_where_it_is(worst):
         data["improvement"].loc[{"layout": "S3", "index": "J3"}] = worst
         cut = {figure.name: " cut." in figure.caption for figure in study_figures(data) if kind in figure.name}
         assert cut == {name: worst == -150.0 and name in ("improvement", "sweep-J3") for name in cut}
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_outputs_that_are_not_excited_are_left_out_and_said(count):
+    data = designs()
+    outputs = data["output_J1"].values.tolist()
+    data["gain_J1"].loc[{"output_J1": outputs[-count:]}] = 0.0
+    (figure,) = [figure for figure in study_figures(data) if figure.name == "response-J1"]
+    with styled():
+        panels = figure.draw().axes
+    assert len(panels) == (1 if count == 1 else 2)  # where nothing answers, that is what is shown
+    assert ("Not excited, and not shown: pitch acceleration." in figure.caption) == (count == 1)
+
+
+def test_every_layout_of_a_front_of_three_is_in_its_picture_and_legend():
+    criteria, points = ["a", "b", "c"], 5
+    random = np.random.default_rng(0)
+    data = designs(["S1", "S2"]).assign_coords(
+        criterion=criteria, criterion_title=("criterion", criteria), criterion_unit=("criterion", ["m", "N", "m/s^2"])
+    )
+    shape, dims = (2, points), ("layout", "front_point")
+    data = data.assign(
+        front_value=((*dims, "criterion"), random.random((*shape, 3)), {"method_words": "without friction"}),
+        front_knee=(dims, np.arange(points) == np.full((2, 1), 2)),
+        front_jump=(dims, np.zeros(shape, dtype=bool)),
+    )
+    (figure,) = [figure for figure in study_figures(data) if figure.name == "front"]
+    assert figure.caption.startswith("Trade-off between a, b and c, without friction: ")
+    with styled():
+        drawn = figure.draw()
+    assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2"]
+    for ax in drawn.axes:
+        seen = [line for line in ax.lines if line.get_marker() not in ("", "None") and len(line.get_xdata()) == points]
+        assert len(seen) == 2
+
+
+def test_a_weighted_output_is_called_after_its_lever_or_what_it_is_compared_with(tmp_path):
+    text = (EXAMPLES / "half-car.toml").read_text(encoding="utf-8")
+    text = re.sub(r"indices = .*", 'indices = ["J1", "dynamic-load-coefficient"]', text)
+    text = re.sub(r"(?m)^\s*optimise = .*$", "", re.sub(r"\{ *from = \"([^\"]*)\"[^}]*\}", r'"\1"', text))
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    study = load_study(tmp_path / "study.toml")
+    found = {case: {} for case in cases(study)}
+    named = responses(study, found)
+    pitch = named["output_J1"].values.tolist()[1]
+    assert re.fullmatch(r"pitch_acceleration x [\d.]+ m", pitch)
+    loads = it.static_tyre_loads(study.design(next(iter(study.layouts))))
+    assert [float(name.split(" over ")[1].split()[0]) for name in named["output_dynamic-load-coefficient"].values] == [
+        pytest.approx(load / 1e3, rel=1e-3) for load in loads.values()
+    ]

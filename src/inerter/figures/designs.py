@@ -103,7 +103,7 @@ def frequency_responses(results: xr.Dataset, index: str, axes: Sequence[Axes]) -
         ax.set_xlabel("Frequency [Hz]")
         ax.set_ylabel(axis_label(capital(gain.attrs["long_name"]), unit.unit))
         if len(axes) > 1:
-            ax.set_title(str(panel[dimension].item()).replace("_", " ").capitalize())
+            ax.set_title(capital(str(panel[dimension].item()).replace("_", " ")))
     return axes
 
 

@@ -65,7 +65,8 @@ def _draw(ax: Axes, style: LayoutStyle, across: np.ndarray, up: np.ndarray, row:
     parts = [np.arange(across.size)] if not joined else np.split(np.arange(across.size), leaps)
     for number, part in enumerate(parts):
         label = curve["label"] if number == 0 else "_"
-        ax.plot(across[part], up[part], **{**curve, "label": label}, marker=style.marker, markersize=2.6)
+        marker = style.marker if joined else style.marker or "o"
+        ax.plot(across[part], up[part], **{**curve, "label": label}, marker=marker, markersize=2.6)
     knee = np.flatnonzero(row["front_knee"].values)
     look: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 1.2, "zorder": style.zorder + 0.2}
     ax.plot(

@@ -146,9 +146,8 @@ def draw_panel(result: SimulationResult, panel: Panel, inside: NDArray[np.bool_]
     for curve, value in zip(panel.curves, values, strict=True):
         ax.plot(*thinned(time, value * unit.factor), **_style(curve))
     _shade(result, panel.shaded, (float(time[0]), float(time[-1])), ax)
-    for one in result.run.lift_offs if panel.title == _TYRES else ():
-        if one.begin < time[-1] and one.end > time[0]:
-            ax.axvspan(one.begin, max(one.end, one.begin + 1e-9), label="a tyre would lift off", zorder=0.5, **_LIFTED)
+    if panel.title == _TYRES:
+        _shade_lift_offs(result, (float(time[0]), float(time[-1])), ax)
     ax.set_ylabel(fill(axis_label(capital(panel.title), unit.unit), _LONGEST_TITLE, break_long_words=False))
     return ax
 
@@ -211,6 +210,17 @@ def _shade(result: SimulationResult, elements: Sequence[Nonlinear], window: Wind
         for begin, end in result.run.intervals(element.name, element.switch.middle):
             if begin < window[1] and end > window[0]:
                 ax.axvspan(begin, end, low, high, linewidth=0.0, zorder=0.5, label=label, **shades[guard])
+
+
+def _shade_lift_offs(result: SimulationResult, window: Window, ax: Axes) -> None:
+    """Filled where a tyre pulls by more than its static load; several tyres share the height."""
+    tyres = list(result.run.static_loads)
+    for one in result.run.lift_offs:
+        if one.begin < window[1] and one.end > window[0]:
+            row, several = tyres.index(one.tyre), len(tyres) > 1
+            label = f"{one.tyre.replace('_', ' ')} would lift off{f' (row {row + 1})' if several else ''}"
+            low, high = 1.0 - (row + 1) / len(tyres), 1.0 - row / len(tyres)
+            ax.axvspan(one.begin, max(one.end, one.begin + 1e-9), low, high, label=label, zorder=0.5, **_LIFTED)
 
 
 def _swings(values: Matrix, time: Matrix) -> Matrix:

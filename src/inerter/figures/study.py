@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
 from inerter.figures.fronts import front_curves, pairs
@@ -24,6 +24,7 @@ from inerter.figures.labels import (
     indices,
     infeasible,
     layouts,
+    listed,
     methods,
     one_method,
     swept_places,
@@ -36,6 +37,7 @@ from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, styled
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 
+_STILL = 1e-12  # of the largest gain of an index; less is rounding
 _MOST_MAPS = 3  # side by side
 _MOST_ENTRIES = 9  # of a legend below a figure of the usual height
 
@@ -92,6 +94,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             yield StudyFigure(
                 f"response-{index}",
                 f"{linear} of the designs that are best for {titled(index_title(results, index), index)}."
+                + _still(results, index)
                 + _nearest(results.sel(index=index), "Of a layout that does not keep the limits, that"),
                 partial(_response, results, index),
             )
@@ -206,7 +209,21 @@ def _improvement(results: xr.Dataset) -> Figure:
     return figure
 
 
+def _excited(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
+    """Which outputs of an index answer at all: roll does not, where both tracks are alike."""
+    gain = results[f"gain_{index}"]
+    most = np.asarray(gain.max([name for name in gain.dims if name != f"output_{index}"]).fillna(0.0).values)
+    return np.asarray(most > _STILL * most.max(initial=0.0)) | (not most.any())
+
+
+def _still(results: xr.Dataset, index: str) -> str:
+    """A sentence on the outputs that a figure leaves out."""
+    names = results[f"output_{index}"].values[~_excited(results, index)].tolist()
+    return f" Not excited, and not shown: {listed([name.replace('_', ' ') for name in names])}." if names else ""
+
+
 def _response(results: xr.Dataset, index: str) -> Figure:
+    results = results.isel({f"output_{index}": _excited(results, index)})
     outputs = results.sizes[f"output_{index}"]
     figure, axes = new_figure(outputs, min(outputs, 2), height=3.0)
     frequency_responses(results, index, axes)

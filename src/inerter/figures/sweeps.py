@@ -65,7 +65,7 @@ class _Sweep:
         marker: dict[str, Any] = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
         finite = np.where(np.isfinite(numbers), numbers, np.nan)
         ax.plot(*thinned(self.values, finite), **style.curve() | (line or {}), **marker)
-        if open_where is not None and few:
+        if few and open_where is not None and np.any(open_where):
             look: dict[str, Any] = {
                 **marker,
                 "marker": style.marker or "o",

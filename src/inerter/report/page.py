@@ -102,7 +102,7 @@ def report(
             tolerances=tolerance_tables(tolerances),
             limits=limit_tables(results),
             conditions=condition_rows(study),
-            trade_offs=[] if swept else trade_off_tables(results),
+            trade_offs=[] if swept or study.optimise is None else trade_off_tables(results),
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),
             computation=list(computation(study, results)),

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.fields import fields_of
-from inerter.figures.labels import capital, index_title, indices
+from inerter.figures.labels import capital, index_title, indices, infeasible
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
@@ -148,7 +148,7 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
             yield f"What was made smallest is the value by {what}: {words_of(study.optimise)}."
     if study.limits:
         limits = "; ".join(f"{spoken(limit.words)} {_given(study, limit.value, limit.unit)}" for limit in study.limits)
-        yield f"Every design has to keep these limits: {limits}."
+        yield f"Every design {'has to keep' if bool(infeasible(results).any()) else 'keeps'} these limits: {limits}."
     if study.conditions:
         how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
         yield f"An index is its {how}; limits hold in each. Frequency responses are those of the vehicle as it stands."

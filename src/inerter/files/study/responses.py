@@ -16,6 +16,9 @@ from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
+from inerter.systems.outputs import unit_of
+from inerter.units import format_quantity
+from inerter.vehicle.mechanism import Weighted
 
 Array = NDArray[np.float64]
 
@@ -54,9 +57,19 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
         unit = question.unit if not per else f"{own}/({per})" if "/" in per else f"{own}/{per}"
         attributes = {"units": unit, "long_name": study.index(index).response}
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
-        names = [o.output if o.weight == 1.0 else f"{o.output} x {o.weight:g} m" for o in question.outputs]
+        units = [unit_of(designs[next(iter(mine)), index].mechanism(), [o.output]) for o in question.outputs]
+        names = [_weighted(o, own, question.unit) for o, own in zip(question.outputs, units, strict=True)]
         data = data.assign_coords({f"output_{index}": names})
     return data
+
+
+def _weighted(output: Weighted, own: str, unit: str) -> str:
+    """An output, of the unit `own`, as it enters an index of that `unit`: times a lever, or over what it is part of."""
+    if output.weight == 1.0:
+        return output.output
+    if own and unit == f"{own}/{own}":
+        return f"{output.output} over {format_quantity(1.0 / output.weight, own)}"
+    return f"{output.output} x {output.weight:g}{' m' if own.startswith('rad') else ''}"
 
 
 def _frequencies(matrices: list[Array]) -> Array:

@@ -98,6 +98,16 @@ class Visitor:
             "() => !document.querySelector('[aria-busy=true]') && document.querySelector('td[data-index]')"
         )
 
+    def drawn(self) -> None:
+        """Wait until the tab that is shown has its answers, and they are drawn."""
+        self.page.evaluate(
+            """async () => {
+              const drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+              do await drawn(); while (document.querySelector("#tab-panel [aria-busy=true]"));
+              await drawn();
+            }"""
+        )
+
     def values(self) -> dict[str, float]:
         """The indices that the page shows, in full."""
         self.settled()

@@ -150,15 +150,17 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
 
 
 @pytest.mark.campaign
-def test_every_example_opens(visitors: Any, served: Served) -> None:
+def test_every_example_opens(visitor: Visitor) -> None:
+    """One after another in one window, each in place of the one before."""
+    page = visitor.page
     opened = 0
     for path in sorted(EXAMPLES.glob("*.toml")):
-        visitor = visitors(served).visit()
-        page = visitor.page
         before = visitor.text
         visitor.open(path)
         page.wait_for_selector(".notice")
         told = page.inner_text(".notice")
+        page.get_by_role("button", name="Close the message").click()
+        page.wait_for_selector(".notice", state="detached")
         try:
             study = load_study(path)
         except it.InerterError:

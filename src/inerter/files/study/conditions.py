@@ -70,6 +70,8 @@ def condition_of(study: Study, stated: StudyCondition) -> Condition:
         found = what_of(study, place_of(label))
         assert found is not None, label
         changed[found[0]][found[1]] = number
-    changed["vehicle"] |= {name: float(e.value) for name, e in following(study, stated.numbers).items()}
+    changed["vehicle"] |= {
+        name: e.value for name, e in following(study, stated.numbers).items() if isinstance(e.value, float)
+    }
     name = stated.name or ", ".join(f"{label} = {shown(number)}" for label, number in stated.numbers.items())
     return Condition(stated.share, changed["vehicle"], changed["road"], name, if_there=True)

@@ -78,6 +78,8 @@ def condition_of(study: Study, stated: StudyCondition) -> Condition:
         assert found is not None, label
         section, name = found
         changed[section][name] = getattr(there.road, name) if section == "road" else number
-    changed["vehicle"] |= {name: float(e.value) for name, e in following(study, stated.numbers).items()}
+    changed["vehicle"] |= {
+        name: e.value for name, e in following(study, stated.numbers).items() if isinstance(e.value, float)
+    }
     name = stated.name or ", ".join(f"{label} = {shown(number)}" for label, number in stated.numbers.items())
     return Condition(stated.share, changed["vehicle"], changed["road"], name, if_there=True)

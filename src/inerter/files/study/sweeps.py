@@ -123,7 +123,8 @@ def _spread(number: Number, entry: SweepRange, low: float, high: float) -> tuple
 
 def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCondition, ...], list[Problem]]:
     """The conditions that a file states, and what is wrong with them."""
-    conditions, problems = [], []
+    conditions: list[StudyCondition] = []
+    problems: list[Problem] = []
     for i, entry in enumerate(entries, start=1):
         numbers = {}
         for label, given in (entry.model_extra or {}).items():

@@ -98,7 +98,7 @@ def test_the_same_results_give_the_same_bytes(name, tmp_path):
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
 
 
-FULLEST = ["a much worse layout", "many swept"]
+FULLEST = ["map", "a much worse layout", "many swept"]
 
 
 @pytest.mark.parametrize("name", sampled(CASES, FULLEST))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from synthetic import LONG, a_map, designs, judged, limited, sweep
 
 import inerter as it
@@ -66,7 +67,7 @@ def test_a_figure_of_one_method_of_several_says_where_the_others_are(make):
     assert ("The values by simulation are in summary.csv." in caption) == (make is a_map)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", sampled(range(20), [2]))
 @pytest.mark.parametrize("make", [sweep, a_map])
 def test_limits_over_a_sweep_are_told_by_table_terminal_and_figure(make, seed):
     random = np.random.default_rng(seed)

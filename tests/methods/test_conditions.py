@@ -74,7 +74,7 @@ def test_a_seat_over_conditions():
     expected = [it.evaluate(one.with_values({"c": 3e3}), J1, NORM).value for one in (heavy, soft)]
     found = it.evaluate(named.with_values({"c": 3e3}), use.mean(J1), NORM).value
     assert found == pytest.approx(np.mean(expected), rel=1e-12)
-    with pytest.raises(DesignError, match="mass, sprung_mass, unsprung_mass"):
+    with pytest.raises(DesignError, match="sprung_mass, unsprung_mass, tyre_stiffness, mass, k, c, cs"):
         it.evaluate(seat.with_values({"c": 3e3}), it.Conditions([it.Condition(1.0, vehicle={"m": 1.0})]).mean(J1), NORM)
 
 

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from itertools import count
 from multiprocessing import active_children
@@ -21,7 +22,7 @@ from hypothesis import strategies as st
 from inerter.errors import WorkError
 from inerter.work.pieces import WORTH, Cutter, Worked
 from inerter.work.pool import KILLS, Pool, _Start, pooled
-from inerter.work.processes import Processes
+from inerter.work.processes import Processes, is_started
 from inerter.work.running import mapped, running_on
 
 PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
@@ -250,3 +251,14 @@ def test_processes_start_when_the_pace_tells_that_they_are_worth_it(
     assert bool(start.starting) is begins
     ready.set_result(None)
     assert start.is_over(done + 1, seconds + 0.01) is begins  # work goes on here until the first of them is ready
+
+
+def test_processes_have_started_when_one_has_unless_all_have_ended():
+    done, broken, waiting = Future(), Future(), Future()
+    done.set_result(None)
+    broken.set_exception(BrokenProcessPool())
+    assert is_started([broken, done])
+    assert not is_started([broken, waiting])
+    assert not is_started([waiting])
+    with pytest.raises(WorkError, match="no process can be started"):
+        is_started([broken, broken])

@@ -262,3 +262,11 @@ def test_processes_have_started_when_one_has_unless_all_have_ended():
     assert not is_started([waiting])
     with pytest.raises(WorkError, match="no process can be started"):
         is_started([broken, broken])
+
+
+def test_a_process_that_ends_has_said_what_it_had_to_say(tmp_path: Path) -> None:
+    said = 'if __name__ == "__main__":\n    with Pool(2) as pool:\n        pool.begin(help_me)\n'
+    script = f"from inerter.work.pool import Pool\ndef help_me():\n    print('a word')\n{said}"
+    (tmp_path / "script.py").write_text(script, encoding="utf-8")
+    done = subprocess.run([sys.executable, tmp_path / "script.py"], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("a word\n", "")

@@ -19,7 +19,7 @@ from inerter.kernels.prepare import prepare
 collect_ignore_glob = ["conftest.py", "*/conftest.py"]  # as modules with doctests: two cannot have one name
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have a process for each core already
-for name, count in (("short", 40), ("long", 100)):  # --hypothesis-profile=long tries more examples
+for name, count in (("short", 25), ("long", 100)):  # --hypothesis-profile=long tries more examples
     settings.register_profile(
         name,
         derandomize=True,

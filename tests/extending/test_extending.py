@@ -454,6 +454,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.campaign
 def test_processes_that_are_spawned_know_the_rows_of_distributions_and_scripts(place: Path, tmp_path: Path) -> None:
     text = BASE.replace('["J1", "T1", "W1"]', '["J3", "T1", "W1", "D1"]').replace('optimise = "norm"\n', "")
     text = text.replace('{ from = "500 N s/m", to = "20 kN s/m" }', '"3 kN s/m"')

@@ -54,6 +54,7 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.collect()
         gc.freeze()
+        gc.set_threshold(100_000, 20, 100)  # what tests make is small, and looking took a twentieth of their time
         gc.enable()
 
 

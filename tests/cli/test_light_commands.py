@@ -79,6 +79,7 @@ def test_a_run_loads_no_distributions(tmp_path: Path) -> None:
     assert "scipy.stats" not in loaded_by("run", str(EXAMPLES / "quarter-car.toml"), "-o", str(tmp_path / "out"))
 
 
+@pytest.mark.campaign
 def test_an_import_compiles_nothing_and_starts_nothing(tmp_path: Path) -> None:
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "MPLCONFIGDIR": matplotlib.get_cachedir()}
     done = subprocess.run(

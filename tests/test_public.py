@@ -109,3 +109,12 @@ def test_an_old_name_works_and_tells_the_new_one() -> None:
     assert old is errors.PerformanceIndexError
     with pytest.raises(AttributeError, match="has no attribute 'NoError'"):
         _ = errors.NoError
+
+
+def test_a_class_has_its_name_alone() -> None:
+    homes: dict[str, list[str]] = {}
+    for path in (ROOT / "src").rglob("*.py"):
+        for name in re.findall(r"^class (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE):
+            homes.setdefault(name, []).append(path.stem)
+    assert len(homes) > 400
+    assert {name: several for name, several in homes.items() if len(several) > 1} == {}

@@ -57,6 +57,15 @@ def test_documents_name_every_command() -> None:
             assert any(told) or not options, f"inerter {command} {options}"
 
 
+def test_documents_name_what_is_public() -> None:
+    named: dict[str, str] = {}
+    for path in [ROOT / "README.md", *ROOT.glob("docs/**/*.md")]:
+        for name in re.findall(r"\bit\.([A-Za-z]\w*)", path.read_text(encoding="utf-8")):
+            named[name] = path.name
+    assert len(named) > 80
+    assert {name: file for name, file in named.items() if name not in it.__all__} == {}
+
+
 def test_names_of_the_first_release() -> None:
     k, c, b = it.Spring(120e3), it.Damper(it.free(100, 100e3, name="c")), it.Inerter(it.free(1, 2000, name="b"))
     car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=k | c - b)

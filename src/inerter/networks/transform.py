@@ -78,7 +78,7 @@ def with_values(network: Network, values: Mapping[str, float]) -> Network:
 def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
     """The networks with every free value named: by itself, by its element, else by its symbol and a number if needed.
 
-    `networks` goes from the name of the mount to its network. Two free values of the same name are one variable and
+    `networks` goes from the name of the mount to its network. Two free values of the same name are one and
     must have the same bounds and unit; unnamed ones are all different.
 
     Raises `DesignError` where one name stands for two different ranges, or a value is tied to none.

@@ -57,6 +57,15 @@ def test_documents_name_every_command() -> None:
             assert any(told) or not options, f"inerter {command} {options}"
 
 
+def test_documents_name_what_is_public() -> None:
+    named: dict[str, str] = {}
+    for path in [ROOT / "README.md", *ROOT.glob("docs/**/*.md")]:
+        for name in re.findall(r"\bit\.([A-Za-z]\w*)", path.read_text(encoding="utf-8")):
+            named[name] = path.name
+    assert len(named) > 80
+    assert {name: file for name, file in named.items() if name not in it.__all__} == {}
+
+
 def test_names_of_the_first_release() -> None:
     k, c, b = it.Spring(120e3), it.Damper(it.free(100, 100e3, name="c")), it.Inerter(it.free(1, 2000, name="b"))
     car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=k | c - b)
@@ -109,3 +118,12 @@ def test_an_old_name_works_and_tells_the_new_one() -> None:
     assert old is errors.PerformanceIndexError
     with pytest.raises(AttributeError, match="has no attribute 'NoError'"):
         _ = errors.NoError
+
+
+def test_a_class_has_its_name_alone() -> None:
+    homes: dict[str, list[str]] = {}
+    for path in (ROOT / "src").rglob("*.py"):
+        for name in re.findall(r"^class (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE):
+            homes.setdefault(name, []).append(path.stem)
+    assert len(homes) > 400
+    assert {name: several for name, several in homes.items() if len(several) > 1} == {}

@@ -22,7 +22,8 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved
 from inerter.indices.registry import amplitude_of, index_choices, index_settings
-from inerter.methods.registry import averages
+from inerter.methods.method import Differentiable
+from inerter.methods.registry import averages, with_gradients
 from inerter.report.question import vehicle_rows
 from inerter.rows import Rows, made_of_rows
 from inerter.units import parse_quantity
@@ -355,3 +356,45 @@ def test_methods_that_see_friction_need_to_know_how_large_a_force_is() -> None:
                 it.evaluate(car, it.LoadCarrying(), kind())
         else:
             assert it.evaluate(car, it.LoadCarrying(), kind()).value > 0.0
+
+
+SLIPS = it.QuarterCar(180.0, 25.0, 120e3, it.Spring(20e3) | it.Damper(it.free(500.0, 5e3)) | it.Friction(20.0))
+
+
+@pytest.mark.parametrize("name", [*it.METHODS])
+def test_a_method_gives_gradients_if_its_row_says_so(name: str) -> None:
+    kind = it.METHODS[name]
+    given = kind().objective(SLIPS, it.RideComfort(ROAD))
+    assert isinstance(given, Differentiable) == getattr(kind, "has_gradients", False)
+
+
+def test_a_search_by_what_simulates_begins_where_a_row_with_gradients_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    @dataclass(frozen=True)
+    class Sharp(it.StatisticalLinearisation):
+        name = "sharp"
+        sees = it.Sees.BOTH
+
+        def objective(self, vehicle: Any, index: Any) -> Any:
+            asked.append(self.conventions)
+            return super().objective(vehicle, index)
+
+    @dataclass(frozen=True)
+    class Dull(it.StatisticalLinearisation):
+        has_gradients = False
+
+        def objective(self, vehicle: Any, index: Any) -> Any:
+            plain = super().objective(vehicle, index)
+
+            class Values:
+                values = staticmethod(plain.values)
+
+            return Values()
+
+    monkeypatch.setitem(it.METHODS._rows, Sharp.name, Sharp)
+    assert [method.name for method in with_gradients("exact")] == ["sharp", "statistical-linearisation", "norm"]
+    found = it.optimise(SLIPS, it.RideComfort(ROAD), Dull("paper2008"), starts=4)
+    assert {*asked} == {"paper2008"}
+    best = it.optimise(SLIPS, it.RideComfort(ROAD), it.StatisticalLinearisation("paper2008"), starts=4)
+    assert found.value == pytest.approx(best.value, rel=1e-6)

@@ -67,6 +67,7 @@ from inerter.methods.statistical_linearisation import StatisticalLinearisation a
 from inerter.networks.catalogue import LAYOUTS as LAYOUTS
 from inerter.networks.elements import Damper as Damper
 from inerter.networks.elements import Element as Element
+from inerter.networks.elements import Free as Free
 from inerter.networks.elements import Friction as Friction
 from inerter.networks.elements import Gap as Gap
 from inerter.networks.elements import Inerter as Inerter

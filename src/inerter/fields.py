@@ -33,7 +33,7 @@ class Field:
 
 
 @dataclasses.dataclass(frozen=True)
-class Choice:
+class TextChoice:
     """A text: one of the `options`, or any name if there are none."""
 
     name: str
@@ -66,9 +66,10 @@ def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: s
     ... class Wheel:
     ...     side: str = dataclasses.field(default="left", metadata=choice(("left", "right"), "Where it is."))
     >>> choices_of(Wheel)
-    (Choice(name='side', options=('left', 'right'), sentence='Where it is.', example='left', key='side', needed=False),)
+    (TextChoice(name='side', options=('left', 'right'), sentence='Where it is.', example='left',
+    key='side', needed=False),)
     """
-    return {_CHOICE: Choice("", options, sentence, example or (options[0] if options else ""), key)}
+    return {_CHOICE: TextChoice("", options, sentence, example or (options[0] if options else ""), key)}
 
 
 def mount(sentence: str) -> Mapping[str, Any]:
@@ -81,7 +82,7 @@ def fields_of(kind: type) -> tuple[Field, ...]:
     return _stated(kind)[0]
 
 
-def choices_of(kind: type) -> tuple[Choice, ...]:
+def choices_of(kind: type) -> tuple[TextChoice, ...]:
     """The texts of a dataclass that are chosen, in their order."""
     return tuple(_choice_of(f) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
 
@@ -103,8 +104,8 @@ def _stated(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
     return quantities, {f.name: f.default is dataclasses.MISSING for f in every if _MOUNT in f.metadata}
 
 
-def _choice_of(field: dataclasses.Field[Any]) -> Choice:
-    stated: Choice = field.metadata[_CHOICE]
+def _choice_of(field: dataclasses.Field[Any]) -> TextChoice:
+    stated: TextChoice = field.metadata[_CHOICE]
     needed = field.default is dataclasses.MISSING
     return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, needed=needed)
 

@@ -172,6 +172,8 @@ def test_a_start_is_made_of_the_vehicle_and_the_indices(session: Session, tmp_pa
     text = (tmp_path / "seated-car.toml").read_text(encoding="utf-8")
     assert 'seat_stiffness = "15 kN/m"' in text
     assert re.search(r"^# More indices: .*T1", text, re.MULTILINE)
+    assert "gap" in text
+    assert "ball screw" not in text  # no unit alone tells it
     assert "ok." in session.command("check", "seated-car.toml", cwd=tmp_path)[0]
     assert "Of the cushion." in session.command("explain", "vehicle.seat_damping", cwd=tmp_path)[0]
     told = json.loads(session.command("schema", cwd=tmp_path)[0])

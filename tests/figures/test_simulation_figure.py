@@ -1,5 +1,6 @@
 """The figure of a simulation: it shows the numbers and the intervals, and nothing runs over anything else."""
 
+import tomllib
 from dataclasses import replace
 from functools import cache, partial
 from itertools import combinations
@@ -14,6 +15,7 @@ from inerter.errors import StudyError
 from inerter.figures.simulation import draw_simulation, panels, readable_window, simulation_figure
 from inerter.figures.style import styled
 from inerter.files.common.layouts import StrutLayout
+from inerter.files.common.toml import as_toml
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.running import SimulationResult
 
@@ -149,3 +151,27 @@ def test_each_tyre_that_would_lift_off_is_shaded_in_its_own_row():
         assert (begin, end) == pytest.approx((one.begin, one.end), abs=2e-9)
         assert (low, high) == ((0.5, 1.0) if one.tyre == tyres[0] else (0.0, 0.5))
         assert span.get_label().startswith(one.tyre.replace("_", " "))
+
+
+@pytest.mark.parametrize("name", ["full-car", "train"])
+def test_each_curve_is_called_by_what_tells_it_from_the_others(name, tmp_path):
+    study = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    fixed = {key: value["from"] if isinstance(value, dict) else value for key, value in study["elements"].items()}
+    file = tmp_path / "simulation.toml"
+    tables = {
+        **{key: study[key] for key in ("vehicle", "road", "layouts")},
+        "elements": fixed,
+        "signal": {"kind": "sine", "amplitude": "1 mm", "frequency": "1 Hz"},
+        "simulation": {"layout": "S1", "duration": "0.02 s"},
+    }
+    file.write_text(as_toml(tables), encoding="utf-8")
+    request = load_simulation(file)
+    found = panels(SimulationResult(request, request.run()))
+    several = [[curve.label for curve in panel.curves] for panel in found if len(panel.curves) > 1]
+    assert len(several) >= 2
+    for labels in several:
+        assert len({*labels}) == len(labels)
+    kind = {"full-car": "road", "train": "rail"}[name]
+    assert found[0].title == kind
+    roads = request.design().mechanism().roads
+    assert [f"{kind}_{label.replace(' ', '_')}" for label in several[0]] == [road.name for road in roads]

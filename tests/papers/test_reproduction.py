@@ -18,7 +18,7 @@ from inerter.cli.main import call
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
 from inerter.methods.norm import Norm
-from inerter.norms.hinf import Peak
+from inerter.norms.hinf import GainPeak
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008 import between, beyond, curves, judging, rows
 from inerter.papers.wang_su_2008.claims import judge
@@ -125,7 +125,7 @@ def test_a_verdict_says_which_digits() -> None:
 
 def test_a_verdict_on_a_peak_says_which() -> None:
     row = next(r for r in simulated_rows(1) if r.index == "J5" and r.case == 10)
-    high, low = Peak(22.0, 1.03 * row.value), Peak(10.0, 1.002 * row.value)
+    high, low = GainPeak(22.0, 1.03 * row.value), GainPeak(10.0, 1.002 * row.value)
 
     def verdict(*begun: float) -> str:
         short = tuple(part * row.value for part in begun)
@@ -230,7 +230,7 @@ def test_claims_follow_the_curves() -> None:
 
 def made_row(table: int, name: str, paper2008: float, exact: float) -> SimulatedRow:
     row = next(r for r in simulated_rows(table) if f"{r.index} {r.case}" == name)
-    return SimulatedRow(row, "", paper2008, 0.0, exact, 0.0, (Peak(10.0, exact),))
+    return SimulatedRow(row, "", paper2008, 0.0, exact, 0.0, (GainPeak(10.0, exact),))
 
 
 def test_claim_7_needs_every_frequency() -> None:

@@ -29,6 +29,7 @@ from inerter.indices.registry import INDICES as INDICES_TABLE
 from inerter.indices.registry import index_settings
 from inerter.methods.registry import METHODS
 from inerter.networks.elements import Damper, Free, Friction, Gap, Inerter, Spring
+from inerter.networks.elements.registry import ELEMENTS
 from inerter.signals.road import Road
 from inerter.vehicle.half_car import HalfCar
 from inerter.vehicle.quarter_car import QuarterCar
@@ -359,6 +360,27 @@ def test_no_module_but_its_own_names_a_row():
     assert len(sources) > 200
     assert named.pop(Rig.key) == {"vehicle", "rig"}
     assert {key: places for key, places in named.items() if places not in ({"vehicle"}, {"indices"}, {"methods"})} == {}
+
+
+def test_no_sentence_lists_elements_by_hand_and_no_search_a_method():
+    told = [f"{kind.unit} {kind.key}" for kind in ELEMENTS.values()]
+    methods = {kind.__name__ for kind in METHODS.values()}
+    lists, names = set(), set()
+    for path in (ROOT / "src" / "inerter").rglob("*.py"):
+        if {"papers", "methods"} & {*path.parts}:
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if (
+                isinstance(node, ast.Constant)
+                and isinstance(node.value, str)
+                and any(one in node.value for one in told)
+            ):
+                lists.add(path.name)
+            if isinstance(node, ast.Name) and node.id in methods:
+                names.add((path.name, node.id))
+    assert len(told) >= 5
+    assert lists == {"registry.py"}  # an example of what it tells
+    assert names == {("optimise.py", "Norm")}  # the best linear design, beside which that of another method is told
 
 
 # --- what is said about a bad one: the file, the place, and the words that help ---

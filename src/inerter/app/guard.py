@@ -32,7 +32,7 @@ _HEADERS = {
 
 
 @dataclass(frozen=True)
-class Guard:
+class AccessGuard:
     """Lets requests through to `app` that come from this machine's page or from a script with the token."""
 
     app: App

@@ -9,7 +9,7 @@ from inerter.errors import InerterError, UnitError
 from inerter.files.common.entries import expression
 from inerter.files.common.problem import EntryError
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.networks.parser import ExpressionError, Part, parsed
+from inerter.networks.parser import ExpressionError, ExpressionPart, parsed
 from inerter.units import format_quantity, is_unit, parse_quantity, shown
 
 _JOINED = {"|": "parallel", "-": "series"}
@@ -27,14 +27,14 @@ def parse_network(text: str, elements: Container[str] | None) -> dict[str, Any]:
     return {"tree": _tree(tree), "names": list(dict.fromkeys(_names(tree)))}
 
 
-def _tree(part: Part) -> dict[str, Any]:
+def _tree(part: ExpressionPart) -> dict[str, Any]:
     place = {"from": part.begin, "to": part.end}
     if part.name:
         return {"kind": "element", "name": part.name, **place}
     return {"kind": _JOINED[part.sign], "parts": [_tree(each) for each in part.parts], **place}
 
 
-def _names(part: Part) -> list[str]:
+def _names(part: ExpressionPart) -> list[str]:
     return [part.name] if part.name else [name for each in part.parts for name in _names(each)]
 
 

@@ -16,7 +16,7 @@ from starlette.responses import FileResponse, Response
 from starlette.routing import Route
 
 from inerter.app.described import Endpoint
-from inerter.app.guard import App, Guard
+from inerter.app.guard import AccessGuard, App
 from inerter.app.requests import ENDPOINTS, opened
 from inerter.app.responses import as_json, media_type
 from inerter.app.server import Server
@@ -53,7 +53,7 @@ def application(server: Server, token: str, port: int, limit: int, record_limit:
     routes.append(Route("/{path:path}", _page, methods=["GET"]))
     handlers: dict[Any, Any] = {Refused: _refused, 404: _unknown, 405: _unknown, Exception: _fault}
     app = Starlette(routes=routes, lifespan=lifespan, exception_handlers=handlers)
-    return Guard(app, token, port, limit, record_limit)
+    return AccessGuard(app, token, port, limit, record_limit)
 
 
 def _routed(server: Server, endpoint: Endpoint) -> Callable[[Request], Awaitable[Response]]:

@@ -74,7 +74,7 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
         yield client.get_executor(pure=False)
 
 
-def _told(places: Sequence[clusters.Place]) -> str:
+def _told(places: Sequence[clusters.Worker]) -> str:
     threads = sum(place.threads for place in places)
     hosts = len({place.host for place in places})
     counts = ((len(places), "worker"), (threads, "thread"), (hosts, "machine"))

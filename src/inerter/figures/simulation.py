@@ -48,7 +48,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Panel:
+class TimePanel:
     """Curves over time on one axis; the states of a strut's friction and gaps are shaded."""
 
     title: str
@@ -66,32 +66,32 @@ def draw_simulation(result: SimulationResult, folder: Path, window: Window | Non
         return save(simulation_figure(result, window or readable_window(result)), folder, NAME)
 
 
-def panels(result: SimulationResult) -> list[Panel]:
+def panels(result: SimulationResult) -> list[TimePanel]:
     """What is drawn, from top to bottom."""
     outputs, struts = result.run.outputs, result.struts
     inputs = result.inputs
-    found = [Panel(_common(inputs), outputs[inputs[0]].unit, _curves(inputs))]
+    found = [TimePanel(_common(inputs), outputs[inputs[0]].unit, _curves(inputs))]
     if result.accelerations:
         weights = {w.output: w.weight for w in result.mechanism.measures.comfort}
         body = tuple(
             Curve(name, name.removesuffix("_acceleration") + ("" if w == 1.0 else f" × {w:.3g} m"), i, w)
             for i, (name, w) in enumerate(weights.items(), len(struts))
         )
-        found.append(Panel("body acceleration", "m/s^2", body if len(body) > 1 else (Curve(body[0].output),)))
-    found += [Panel(name.replace("_", " "), outputs[name].unit, (Curve(name),)) for name in result.displacements]
+        found.append(TimePanel("body acceleration", "m/s^2", body if len(body) > 1 else (Curve(body[0].output),)))
+    found += [TimePanel(name.replace("_", " "), outputs[name].unit, (Curve(name),)) for name in result.displacements]
     if result.tyre_loads:
-        found.append(Panel(_TYRES, "N", _curves(result.tyre_loads)))
+        found.append(TimePanel(_TYRES, "N", _curves(result.tyre_loads)))
     for strut in struts:
         shaded = tuple(n for n in result.nonlinear if n.strut == strut)
         inerters = result.inerters(strut)
         if result.on_rig and inerters:
-            found.append(Panel(f"{strut} force", "N", (Curve(force_of(strut)),)))
+            found.append(TimePanel(f"{strut} force", "N", (Curve(force_of(strut)),)))
         title = f"{f'{strut} ' if len(struts) > 1 else ''}{'inerter' if inerters else strut} force"
         title = title.replace(f"{strut} {strut}", strut).replace("_", " ")
         carried = tuple(map(force_of, inerters)) or (force_of(strut),)
         numbers = range(struts.index(strut), len(carried) + struts.index(strut))
         labels = inerters if len(inerters) > 1 else ("",)
-        found.append(Panel(title, "N", tuple(map(Curve, carried, labels, numbers)), shaded))
+        found.append(TimePanel(title, "N", tuple(map(Curve, carried, labels, numbers)), shaded))
     return found
 
 
@@ -137,7 +137,7 @@ def simulation_figure(result: SimulationResult, window: Window) -> Figure:
     return figure
 
 
-def draw_panel(result: SimulationResult, panel: Panel, inside: NDArray[np.bool_], ax: Axes) -> Axes:
+def draw_panel(result: SimulationResult, panel: TimePanel, inside: NDArray[np.bool_], ax: Axes) -> Axes:
     """The curves of one panel, and behind them the intervals in which its friction sticks and its gaps are open."""
     run = result.run
     time = run.time[inside]
@@ -177,16 +177,26 @@ def _with_loop(rows: int) -> tuple[Figure, list[Axes]]:
 
 
 def _curves(names: Sequence[str]) -> tuple[Curve, ...]:
-    return tuple(Curve(name, _end(name) if len(names) > 1 else "", i) for i, name in enumerate(names))
+    labels = _own(names) if len(names) > 1 else [""]
+    return tuple(Curve(name, label, i) for i, (name, label) in enumerate(zip(names, labels, strict=True)))
+
+
+def _shared(names: Sequence[str]) -> list[str]:
+    """The words that all names have: "tyre" and "load" of `tyre_front_load` and `tyre_rear_load`."""
+    words = [name.split("_") for name in names]
+    return [word for word in words[0] if all(word in others for others in words)]
 
 
 def _common(names: Sequence[str]) -> str:
-    return names[0].split("_")[0] if len(names) > 1 else names[0].replace("_", " ")
+    """What several outputs are, in the words that they share; else the first of them."""
+    return " ".join(_shared(names)) or names[0].replace("_", " ")
 
 
-def _end(name: str) -> str:
-    """The axle in `road_front` and `tyre_front_load`."""
-    return next((axle for axle in ("front", "rear") if axle in name.split("_")), name.replace("_", " "))
+def _own(names: Sequence[str]) -> list[str]:
+    """What tells each of several outputs from the others: "front" of `road_front`, or its whole name."""
+    shared = _shared(names)
+    own = [" ".join(word for word in name.split("_") if word not in shared) for name in names]
+    return own if all(own) and len({*own}) == len(own) else [name.replace("_", " ") for name in names]
 
 
 def _style(curve: Curve) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from inerter.identification.experiment import saturated
 from inerter.identification.explaining import explanations
 from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
-from inerter.identification.intervals import BestFit, Profile
+from inerter.identification.intervals import BestFit, CostProfile
 from inerter.identification.kinds import FitFinding
 from inerter.identification.models import unmounted
 from inerter.identification.problem import FitProblem
@@ -139,7 +139,7 @@ def _ends(value: float, error: float) -> tuple[float, float]:
     return value - _ERRORS * error, value + _ERRORS * error
 
 
-def _parameter(space: Space, i: int, optimum: BestFit, profile: Profile, best: float) -> Parameter:
+def _parameter(space: Space, i: int, optimum: BestFit, profile: CostProfile, best: float) -> Parameter:
     def value(coordinate: float) -> float:
         point = optimum.point.copy()
         point[i] = coordinate

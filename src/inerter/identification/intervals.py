@@ -92,7 +92,7 @@ class Side:
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
+class CostProfile:
     """Both ends, the points of the profile (coordinate, rise of the cost over its threshold), and what was met."""
 
     lower: Side
@@ -100,13 +100,13 @@ class Profile:
     points: tuple[tuple[float, float], ...]
     better: tuple[float, Matrix] | None  # a cost below the optimum's, and where
 
-    def moved(self, by: float) -> Profile:
+    def moved(self, by: float) -> CostProfile:
         """The same profile elsewhere; ends at the bounds of the search stay there."""
         lower, upper = (replace(side, end=side.end + by) if side.known else side for side in (self.lower, self.upper))
-        return Profile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
+        return CostProfile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
 
-def profiles(problem: FitProblem, optimum: BestFit) -> list[Profile]:
+def profiles(problem: FitProblem, optimum: BestFit) -> list[CostProfile]:
     """The profile of every coordinate."""
     tasks = [(problem, (i, sign)) for i in range(optimum.point.size) for sign in (-1, 1)]
     found = apart(partial(_walk, optimum), tasks, over_threads)
@@ -114,7 +114,7 @@ def profiles(problem: FitProblem, optimum: BestFit) -> list[Profile]:
     for i in range(optimum.point.size):
         (below, points, better), (above, more, other) = found[2 * i], found[2 * i + 1]
         best = min((b for b in (better, other) if b is not None), key=lambda b: b[0], default=None)
-        result.append(Profile(below, above, tuple(sorted([*points, (float(optimum.point[i]), 0.0), *more])), best))
+        result.append(CostProfile(below, above, tuple(sorted([*points, (float(optimum.point[i]), 0.0), *more])), best))
     return result
 
 

@@ -107,9 +107,10 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies) & (frequencies > 0.0)):
         raise LinearSystemError("A linear response needs a list of positive frequencies [rad/s].")
     value = np.asarray(1j * frequencies * device.admittance(1j * frequencies))
-    left_out = linearise(device)
-    notes = [f"Friction left out: {', '.join(left_out.frictions)}."] if left_out.frictions else []
-    notes += [f"Gaps closed: {', '.join(left_out.gaps)}."] if left_out.gaps else []
+    linear = linearise(device)
+    left_out = {e.key: [o.label for o in linear.left_out if o.key == e.key] for e in linear.left_out}
+    notes = [f"{key.capitalize()} left out: {', '.join(labels)}." for key, labels in left_out.items()]
+    notes += [f"Gaps closed: {', '.join(linear.gaps)}."] if linear.gaps else []
     return as_read(replace(exact(frequencies, value), source="linear model", notes=tuple(notes)), cell_bandwidth)
 
 

@@ -15,7 +15,7 @@ from inerter.identification.experiment import Experiment, experiment_of, forgott
 from inerter.identification.fit import Misfit
 from inerter.identification.guess import chain_of, guess_of, sign_of
 from inerter.identification.hypotheses import Hypothesis
-from inerter.identification.intervals import BestFit, Profile, best_fit_of, profiles, robust_cost, steps_of
+from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, profiles, robust_cost, steps_of
 from inerter.identification.judging import Judge, check_parts, judge_of
 from inerter.identification.noise import plain, whitening_of, yardstick
 from inerter.identification.options import FitOptions
@@ -42,7 +42,7 @@ class SolvedFit:
 
     problem: FitProblem
     optimum: BestFit
-    profiles: tuple[Profile, ...]
+    profiles: tuple[CostProfile, ...]
     checked: tuple[NDArray[np.bool_], ...]  # samples of each record that were kept for the check
     leads: tuple[float, ...]
     costs: tuple[float, ...]
@@ -167,7 +167,7 @@ def _refined(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
     return optimum
 
 
-def _profiled(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, list[Profile]]:
+def _profiled(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, list[CostProfile]]:
     """Profiles of all parameters; a better fit met on the way becomes the optimum, and all are walked once more."""
     found = profiles(problem, optimum)
     for _ in range(2):
@@ -181,8 +181,8 @@ def _profiled(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, list[Prof
 
 
 def _unbiased(
-    problem: FitProblem, optimum: BestFit, found: Sequence[Profile], bias: Matrix
-) -> tuple[BestFit, list[Profile]]:
+    problem: FitProblem, optimum: BestFit, found: Sequence[CostProfile], bias: Matrix
+) -> tuple[BestFit, list[CostProfile]]:
     """The best fit and its profiles without what the sensors' errors did to them.
 
     Where a record bounds a value on one side only, or not at all, the curvature says nothing of how far that is.

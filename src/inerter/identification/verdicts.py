@@ -8,7 +8,7 @@ import numpy as np
 
 from inerter.identification.fit import Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
-from inerter.identification.intervals import Profile
+from inerter.identification.intervals import CostProfile
 from inerter.identification.kinds import FitFinding
 from inerter.identification.space import Space
 from inerter.networks.elements.roles import Linear
@@ -19,7 +19,7 @@ _ROOM = 1.5  # times the largest force: a load cell that bears more has room
 
 
 def identifiability(
-    parameter: Parameter, profile: Profile, space: Space, index: int, comparisons: Sequence[RecordFit]
+    parameter: Parameter, profile: CostProfile, space: Space, index: int, comparisons: Sequence[RecordFit]
 ) -> Identifiability:
     """Whether the records identify a parameter, and why not."""
     low, high = parameter.interval

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from inerter.errors import PerformanceIndexError, RowError
-from inerter.fields import Choice, Field, choices_of, fields_of
+from inerter.fields import Field, TextChoice, choices_of, fields_of
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce
 from inerter.indices.element_stroke import ElementStroke
@@ -55,7 +55,7 @@ def index_settings() -> dict[str, Field]:
     return found
 
 
-def index_choices(symbol: str) -> tuple[Choice, ...]:
+def index_choices(symbol: str) -> tuple[TextChoice, ...]:
     """The texts that an index has for settings; one that is `needed` must be given."""
     return choices_of(INDICES[symbol])
 

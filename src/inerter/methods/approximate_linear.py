@@ -26,7 +26,7 @@ from inerter.methods.method import Estimate, Objective, Sees
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
-from inerter.norms.hinf import Peak
+from inerter.norms.hinf import GainPeak
 from inerter.simulation.event_driven import KERNELS
 from inerter.systems.arrivals import Arrival
 from inerter.systems.descriptor import close
@@ -248,7 +248,7 @@ class ApproximateLinear:
                 largest_gain(rest[:, 0], lines, known, drive.omega, window) for window in windows
             )
             value, scatter, smeared = weight * value, weight * scatter, weight * abs(wider - value)
-            peaks = tuple(Peak(peak.omega, weight * peak.gain) for peak in found)
+            peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in found)
         else:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.indices.question import Index
-from inerter.methods.combined import Part, combined
+from inerter.methods.combined import ObjectivePart, combined
 from inerter.networks.elements import Element, Free, Tied
 from inerter.vehicle.changed import mounted, with_elements
 from inerter.vehicle.vehicle import Vehicle
@@ -105,7 +105,7 @@ def objective_of(vehicle: Vehicle, index: Asked, method: Method) -> Objective:
     """The index as a function of the free values."""
     loose = without_tied_values(vehicle)
     if loose is not None:
-        return combined([Part(objective_of(loose.vehicle, index, method), loose.follow)], worst=False)
+        return combined([ObjectivePart(objective_of(loose.vehicle, index, method), loose.follow)], worst=False)
     return index.as_objective(vehicle, method) if is_composed(index) else method.objective(vehicle, index)
 
 

@@ -33,7 +33,7 @@ class Follow(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class ObjectivePart:
     """An objective over values that follow from ours (over ours, without), times `scale`, plus `offset`."""
 
     objective: Any
@@ -87,7 +87,7 @@ def _possible(values: Array) -> NDArray[np.bool_]:
     return np.asarray(np.all((values > 0.0) & np.isfinite(values), axis=1))
 
 
-def combined(parts: Sequence[Part], *, worst: bool) -> Objective:
+def combined(parts: Sequence[ObjectivePart], *, worst: bool) -> Objective:
     """The sum of the parts or the largest of them; with gradients if all of them have some."""
     values = CombinedValues(tuple(parts), worst)
     known = all(hasattr(part.objective, "value_and_gradient") for part in parts)
@@ -99,7 +99,7 @@ def combined(parts: Sequence[Part], *, worst: bool) -> Objective:
 class CombinedValues:
     """Parts of which no gradient is known: an `Objective`."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[ObjectivePart, ...]
     worst: bool
 
     def values(self, points: Array) -> Array:
@@ -119,7 +119,7 @@ class Combined:
     plain: CombinedValues
 
     @property
-    def _parts(self) -> tuple[Part, ...]:
+    def _parts(self) -> tuple[ObjectivePart, ...]:
         return self.plain.parts
 
     def values(self, points: Array) -> Array:

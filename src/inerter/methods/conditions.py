@@ -16,7 +16,7 @@ from inerter.errors import OK, PerformanceIndexError, Status
 from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_composed, objective_of
-from inerter.methods.combined import Part, combined
+from inerter.methods.combined import ObjectivePart, combined
 from inerter.methods.method import Estimate, Method, Objective, asked_of
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
@@ -180,7 +180,7 @@ class OverConditions(OfIndex):
         for (case, index), share in zip(self.cases(vehicle), self.conditions.shares, strict=True):
             own = tuple(case.free_values())
             follow = None if own == names else Ties(names, tuple(Tied((name,)) for name in own))
-            parts.append(Part(objective_of(case, index, method), follow, 1.0 if self.worst else share))
+            parts.append(ObjectivePart(objective_of(case, index, method), follow, 1.0 if self.worst else share))
         return combined(parts, worst=self.worst)
 
 

@@ -20,7 +20,7 @@ from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import POORLY, Equivalent, equivalent
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
-from inerter.norms.hinf import Peak
+from inerter.norms.hinf import GainPeak
 from inerter.systems.arrivals import Arrival, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filtered import filtered
@@ -112,11 +112,11 @@ class HarmonicBalance:
         values, gradients = self.components(point, which)
         return float(values[0]), gradients[0]
 
-    def peaks(self, point: Array) -> tuple[tuple[Peak, ...], bool]:
+    def peaks(self, point: Array) -> tuple[tuple[GainPeak, ...], bool]:
         """Local maxima of the index's gain, the highest first, and whether all went well."""
         omegas, gains, fine, _ = next(self._gains(point[None]))
         order = np.argsort(-gains, kind="stable")
-        return tuple(Peak(float(omegas[i]), self.weight * float(gains[i])) for i in order), bool(fine)
+        return tuple(GainPeak(float(omegas[i]), self.weight * float(gains[i])) for i in order), bool(fine)
 
     def active(self, point: Array) -> Array:
         """Frequencies [rad/s] of the local maxima of the gain, the highest first; 0 for the limit of low ones."""

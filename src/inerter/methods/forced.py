@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status
 from inerter.methods.steady_squares import steady_squares
-from inerter.norms.hinf import Peak
+from inerter.norms.hinf import GainPeak
 from inerter.signals.harmonics import sine
 from inerter.simulation.inputs import tabulate
 from inerter.simulation.start import initial_state
@@ -57,7 +57,7 @@ class Forced:
         return sqrt(2.0 * float(found[0])) / self.amplitude, status
 
 
-def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> tuple[list[Peak], list[Status]]:
+def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> tuple[list[GainPeak], list[Status]]:
     """The local maxima of the ratio near the frequencies [rad/s] at which they are expected, the highest first.
 
     One that is expected at zero is the ratio at `lowest`.
@@ -70,12 +70,12 @@ def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor)
     peaks = [summit for summit in found if summit is not None]
     if near.size < expected.size or not peaks:
         ratio, status = forced(lowest)
-        peaks.append((Peak(0.0, ratio), status))
+        peaks.append((GainPeak(0.0, ratio), status))
     peaks.sort(key=lambda peak: -peak[0].gain)
     return [peak for peak, _ in peaks], [status for _, status in peaks]
 
 
-def _summit(forced: Forced, lower: float, upper: float) -> tuple[Peak, Status] | None:
+def _summit(forced: Forced, lower: float, upper: float) -> tuple[GainPeak, Status] | None:
     """The largest ratio between two frequencies, if it is not at one of them."""
     statuses: dict[float, Status] = {}
 
@@ -88,7 +88,7 @@ def _summit(forced: Forced, lower: float, upper: float) -> tuple[Peak, Status] |
     at = float(found.x)
     if min(at - ends[0], ends[1] - at) < 3.0 * _NEAR:
         return None
-    return Peak(float(np.exp(at)), -float(found.fun)), statuses.get(at, OK)
+    return GainPeak(float(np.exp(at)), -float(found.fun)), statuses.get(at, OK)
 
 
 def coarse_maxima(forced: Forced, poles: Array, pool: Executor) -> Array:

@@ -13,7 +13,7 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.methods.counterpart import Counterpart, memory
 from inerter.methods.excitation import Excited
 from inerter.norms.h2 import h2
-from inerter.norms.hinf import Peak
+from inerter.norms.hinf import GainPeak
 from inerter.norms.response import frequency_response
 from inerter.simulation.inputs import check_holds
 from inerter.simulation.observe import trajectory_of
@@ -115,7 +115,7 @@ class Runs:
 
 def largest_gain(
     rest: Array, lines: Array | None, known: LinearModel | None, omega: Array, window: Array
-) -> tuple[float, Array, tuple[Peak, ...]]:
+) -> tuple[float, Array, tuple[GainPeak, ...]]:
     """The largest gain, its deviation in each realisation, and the local maxima, the highest first.
 
     Squared gains less those of the linear model, `rest` (realisations, harmonics), are smoothed; those of the model,
@@ -146,9 +146,9 @@ def _summits(values: Array, reach: int) -> list[int]:
     return [int(i) for i in high if values[i] >= values[max(i - reach, 0) : i + reach + 1].max()]
 
 
-def _refined(squares: Callable[[Array], Array], omega: Array, i: int) -> Peak:
+def _refined(squares: Callable[[Array], Array], omega: Array, i: int) -> GainPeak:
     """The maximum between the neighbours of a harmonic."""
     at = np.linspace(omega[max(i - 1, 0)], omega[min(i + 1, omega.size - 1)], 129)
     values = squares(at)
     best = int(np.argmax(values))
-    return Peak(float(at[best]), float(np.sqrt(values[best])))
+    return GainPeak(float(at[best]), float(np.sqrt(values[best])))

@@ -14,7 +14,7 @@ from inerter.indices.question import Question
 from inerter.methods.method import Estimate
 from inerter.methods.sides import on_one_side
 from inerter.norms.h2 import h2
-from inerter.norms.hinf import Peak, hinf_norm
+from inerter.norms.hinf import GainPeak, hinf_norm
 from inerter.systems.arrivals import Column, columns_of, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filtered import filtered
@@ -152,7 +152,7 @@ class LinearProblem:
     def _peak_gain(self, system: LinearSystem) -> Estimate:
         gain = hinf_norm(system)
         weight = float(self.weights[0])
-        peaks = tuple(Peak(peak.omega, weight * peak.gain) for peak in gain.peaks)
+        peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in gain.peaks)
         return Estimate(weight * gain.value, self.question.unit, gain.status, peaks=peaks, notes=system.notes)
 
 

@@ -16,7 +16,7 @@ from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, without_tied_values
-from inerter.norms.hinf import Peak
+from inerter.norms.hinf import GainPeak
 from inerter.systems.arrivals import inputs_of
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
@@ -39,7 +39,7 @@ class Estimate:
     standard_error: float | None = None  # None: the method has no scatter
     interval: tuple[float, float] | None = None  # of 95 % confidence, where there is a standard error
     realisations: int = 0  # random inputs that were averaged
-    peaks: tuple[Peak, ...] = ()  # local maxima of the gain, for an index that is a peak gain
+    peaks: tuple[GainPeak, ...] = ()  # local maxima of the gain, for an index that is a peak gain
     notes: tuple[str, ...] = ()  # what the method left out
     samples: tuple[float, ...] = field(default=(), repr=False)  # the value on each random input
     period: int | None = None  # of each random input [s]
@@ -101,7 +101,7 @@ class Compiled(Protocol):
 
 
 class Sees(Enum):
-    """What a method sees of a design that is not linear."""
+    """What a method sees of a design that is not linear, in the order of how much that is."""
 
     NEITHER = auto()  # friction is left out, gaps are closed
     FRICTION = auto()  # gaps are refused

@@ -37,6 +37,7 @@ class Norm:
     sees = Sees.NEITHER
     needs_amplitude = False
     searches = True
+    has_gradients = True
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)

@@ -68,6 +68,16 @@ def methods_that(can: Callable[[str], object]) -> tuple[str, ...]:
     return tuple(name for name in METHODS if can(name))
 
 
+def with_gradients(conventions: str) -> tuple[Method, ...]:
+    """The methods whose objectives have gradients, under these conventions if they have any; first what sees most.
+
+    They are quick, and so the first look at a search of what is not.
+    """
+    names = [name for name in METHODS if getattr(_kind(name), "has_gradients", False)]
+    names.sort(key=lambda name: what_is_seen(name).value, reverse=True)
+    return tuple(make_method(name, {"conventions": conventions}, {}) for name in names)
+
+
 def method_settings(name: str) -> tuple[Field, ...]:
     """The settings that are the method's own, and no other's."""
     return fields_of(_kind(name))

@@ -54,6 +54,7 @@ class StatisticalLinearisation:
     sees = Sees.FRICTION
     needs_amplitude = True
     searches = True
+    has_gradients = True
 
     def __post_init__(self) -> None:
         Norm(self.conventions)  # refuses what it does not know

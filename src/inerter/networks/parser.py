@@ -44,17 +44,17 @@ def network(expression: str, /, **parts: Network) -> Network:
 
 
 @dataclass(frozen=True)
-class Part:
+class ExpressionPart:
     """A part of an expression: a name, or parts joined; it is `expression[begin:end]`, without brackets around it."""
 
     begin: int
     end: int
     name: str = ""
     sign: str = ""  # that joins its parts: "|" or "-"
-    parts: tuple[Part, ...] = ()
+    parts: tuple[ExpressionPart, ...] = ()
 
 
-def parsed(expression: str, known: Container[str] | None = None) -> Part:
+def parsed(expression: str, known: Container[str] | None = None) -> ExpressionPart:
     """What an expression joins, each part with its place in the text.
 
     Raises `ExpressionError` for a syntax error, or for a name that is not `known` where that is given.
@@ -92,7 +92,7 @@ def written(network: Network, names: Iterable[str]) -> str:
     return text(network, "")
 
 
-def _joined(part: Part, known: Mapping[str, Network]) -> Network:
+def _joined(part: ExpressionPart, known: Mapping[str, Network]) -> Network:
     """The network that a part of an expression stands for."""
     if part.name:
         return known[part.name]
@@ -110,27 +110,27 @@ class _Parser:
     position: int = 0
     depth: int = 0
 
-    def parse(self) -> Part:
+    def parse(self) -> ExpressionPart:
         result = self._parallel()
         if self._next() is not None:
             self._fail("expected '|', '-' or the end here")
         return result
 
-    def _parallel(self) -> Part:
+    def _parallel(self) -> ExpressionPart:
         return self._several("|", self._series)
 
-    def _series(self) -> Part:
+    def _series(self) -> ExpressionPart:
         return self._several("-", self._atom)
 
-    def _several(self, sign: str, one: Callable[[], Part]) -> Part:
+    def _several(self, sign: str, one: Callable[[], ExpressionPart]) -> ExpressionPart:
         """One part, or as many as `sign` joins, with the brackets that stand around them."""
         begin, parts = self._place(), [one()]
         while self._next() == sign:
             self.position += 1
             parts.append(one())
-        return parts[0] if len(parts) == 1 else Part(begin, self._end(), sign=sign, parts=tuple(parts))
+        return parts[0] if len(parts) == 1 else ExpressionPart(begin, self._end(), sign=sign, parts=tuple(parts))
 
-    def _atom(self) -> Part:
+    def _atom(self) -> ExpressionPart:
         token = self._next()
         if token == "(":
             self.position += 1
@@ -150,7 +150,7 @@ class _Parser:
             self._fail(f"there is no element named {token!r} (defined: {names or 'none'})")
         begin = self._place()
         self.position += 1
-        return Part(begin, begin + len(token), token)
+        return ExpressionPart(begin, begin + len(token), token)
 
     def _next(self) -> str | None:
         return self.tokens[self.position][0] if self.position < len(self.tokens) else None

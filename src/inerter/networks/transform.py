@@ -78,7 +78,7 @@ def with_values(network: Network, values: Mapping[str, float]) -> Network:
 def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
     """The networks with every free value named: by itself, by its element, else by its symbol and a number if needed.
 
-    `networks` goes from the name of the mount to its network. Two free values of the same name are one variable and
+    `networks` goes from the name of the mount to its network. Two free values of the same name are one and
     must have the same bounds and unit; unnamed ones are all different.
 
     Raises `DesignError` where one name stands for two different ranges, or a value is tied to none.
@@ -136,9 +136,19 @@ class Linearised:
 
     network: Network | None
     rigid: bool
-    frictions: tuple[str, ...]
-    gaps: tuple[str, ...]
+    left_out: tuple[Element, ...]
+    closed: tuple[Element, ...]
     idle: tuple[str, ...]
+
+    @property
+    def frictions(self) -> tuple[str, ...]:
+        """The labels of what is left out."""
+        return tuple(element.label for element in self.left_out)
+
+    @property
+    def gaps(self) -> tuple[str, ...]:
+        """The labels of what is closed."""
+        return tuple(element.label for element in self.closed)
 
 
 def linearise(network: Network) -> Linearised:
@@ -152,11 +162,10 @@ def linearise(network: Network) -> Linearised:
     kept, rigid = _linear(network)
     after = Counter(id(element) for element in kept.elements()) if kept is not None else Counter()
     dropped = Counter(id(element) for element in before) - after
-    frictions = tuple(e.label for e in before if e.linear is Linear.OPEN)
-    gaps = tuple(e.label for e in before if e.linear is Linear.CLOSED)
+    left_out, closed = (tuple(e for e in before if e.linear is role) for role in (Linear.OPEN, Linear.CLOSED))
     others = {id(e): e for e in before if e.linear not in _LEFT_OUT}
     idle = tuple(element.label for key, element in others.items() if dropped[key])
-    return Linearised(kept, rigid, frictions, gaps, idle)
+    return Linearised(kept, rigid, left_out, closed, idle)
 
 
 def _linear(network: Network) -> tuple[Network | None, bool]:

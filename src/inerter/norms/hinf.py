@@ -21,7 +21,7 @@ _RISE = 1e-11  # a smaller relative change of the gain is rounding
 
 
 @dataclass(frozen=True)
-class Peak:
+class GainPeak:
     """A local maximum of the gain."""
 
     omega: float  # [rad/s], infinite for the gain of the direct term
@@ -33,7 +33,7 @@ class HInfinity:
     """The largest gain, every local maximum of the gain (highest first), and why it is infinite if it is."""
 
     value: float
-    peaks: tuple[Peak, ...]
+    peaks: tuple[GainPeak, ...]
     status: Status
 
 
@@ -55,20 +55,20 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
     found = peaks_exactly(system) if exact else None
     if found is not None:
         known, status = found
-        return HInfinity(known[0][1] if known else 0.0, tuple(Peak(*peak) for peak in known), status)
+        return HInfinity(known[0][1] if known else 0.0, tuple(GainPeak(*peak) for peak in known), status)
     parts = split(merged)
     if parts.poles.size and np.any(parts.visible()):
         if exact:  # the transfer functions have no such poles
             return HInfinity(np.nan, (), _hidden(float(np.abs(parts.poles.imag).max())))
         frequencies = np.unique(np.abs(parts.poles.imag))
-        return HInfinity(np.inf, tuple(Peak(float(w), np.inf) for w in frequencies), parts.status)
+        return HInfinity(np.inf, tuple(GainPeak(float(w), np.inf) for w in frequencies), parts.status)
     stable = LinearSystem(parts.decaying.A, parts.decaying.B, parts.decaying.C, merged.D)
     value, peaks = _largest(stable)
     status = _sharpness(stable.A, peaks)
     return HInfinity(value if status.ok else np.nan, tuple(peaks), status)
 
 
-def _largest(stable: LinearSystem) -> tuple[float, list[Peak]]:
+def _largest(stable: LinearSystem) -> tuple[float, list[GainPeak]]:
     gain = _gain(stable)
     poles = np.linalg.eigvals(stable.A) if stable.order else np.zeros(0)
     grid = _grid(np.asarray(poles, dtype=complex))
@@ -82,7 +82,7 @@ def _largest(stable: LinearSystem) -> tuple[float, list[Peak]]:
     return peaks[0].gain if peaks else 0.0, peaks
 
 
-def _sharpness(A: Matrix, peaks: list[Peak]) -> Status:
+def _sharpness(A: Matrix, peaks: list[GainPeak]) -> Status:
     """Whether rounding leaves the damping of the resonance under the highest peak certain."""
     if A.size == 0 or not peaks or not np.isfinite(peaks[0].omega):
         return OK
@@ -138,15 +138,15 @@ def _grid(poles: NDArray[np.complex128]) -> Matrix:
     return np.unique(grid[grid >= 0.0])
 
 
-def _peaks(gain: Gain, grid: Matrix, D: Matrix) -> list[Peak]:
+def _peaks(gain: Gain, grid: Matrix, D: Matrix) -> list[GainPeak]:
     grid, values = _without_level_steps(grid, gain(grid))
     inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] > values[2:]))
     found = [_refine(gain, grid[i], grid[i + 1], grid[i + 2]) for i in inner]
     if values.size == 1 or values[0] > values[1]:
-        found.append(Peak(0.0, float(values[0])))
+        found.append(GainPeak(0.0, float(values[0])))
     at_infinity = float(np.linalg.norm(D, 2)) if D.size else 0.0
     if at_infinity > values[-1]:
-        found.append(Peak(np.inf, at_infinity))
+        found.append(GainPeak(np.inf, at_infinity))
     found = [peak for peak in found if peak.gain > 0.0]
     return _distinct(sorted(found, key=lambda peak: -peak.gain))
 
@@ -160,7 +160,7 @@ def _without_level_steps(grid: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
     return grid[kept], values[kept]
 
 
-def _refine(gain: Gain, left: float, middle: float, right: float) -> Peak:
+def _refine(gain: Gain, left: float, middle: float, right: float) -> GainPeak:
     """The maximum in a bracket, by its distance from the middle: a resonance may be much narrower than that."""
     result = scipy.optimize.minimize_scalar(
         lambda shift: -float(gain(np.array([middle + shift]))[0]),
@@ -169,11 +169,11 @@ def _refine(gain: Gain, left: float, middle: float, right: float) -> Peak:
         options={"xatol": 1e-9 * (right - left), "maxiter": 200},
     )
     best, at_middle = -float(result.fun), float(gain(np.array([middle]))[0])
-    return Peak(float(middle + result.x), best) if best >= at_middle else Peak(float(middle), at_middle)
+    return GainPeak(float(middle + result.x), best) if best >= at_middle else GainPeak(float(middle), at_middle)
 
 
-def _distinct(peaks: list[Peak]) -> list[Peak]:
-    kept: list[Peak] = []
+def _distinct(peaks: list[GainPeak]) -> list[GainPeak]:
+    kept: list[GainPeak] = []
     for peak in peaks:
         if all(abs(peak.omega - other.omega) > 1e-7 * other.omega for other in kept if np.isfinite(other.omega)):
             kept.append(peak)

@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.methods.method import Differentiable, Objective
-from inerter.optimisation.levels import Rows, lowest_level
+from inerter.optimisation.levels import LogRows, lowest_level
 from inerter.optimisation.limits import Bound, Sense
 from inerter.optimisation.local import LocalOptimum
 
@@ -64,7 +64,7 @@ class Limited:
         """The peaks of each function at a point; None of smooth ones."""
         return tuple(function.active(point) for function in self.functions)
 
-    def rows(self, point: Array, known: Known | None = None) -> Rows:
+    def rows(self, point: Array, known: Known | None = None) -> LogRows:
         """The logarithms at a point with their slopes; limits are relative to their values, and below zero if kept."""
         which = (None,) * len(self.functions) if known is None else known
         found = [_logs(f, point, peaks, known is None) for f, peaks in zip(self.functions, which, strict=True)]
@@ -86,7 +86,7 @@ class Limited:
                 logs.append(sign * off)
                 slopes.append(sign * gradients)
                 under.append(level)
-        return Rows(*map(np.concatenate, (logs, slopes, under, equal, equal_slopes)))
+        return LogRows(*map(np.concatenate, (logs, slopes, under, equal, equal_slopes)))
 
     def at(self, point: Array, evaluations: int) -> LocalOptimum:
         """The point with what it comes to."""

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class LogRows:
     """Logarithms of functions at a point, and their slopes over the logarithms of its values.
 
     `under` is 1 for those that stay below the level and 0 for those that stay below zero; `equal` are those that are
@@ -28,19 +28,19 @@ class Rows:
     equal_slopes: Array
 
 
-def below(logs: Array, slopes: Array) -> Rows:
+def below(logs: Array, slopes: Array) -> LogRows:
     """Rows that all stay below the level."""
     none = np.zeros(0), np.zeros((0, slopes.shape[1]))
-    return Rows(logs, slopes, np.ones(logs.size), *none)
+    return LogRows(logs, slopes, np.ones(logs.size), *none)
 
 
 def lowest_level(
-    rows: Callable[[Array], Rows], start: Array, lower: Array, upper: Array, tolerance: float, most_steps: int
+    rows: Callable[[Array], LogRows], start: Array, lower: Array, upper: Array, tolerance: float, most_steps: int
 ) -> tuple[Array, int]:
     """Minimise t over (log point, t) subject to `rows`; returns the point and how often these were computed."""
-    memory: dict[bytes, Rows] = {}
+    memory: dict[bytes, LogRows] = {}
 
-    def at(z: Array) -> Rows:
+    def at(z: Array) -> LogRows:
         key = z[:-1].tobytes()
         if key not in memory:
             memory[key] = rows(np.clip(np.exp(z[:-1]), lower, upper))

@@ -15,7 +15,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.methods.method import Differentiable, Objective
-from inerter.optimisation.levels import Rows, below, lowest_level
+from inerter.optimisation.levels import LogRows, below, lowest_level
 
 Array = NDArray[np.float64]
 _LEVEL_TOLERANCE = 1e-9  # relative height of a peak above the level that ends the minimax search
@@ -79,7 +79,7 @@ def trust_region(objective: Objective, start: Array, lower: Array, upper: Array)
 def approach(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     """Close to a minimax optimum: the level above the peaks, each followed as it moves."""
 
-    def peaks(point: Array) -> Rows:
+    def peaks(point: Array) -> LogRows:
         which = _active(objective, point)[:_MOST_PEAKS]
         values, gradients = objective.components(point, which)
         logs, slopes = np.full(_MOST_PEAKS, _HIDDEN), np.zeros((_MOST_PEAKS, point.size))
@@ -99,7 +99,7 @@ def polish(objective: Differentiable, start: LocalOptimum, lower: Array, upper: 
     point = start.point
     for _ in range(20):
 
-        def fixed(point: Array, which: Array = known) -> Rows:
+        def fixed(point: Array, which: Array = known) -> LogRows:
             values, gradients = objective.components(point, which)
             return below(np.log(values), gradients * point / values[:, None])
 

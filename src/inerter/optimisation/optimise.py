@@ -16,7 +16,7 @@ from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Differentiable, Estimate, Method, Objective, Sees, check_request
 from inerter.methods.norm import Norm
-from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.optimisation.constrained import KEPT, KEPT_COSTLY, Limited, searches, trust_region_within
 from inerter.optimisation.held import Held, held_at, infeasible
@@ -225,8 +225,7 @@ def _quick_optima(
     seed: int,
 ) -> list[Array]:
     """Local optima, the best first, of the first quick method that takes the design; else points of a sample."""
-    conventions = getattr(method, "conventions", "exact")
-    for quick in (StatisticalLinearisation(conventions), Norm(conventions)):
+    for quick in with_gradients(getattr(method, "conventions", "exact")):
         try:
             problem = Limited(objective_of(vehicle, index, quick), bounds_of(vehicle, limits, quick), *bounds)
             if not (isinstance(problem.objective, Differentiable) and is_smooth(problem.bounds)):

@@ -37,7 +37,7 @@ _LONGEST_NAME = 20  # a longer name of a layout has a line of its own
 
 
 @dataclass(frozen=True)
-class _Row:
+class _TextRow:
     """A layout, what stands in the columns after it, what stands in the last one, and its status."""
 
     name: str
@@ -84,7 +84,7 @@ def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
             with_unit(float(design["value"]), unit, error_of(design)),
             *([_improvement(design)] if versus else []),
         ]
-        table.append(_Row(name, cells, _parameters(design), str(design["status"].item())))
+        table.append(_TextRow(name, cells, _parameters(design), str(design["status"].item())))
     yield from _lines(["layout", "value", *(["improvement"] if versus else [])], "parameters", table)
 
 
@@ -107,7 +107,7 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
             for value, at in ends
         ]
         texts = texts[::-1] if versus else texts
-        table.append(_Row(name, texts[:1], texts[1:], _first_failure(results, name, index)))
+        table.append(_TextRow(name, texts[:1], texts[1:], _first_failure(results, name, index)))
     yield from _lines(["layout", "best"], "worst", table)
 
 
@@ -144,7 +144,7 @@ def _first_failure(results: xr.Dataset, layout: str, index: str) -> str:
     return f"{bad[0]} ({len(bad)} of {len(every)} values are not ok)" if bad else "ok"
 
 
-def _lines(header: list[str], last: str, table: Sequence[_Row]) -> Iterator[str]:
+def _lines(header: list[str], last: str, table: Sequence[_TextRow]) -> Iterator[str]:
     """The rows below their header in columns; the items of the last column wrap."""
     columns = [header, *([row.name if len(row.name) <= _LONGEST_NAME else "", *row.cells] for row in table)]
     widths = [max(map(len, column)) for column in zip(*columns, strict=True)]

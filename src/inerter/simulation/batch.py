@@ -19,7 +19,7 @@ from inerter.kernels.prepare import prepare_on
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import DrivenMany, InputTable, assign, check_driven, check_holds, tabulate, whole_steps
-from inerter.simulation.start import Initial, ending_of, initial_state
+from inerter.simulation.start import ending_of, initial_state
 from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find
@@ -69,7 +69,6 @@ def simulate_many(
     duration: float,
     step: float = 2e-4,
     settled: float = 0.0,
-    initial: Initial = "rest",
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
@@ -91,7 +90,7 @@ def simulate_many(
     if not is_number(settled):
         raise SimulationError(f"The time from which on values count is a number of seconds, got {settled!r}.")
     check_driven("simulate_many", driven)
-    speed = driven.get("speed")
+    speed, initial = driven.get("speed"), driven.pop("initial", "rest")
     groups, count = groups_of(driven)
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
@@ -214,7 +213,9 @@ def listed(what: str, given: object) -> list[Any]:
 
 def groups_of(driven: DrivenMany) -> tuple[dict[str, Any], int]:
     """The sequences that drive the runs of each vehicle, by keyword, and how many runs that are."""
-    groups: dict[str, Any] = {name: group for name, group in driven.items() if name != "speed" and group is not None}
+    groups: dict[str, Any] = {
+        name: group for name, group in driven.items() if name not in ("speed", "initial") and group is not None
+    }
     given: Collection[Any] = groups.values()
     lengths = {len(g) if isinstance(g, Sequence) else 0 for g in given}
     if len(lengths) != 1 or 0 in lengths:

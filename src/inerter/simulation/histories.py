@@ -14,7 +14,6 @@ from inerter.simulation import event_driven
 from inerter.simulation.batch import groups_of, listed
 from inerter.simulation.inputs import DrivenMany, check_driven
 from inerter.simulation.simulate import simulate
-from inerter.simulation.start import Initial
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
@@ -30,7 +29,6 @@ def simulate_to_files(
     duration: float,
     step: float = 2e-4,
     every: int = 1,
-    initial: Initial = "rest",
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
     **driven: Unpack[DrivenMany],
@@ -55,7 +53,8 @@ def simulate_to_files(
             find(known, name, SimulationError)
     place = _empty(folder)
     files = [[place / f"design-{i:05d}-signal-{j:03d}.nc" for j in range(count)] for i in range(len(cars))]
-    same = {"duration": duration, "step": step, "every": every, "initial": initial, "speed": driven.get("speed")}
+    shared = {"speed": driven.get("speed"), "initial": driven.get("initial", "rest")}
+    same = {"duration": duration, "step": step, "every": every, **shared}
     items = [
         (car, {name: group[j] for name, group in groups.items()}, str(files[i][j]))
         for i, car in enumerate(cars)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from inerter.signals.arguments import slack
 from inerter.signals.signal import Signal, SignalSum
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from inerter.simulation.start import Initial
 
 Matrix = NDArray[np.float64]
 _SAME = 1e-9  # of a step: knots that differ by less are one
@@ -50,21 +53,26 @@ class InputTable:
 
 
 class Driven(TypedDict, total=False):
-    """What drives a run, as keywords of `simulate`."""
+    """What drives a run, and from where, as keywords of `simulate`."""
 
     road: Signal | Mapping[str, Signal] | None
     forces: Signal | Mapping[str, Signal] | None
     displacement: Signal | None
     speed: float | None
+    initial: Initial
 
 
 class DrivenMany(TypedDict, total=False):
-    """What drives the runs of `simulate_many`, as keywords: the j-th of each sequence drives the j-th run."""
+    """What drives the runs of `simulate_many`, as keywords: the j-th of each sequence drives the j-th run.
+
+    All have one speed and one initial state.
+    """
 
     road: Sequence[Signal] | None
     forces: Sequence[Mapping[str, Signal]] | None
     displacement: Sequence[Signal] | None
     speed: float | None
+    initial: Initial
 
 
 def check_driven(caller: str, driven: Mapping[str, object]) -> None:

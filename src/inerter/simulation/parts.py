@@ -40,7 +40,7 @@ class Reaction:
 
 
 @dataclass(frozen=True, eq=False)
-class Inertia:
+class InertiaMatrix:
     """The singular inertia matrix M, its coupling B to the roads, its inverse on its range, its null directions."""
 
     M: Matrix
@@ -79,13 +79,13 @@ class Parts:
         return _stack(self.reactions, self.nodes, self.roads)
 
     @cached_property
-    def inertia(self) -> Inertia:
+    def inertia(self) -> InertiaMatrix:
         """Inertia of masses and inerters."""
         M = np.diag(self.masses) + self.nodal(self.b, self.E)
         rows = np.vstack([np.eye(self.nodes)[self.masses > 0.0], unit_rows(self.E[self.b > 0.0])])
         carried, massless = range_and_null(rows)
         inverse = carried @ np.linalg.inv(carried.T @ M @ carried) @ carried.T
-        return Inertia(M, self.nodal(self.b, self.R), inverse, massless)
+        return InertiaMatrix(M, self.nodal(self.b, self.R), inverse, massless)
 
     @property
     def massless(self) -> NDArray[np.bool_]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal, Unpack
+from typing import Any, Literal, Unpack
 
 from inerter.checks import is_number
 from inerter.errors import SimulationError
@@ -25,7 +25,6 @@ def simulate(
     duration: float | None = None,
     step: float = 2e-4,
     integrator: Literal["event-driven", "time-stepping"] = "event-driven",
-    initial: Initial = "rest",
     every: int = 1,
     energy: bool = False,
     memory_limit: float = MEMORY_LIMIT,
@@ -34,27 +33,30 @@ def simulate(
 ) -> Trajectory:
     """Simulate `vehicle` for `duration` [s] with true sticking and Nordin's backlash, sampled every `step` [s].
 
-    What drives it is said by the keywords of `Driven`. `road` moves all roads, each after its delay at `speed` [m/s]
-    (by default the signal's own); given by name, each road has its own signal and no further delay. `displacement`
-    moves a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and forces that get
-    no signal are zero.
+    What drives it, and from where, is said by the keywords of `Driven`. `road` moves all roads, each after its delay at
+    `speed` [m/s] (by default the signal's own); given by name, each road has its own signal and no further delay.
+    `displacement` moves a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and
+    forces that get no signal are zero.
 
     The event-driven integrator is exact between events for inputs that are cubics over a step (Hermite data, lines,
     holds), and finds events to near machine precision. `"time-stepping"` is independent of it, of first order in
     `step`, and takes any number of elements. `every = n` keeps every n-th step only.
 
-    `initial`: `"rest"`, unstrained over the roads as they are at t = 0; `"preload"`, in static equilibrium under the
-    forces as they are at t = 0; `"periodic"`, the steady state of a periodic input, repeated until the state repeats
-    (`run.repetition` says how well), with one period as default duration; a trajectory, to go on from its end; or an
-    array, the state itself. `energy` asks for the energy account, which takes about twenty times longer.
+    `initial`: `"rest"`, as without it, unstrained over the roads as they are at t = 0; `"preload"`, in static
+    equilibrium under the forces as they are at t = 0; `"periodic"`, the steady state of a periodic input, repeated
+    until the state repeats (`run.repetition` says how well), with one period as default duration; a trajectory, to go
+    on from its end; or an array, the state itself. `energy` asks for the energy account, which takes about twenty times
+    longer.
 
     Raises `SimulationError` for inputs that are missing, end too early or do not fit the step, and for a run that
     would need more than `memory_limit` [bytes]; `SignalError`, `MechanismError` and `DesignError` as signals and
     vehicles do. An integration that cannot go on ends in the trajectory's `status`.
     """
     check_driven("simulate", driven)
+    moved: dict[str, Any] = {**driven}
+    initial: Initial = moved.pop("initial", "rest")
     system = piecewise(vehicle)
-    signals, delays = assign(system.mechanism, **driven)
+    signals, delays = assign(system.mechanism, **moved)
     periodic = isinstance(initial, str) and initial == "periodic"
     length = _length(duration, common_period(signals) if periodic or duration is None else None, periodic)
     _check_every(every)

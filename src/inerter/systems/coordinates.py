@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.systems import rationals
-from inerter.systems.levers import RANK_TOLERANCE, Span, independent_rows
+from inerter.systems.levers import RANK_TOLERANCE, BranchRows, independent_rows
 from inerter.systems.rationals import FractionRows
 
 Matrix = NDArray[np.float64]
@@ -48,7 +48,7 @@ class Coordinates:
     P: Matrix
     rates: tuple[Matrix, Matrix, Matrix]
     motions: FractionRows  # R, U, Y and Z in fractions, a column each
-    span: Span
+    span: BranchRows
     known: dict[bytes, list[Matrix]] = field(default_factory=dict)  # what `rate` has found
 
     def rate(self, nodes: Matrix) -> list[Matrix]:
@@ -68,7 +68,7 @@ def find_coordinates(
     springs: Matrix,
     spring_roads: Matrix,
     forces: Matrix,
-    span: Span,
+    span: BranchRows,
 ) -> Coordinates:
     """Split the motions of the nodes, and choose independent elongations.
 
@@ -85,20 +85,20 @@ def find_coordinates(
     return found
 
 
-def combination(span: Span, rows: Matrix, target: Matrix) -> Matrix | None:
+def combination(span: BranchRows, rows: Matrix, target: Matrix) -> Matrix | None:
     """Numbers with which the rows, over nodes and perhaps roads, add up to `target`; None if they cannot."""
     return _combination(span, rows.shape, rows.tobytes(), target.tobytes())
 
 
 @lru_cache(maxsize=512)
-def _combination(span: Span, shape: tuple[int, int], rows: bytes, target: bytes) -> Matrix | None:
+def _combination(span: BranchRows, shape: tuple[int, int], rows: bytes, target: bytes) -> Matrix | None:
     matrix, wanted = np.frombuffer(rows).reshape(shape), np.frombuffer(target)[None]
     found = rationals.weights(span.meant(matrix), span.meant(wanted))[0]
     return None if found is None else rationals.rounded([found], shape[0])[0]
 
 
 @lru_cache(maxsize=512)
-def _found(span: Span, *matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
+def _found(span: BranchRows, *matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
     """The coordinates, or the number of a node that is held by nothing; remembered for all designs of a layout."""
     n, roads = matrices[0][0][1], matrices[3][0][1]
     given = [np.frombuffer(data).reshape(shape) for shape, data in matrices]

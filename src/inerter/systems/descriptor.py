@@ -32,7 +32,7 @@ from inerter.systems.filters import Filter
 from inerter.systems.frame import Frame, Long, split
 from inerter.systems.graph import Graph, linear_graph
 from inerter.systems.incidence import of_law, stacked
-from inerter.systems.levers import Span
+from inerter.systems.levers import BranchRows
 from inerter.systems.linear import Fine, LinearSystem, Origin
 from inerter.systems.observe import Observed, observe, observed_by_default
 from inerter.systems.outputs import check_inputs, force_of, input_names
@@ -173,7 +173,7 @@ def is_held_by_springs(mechanism: Mechanism) -> bool:
     """Whether springs determine the position of every coordinate when all roads lie still."""
     graph = linear_graph(mechanism)
     springs, _ = stacked(of_law(graph, Linear.STIFFNESS), graph)
-    span = Span.of(graph, [])
+    span = BranchRows.of(graph, [])
     rows = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     return all(combination(span, springs, row) is not None for row in rows)
 

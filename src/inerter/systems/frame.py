@@ -21,7 +21,7 @@ from inerter.networks.elements.roles import Linear
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph
 from inerter.systems.incidence import inertias, of_law, ports, stacked
-from inerter.systems.levers import Span
+from inerter.systems.levers import BranchRows
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.vehicle.mechanism import Mechanism
 
@@ -181,7 +181,7 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
         springs=spring_rows,
         spring_roads=spring_roads,
         forces=forces,
-        span=Span.of(graph, columns),
+        span=BranchRows.of(graph, columns),
     )
     known = outputs(mechanism, graph)
     asked = [known[name] for name in wanted if name in known]

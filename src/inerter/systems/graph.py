@@ -87,8 +87,8 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
                 f"({', '.join(linear.frictions)}): its ends are held by nothing there. Add a spring, damper or inerter."
             )
         networks[mount.name] = linear.network
-        notes += [f"friction {label!r} in {mount.name!r} left out" for label in linear.frictions]
-        notes += [f"gap {label!r} in {mount.name!r} closed" for label in linear.gaps]
+        notes += [f"{element.key} {element.label!r} in {mount.name!r} left out" for element in linear.left_out]
+        notes += [f"{element.key} {element.label!r} in {mount.name!r} closed" for element in linear.closed]
         notes += [f"{label!r} in {mount.name!r} carries no force then" for label in linear.idle]
     graph = _expand(mechanism, networks, labels, tuple(notes))
     if all(element.plain for mount in mechanism.mounts() for element in mount.network.elements()):

@@ -29,7 +29,7 @@ _SIMPLE = 8  # the largest denominator of a share that is taken for a simple one
 
 
 @dataclass(frozen=True)
-class Span:
+class BranchRows:
     """Rows of a graph's branches over nodes and some roads, springs first, then dampers: these decide what is one."""
 
     shape: tuple[int, int]
@@ -37,11 +37,11 @@ class Span:
     nodes: int
 
     @staticmethod
-    def of(graph: Graph, roads: Sequence[int]) -> Span:
+    def of(graph: Graph, roads: Sequence[int]) -> BranchRows:
         """That of a graph, over the roads of these numbers."""
         on_nodes, on_roads = stacked(sorted(graph.branches, key=lambda branch: branch.element.linear.order), graph)
         rows = np.hstack([on_nodes, on_roads[:, list(roads)]])
-        return Span(rows.shape, rows.tobytes(), len(graph.nodes))
+        return BranchRows(rows.shape, rows.tobytes(), len(graph.nodes))
 
     def meant(self, rows: Matrix) -> FractionRows:
         """Rows over nodes, or over nodes and roads, as they were meant to be."""
@@ -59,7 +59,7 @@ class _Basis:
 
 
 @lru_cache(maxsize=4096)
-def _meant(span: Span, data: bytes) -> tuple[Fraction, ...]:
+def _meant(span: BranchRows, data: bytes) -> tuple[Fraction, ...]:
     given, basis = rationals.exact(np.frombuffer(data)[None])[0], _basis(span)
     if basis is None:
         return tuple(given)
@@ -78,7 +78,7 @@ def _simple(share: Fraction) -> Fraction:
 
 
 @lru_cache(maxsize=256)
-def _basis(span: Span) -> _Basis | None:
+def _basis(span: BranchRows) -> _Basis | None:
     """None where levers are whole numbers: these are not rounded."""
     rows = np.frombuffer(span.data).reshape(span.shape)
     nodes = rows[:, : span.nodes]

@@ -19,7 +19,7 @@ import numpy as np
 from inerter.networks.elements import Element, Free, Tied
 from inerter.systems.graph import Graph
 from inerter.systems.incidence import Matrix, ports
-from inerter.systems.levers import Span
+from inerter.systems.levers import BranchRows
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
 from inerter.vehicle.mechanism import Mechanism
@@ -39,7 +39,7 @@ def transfer_functions(
     known = outputs(mechanism, graph)
     asked = [known[name] for name in wanted]
     nodal = _Nodal(mechanism, graph, values, asked)
-    rows = [_Row.of(output, nodal) for output in asked]
+    rows = [_OutputRow.of(output, nodal) for output in asked]
     loads = [nodal.load(name) for name in inputs]
     samples = [nodal.sample(s, loads, rows) for s in range(1, 2 * len(graph.nodes) + 3)]
     denominator, *numerators = (interpolated(column) for column in zip(*samples, strict=True))
@@ -47,7 +47,7 @@ def transfer_functions(
 
 
 @dataclass(frozen=True)
-class _Row:
+class _OutputRow:
     """An output as whole numbers: over nodes and roads by their power of s, and over branches."""
 
     nodes: tuple[Row, Row, Row]
@@ -56,7 +56,7 @@ class _Row:
     external: frozenset[str]  # forces that it is
 
     @staticmethod
-    def of(output: Output, nodal: _Nodal) -> _Row:
+    def of(output: Output, nodal: _Nodal) -> _OutputRow:
         carried = any(output.external)  # in the units of forces, and then all else too
 
         def whole(nodes: Matrix, roads: Matrix) -> tuple[Row, Row]:
@@ -65,7 +65,7 @@ class _Row:
             return over_nodes, over_roads
 
         (displacement, road), (velocity, road_velocity), (acceleration, _) = (whole(*pair) for pair in _pairs(output))
-        return _Row(
+        return _OutputRow(
             (displacement, velocity, acceleration),
             (road, road_velocity),
             {i: 1 for i, weight in enumerate(output.forces) if weight},
@@ -91,7 +91,7 @@ class _Nodal:
         self.graph, self.size = graph, len(graph.nodes)
         self.roads = [road.name for road in mechanism.roads]
         self.names = [force.name for force in mechanism.forces]
-        self.span = Span.of(graph, range(len(self.roads)))
+        self.span = BranchRows.of(graph, range(len(self.roads)))
         pushed = dict(zip(self.names, ports(mechanism, graph), strict=True))
         pushed = {force_of(branch.label): -branch.nodes for branch in graph.branches} | pushed
         rows = [(branch.nodes, branch.roads) for branch in graph.branches]
@@ -124,7 +124,7 @@ class _Nodal:
         """An input by name."""
         return (self.roads.index(name), {}, name) if name in self.roads else (None, self.forces[name], name)
 
-    def sample(self, s: int, loads: list[Load], rows: list[_Row]) -> list[int]:
+    def sample(self, s: int, loads: list[Load], rows: list[_OutputRow]) -> list[int]:
         """The determinant at s and, times it, all outputs for each input (the displacement of a road, or a force)."""
         powers = (1, s, s * s)
         P = [[0] * self.size for _ in range(self.size)]
@@ -151,7 +151,9 @@ class _Nodal:
                 sampled.append(direct + self._output(row, x, determinant, road, powers))
         return sampled
 
-    def _output(self, row: _Row, x: list[int], determinant: int, road: int | None, powers: tuple[int, ...]) -> int:
+    def _output(
+        self, row: _OutputRow, x: list[int], determinant: int, road: int | None, powers: tuple[int, ...]
+    ) -> int:
         total = sum(lever * powers[k] * x[i] for k, over in enumerate(row.nodes) for i, lever in over.items())
         if road is not None:
             total += determinant * sum(over.get(road, 0) * powers[k] for k, over in enumerate(row.roads))
@@ -164,7 +166,7 @@ class _Nodal:
         return total
 
     def assembled(
-        self, denominator: Polynomial, numerators: list[Polynomial], loads: list[Load], rows: list[_Row]
+        self, denominator: Polynomial, numerators: list[Polynomial], loads: list[Load], rows: list[_OutputRow]
     ) -> TransferFunctions:
         """With what all have in common taken out, and 1/s where a road is given by its velocity."""
         force = self.lever_unit << self.value_bits

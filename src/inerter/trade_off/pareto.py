@@ -21,10 +21,9 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, PerformanceIndexError, Status, StatusKind
 from inerter.methods.asking import Asked, estimate_of, objective_of
-from inerter.methods.combined import Part, combined
+from inerter.methods.combined import ObjectivePart, combined
 from inerter.methods.method import Differentiable, Method, check_request
-from inerter.methods.norm import Norm
-from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.optimisation.constrained import Limited, polished, searches, trust_region_within
 from inerter.optimisation.held import held_at
@@ -33,7 +32,7 @@ from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
-from inerter.trade_off.points import Found, gaps, pair, sparse, thinned, undominated
+from inerter.trade_off.points import FrontPoint, gaps, pair, sparse, thinned, undominated
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -132,11 +131,11 @@ class _Trade:
         size = table.max(axis=0) - ideal
         return ideal, np.where(size > 0.0, size, 1.0)
 
-    def at(self, point: Array) -> Found:
+    def at(self, point: Array) -> FrontPoint:
         """What a point comes to."""
         values = self.criteria(point[None])[0]
         ideal, size = self.scale
-        return Found(point, values, (values - ideal) / size)
+        return FrontPoint(point, values, (values - ideal) / size)
 
     @cached_property
     def sample(self) -> tuple[Array, Array, NDArray[np.int64]]:
@@ -167,7 +166,9 @@ class _Trade:
     def problem(self, aim: Array, which: Sequence[int]) -> Limited:
         """The least of what the normalised criteria exceed their aims by."""
         ideal, size = self.scale
-        parts = [Part(self.objectives[i], None, 1.0 / size[i], _SHIFT - ideal[i] / size[i] - aim[i]) for i in which]
+        parts = [
+            ObjectivePart(self.objectives[i], None, 1.0 / size[i], _SHIFT - ideal[i] / size[i] - aim[i]) for i in which
+        ]
         return Limited(combined(parts, worst=True), self.bounds, self.lower, self.upper)
 
     def starts(self, aim: Array, which: Sequence[int]) -> list[Array]:
@@ -179,7 +180,7 @@ class _Trade:
         lowest = [i for i in order[: 64 * _STARTS] if np.isfinite(merit[i]) and merit[i] <= merit[near[i]].min()]
         return [points[i] for i in lowest[:_STARTS]]
 
-    def solve(self, aim: Array, known: Sequence[Found], which: Sequence[int] = ()) -> Found | None:
+    def solve(self, aim: Array, known: Sequence[FrontPoint], which: Sequence[int] = ()) -> FrontPoint | None:
         """The point of the front that comes closest to an aim, from the sample and from what is known."""
         which = which or range(len(self.objectives))
         close = sorted(known, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
@@ -195,10 +196,13 @@ class _Trade:
             return self.strict(best)
         return best
 
-    def strict(self, found: Found) -> Found:
+    def strict(self, found: FrontPoint) -> FrontPoint:
         """A design that is no worse in any criterion, and cannot be better in one alone."""
         ideal, size = self.scale
-        parts = [Part(one, None, 1.0 / s, -i / s + 1.0) for one, i, s in zip(self.objectives, ideal, size, strict=True)]
+        parts = [
+            ObjectivePart(one, None, 1.0 / s, -i / s + 1.0)
+            for one, i, s in zip(self.objectives, ideal, size, strict=True)
+        ]
         no_worse = tuple(
             Bound(Limit(index, Sense.AT_MOST, float(value)), objective)
             for index, value, objective in zip(self.indices, found.values, self.objectives, strict=True)
@@ -214,7 +218,7 @@ class _Trade:
         )
         return better if gained > _SLACK and no_worse_now else found
 
-    def front(self, count: int) -> tuple[list[Found], set[tuple[bytes, bytes]]]:
+    def front(self, count: int) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
         """Points of the front, and the pairs between which it jumps."""
         ends = [self.at(point) for point in self.ends]
         table = np.array([one.values for one in ends])
@@ -225,12 +229,12 @@ class _Trade:
         return self.over_triangle(ends, count), set()
 
     def between(
-        self, ends: Sequence[Found], count: int, which: Sequence[int] = (0, 1)
-    ) -> tuple[list[Found], set[tuple[bytes, bytes]]]:
+        self, ends: Sequence[FrontPoint], count: int, which: Sequence[int] = (0, 1)
+    ) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
         """The front of two criteria from one end to the other."""
         a, z = (one.normal for one in ends)
         aims = [a + (z - a) * share for share in np.linspace(0.0, 1.0, count)[1:-1]]
-        found: list[Found] = list(ends)
+        found: list[FrontPoint] = list(ends)
         for aim in aims:
             one = self.solve(aim, found, which)
             found += [] if one is None else [one]
@@ -241,13 +245,13 @@ class _Trade:
                 found.append(self.at(again.point))
         return self.filled(undominated(found, which), count, which)
 
-    def reached(self, aim: Array, found: Sequence[Found], which: Sequence[int]) -> Found:
+    def reached(self, aim: Array, found: Sequence[FrontPoint], which: Sequence[int]) -> FrontPoint:
         """What comes closest to an aim of all that was found."""
         return min(found, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
 
     def filled(
-        self, found: list[Found], count: int, which: Sequence[int]
-    ) -> tuple[list[Found], set[tuple[bytes, bytes]]]:
+        self, found: list[FrontPoint], count: int, which: Sequence[int]
+    ) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
         """So many points, in whose widest gaps others were put; and the gaps in which there is nothing."""
         jumps: set[tuple[bytes, bytes]] = set()
         found = thinned(found, count, which)
@@ -272,7 +276,7 @@ class _Trade:
         }
         return found, jumps
 
-    def inside(self, a: Found, b: Found, which: Sequence[int]) -> Found | None:
+    def inside(self, a: FrontPoint, b: FrontPoint, which: Sequence[int]) -> FrontPoint | None:
         """A point between two neighbours; None if the search for one ends at one of them: the front jumps there."""
         one = self.solve(0.5 * (a.normal + b.normal), [a, b], which)
         if one is None:
@@ -280,7 +284,7 @@ class _Trade:
         apart = [float(np.linalg.norm((one.normal - other.normal)[list(which)])) for other in (a, b)]
         return one if min(apart) > _AT_END * float(np.linalg.norm((a.normal - b.normal)[list(which)])) else None
 
-    def over_triangle(self, ends: Sequence[Found], count: int) -> list[Found]:
+    def over_triangle(self, ends: Sequence[FrontPoint], count: int) -> list[FrontPoint]:
         """The front of three criteria: the fronts of each two, and points between them."""
         steps = int(np.ceil(0.5 * (np.sqrt(8.0 * count + 1.0) - 3.0)))
         found = list(ends)
@@ -341,9 +345,10 @@ def _hints(
     """Points of the front of a quick method, for one that gives no gradients."""
     if isinstance(objective_of(vehicle, indices[0], method), Differentiable):
         return []
-    conventions = getattr(method, "conventions", "exact")
-    for quick in (StatisticalLinearisation(conventions), Norm(conventions)):
+    for quick in with_gradients(getattr(method, "conventions", "exact")):
         try:
+            if not isinstance(objective_of(vehicle, indices[0], quick), Differentiable):
+                continue
             front = pareto(vehicle, indices, quick, points=3 * len(indices), subject_to=limits, seed=seed)
         except InerterError:
             continue
@@ -355,7 +360,7 @@ def _empty(indices: tuple[Asked, ...], seed: int, status: Status) -> Front:
     return Front(indices, np.zeros((0, len(indices))), (), (), (), (), (), seed, status)
 
 
-def _front(trade: _Trade, found: tuple[list[Found], set[tuple[bytes, bytes]]], seed: int) -> Front:
+def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]]], seed: int) -> Front:
     several, jumps = found
     names = tuple(trade.vehicle.free_values())
     parameters = tuple(dict(zip(names, one.point.tolist(), strict=True)) for one in several)

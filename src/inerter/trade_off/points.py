@@ -13,7 +13,7 @@ _SAME = 1e-4  # normalised distance up to which two points are one
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FrontPoint:
     """A design on the front: its point, its criteria, and these normalised."""
 
     point: Array
@@ -21,19 +21,19 @@ class Found:
     normal: Array
 
 
-def pair(found: Sequence[Found], i: int) -> tuple[bytes, bytes]:
+def pair(found: Sequence[FrontPoint], i: int) -> tuple[bytes, bytes]:
     """What tells the gap behind a point from others."""
     return found[i].point.tobytes(), found[i + 1].point.tobytes()
 
 
-def gaps(found: Sequence[Found], jumps: set[tuple[bytes, bytes]], which: Sequence[int]) -> list[tuple[float, int]]:
+def gaps(found: Sequence[FrontPoint], jumps: set[tuple[bytes, bytes]], which: Sequence[int]) -> list[tuple[float, int]]:
     """The widths of the gaps between neighbours that are no jumps, with their numbers."""
     table = np.array([one.normal for one in found])[:, list(which)]
     widths = np.linalg.norm(np.diff(table, axis=0), axis=1).tolist()
     return [(width, i) for i, width in enumerate(widths) if pair(found, i) not in jumps]
 
 
-def undominated(found: Sequence[Found], which: Sequence[int]) -> list[Found]:
+def undominated(found: Sequence[FrontPoint], which: Sequence[int]) -> list[FrontPoint]:
     """Those that no other one is better than, each once, in order of the first criterion."""
     table = np.array([one.normal for one in found])[:, list(which)]
     kept: list[int] = []
@@ -45,7 +45,9 @@ def undominated(found: Sequence[Found], which: Sequence[int]) -> list[Found]:
     return [found[i] for i in kept]
 
 
-def thinned(found: list[Found], count: int, which: Sequence[int], keep: Found | None = None) -> list[Found]:
+def thinned(
+    found: list[FrontPoint], count: int, which: Sequence[int], keep: FrontPoint | None = None
+) -> list[FrontPoint]:
     """At most so many, without those that lie closest to their neighbours; the ends stay."""
     found = list(found)
     while len(found) > count:
@@ -57,7 +59,7 @@ def thinned(found: list[Found], count: int, which: Sequence[int], keep: Found | 
     return found
 
 
-def sparse(found: list[Found], count: int, ends: Sequence[Found]) -> list[Found]:
+def sparse(found: list[FrontPoint], count: int, ends: Sequence[FrontPoint]) -> list[FrontPoint]:
     """At most so many of three criteria, without those that lie closest together; the ends stay."""
     found = list(found)
     while len(found) > count:

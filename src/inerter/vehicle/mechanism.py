@@ -168,7 +168,7 @@ class Mechanism:
         yield from self.tyres
 
     def free_values(self) -> dict[str, Free]:
-        """The design variables by name, in the order in which they appear."""
+        """The free values by name, in the order in which they appear."""
         elements = (element for mount in self.mounts() for element in mount.network.elements())
         return {str(e.value.name): e.value for e in elements if isinstance(e.value, Free)}
 

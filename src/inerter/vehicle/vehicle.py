@@ -23,7 +23,7 @@ class Vehicle(Protocol):
         ...
 
     def free_values(self) -> dict[str, Free]:
-        """Its design variables by name."""
+        """Its free values by name."""
         ...
 
     def with_values(self, values: Mapping[str, float]) -> Self:
@@ -72,7 +72,7 @@ class VehicleModel:
         raise NotImplementedError
 
     def free_values(self) -> dict[str, Free]:
-        """The design variables by name, in the order in which they appear."""
+        """The free values by name, in the order in which they appear."""
         return self.mechanism().free_values()
 
     def with_values(self, values: Mapping[str, float]) -> Self:
@@ -93,7 +93,7 @@ class Stage(ABC):
         """Both as a `Mechanism`."""
 
     def free_values(self) -> dict[str, Free]:
-        """The design variables by name: those of the vehicle, then its own."""
+        """The free values by name: those of the vehicle, then its own."""
         return self.mechanism().free_values()
 
     def with_values(self, values: Mapping[str, float]) -> Self:

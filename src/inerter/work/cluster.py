@@ -24,7 +24,7 @@ _counted: WeakKeyDictionary[Executor, tuple[float, int]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True)
-class Place:
+class Worker:
     """What a worker of a cluster is."""
 
     host: str
@@ -115,11 +115,11 @@ def on_each_node(executor: Executor, function: Callable[..., object], *args: obj
     return True
 
 
-def places(executor: Executor) -> tuple[Place, ...]:
+def places(executor: Executor) -> tuple[Worker, ...]:
     """The workers of a cluster; none for another executor."""
     client = _client(executor)
     found = _workers(client).values() if client is not None else ()
-    return tuple(Place(info["host"], info["nthreads"]) for info in found)
+    return tuple(Worker(info["host"], info["nthreads"]) for info in found)
 
 
 def _workers(client: Client) -> dict[str, dict[str, Any]]:

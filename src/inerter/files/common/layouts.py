@@ -14,7 +14,7 @@ from inerter.files.common.shape import Range
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
 from inerter.files.common.ties import TieEntry, tied_element, with_known_values
-from inerter.files.common.vehicles import Mount, made, mounts
+from inerter.files.common.vehicles import MountEntry, made, mounts
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.registry import kinds_by_unit
 from inerter.networks.parser import names, network
@@ -89,7 +89,7 @@ def layout_problems(
             yield from network_problems(place, expression, elements)
 
 
-def _mount_problems(name: str, model: str, known: Mapping[str, Mount], layout: StrutLayout) -> Iterator[Problem]:
+def _mount_problems(name: str, model: str, known: Mapping[str, MountEntry], layout: StrutLayout) -> Iterator[Problem]:
     """Mounts that are not there, or not filled."""
     unknown = [mount for mount in layout.struts if mount not in known]
     if unknown and len(known) == 1:

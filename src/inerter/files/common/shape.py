@@ -18,8 +18,8 @@ from pydantic import (
 )
 
 from inerter.errors import RowError
-from inerter.fields import Choice, fields_of, mounts_of, needed_mounts_of
 from inerter.fields import Field as Quantity
+from inerter.fields import TextChoice, fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.entries import (
     AMOUNT,
     EXPRESSION,
@@ -79,7 +79,7 @@ def of_quantities(fields: Iterable[Quantity]) -> dict[str, Any]:
     return keys
 
 
-def of_field(field: Quantity | Choice) -> dict[str, Any]:
+def of_field(field: Quantity | TextChoice) -> dict[str, Any]:
     """What its key says of a quantity or a text: a sentence, and an example."""
     return {"description": field.sentence, "examples": [f'{field.key} = "{field.example}"']}
 
@@ -95,7 +95,7 @@ def if_given(fields: Iterable[Quantity]) -> dict[str, Any]:
     }
 
 
-def of_choices(choices: Iterable[Choice]) -> dict[str, Any]:
+def of_choices(choices: Iterable[TextChoice]) -> dict[str, Any]:
     """Keys for texts, some of which may be left out."""
     keys = {}
     for one in choices:

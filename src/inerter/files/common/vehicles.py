@@ -39,7 +39,7 @@ _ANY: Network = Spring(1.0) | Damper(1.0)  # where it does not matter what is mo
 
 
 @dataclass(frozen=True)
-class Mount:
+class MountEntry:
     """A place for a network: whether every layout has to fill it, and the network if the vehicle says it itself."""
 
     needed: bool = True
@@ -60,9 +60,9 @@ def values_of(table: Shape) -> tuple[str, dict[str, Any]]:
     return model, values
 
 
-def mounts(model: str, values: Values) -> dict[str, Mount]:
+def mounts(model: str, values: Values) -> dict[str, MountEntry]:
     """What layouts fill, by name; a seat last."""
-    seat = {SEAT: Mount(needed=False, network=values[SEAT]["network"])} if SEAT in values else {}
+    seat = {SEAT: MountEntry(needed=False, network=values[SEAT]["network"])} if SEAT in values else {}
     return {**_form(model).mounts(values), **seat}
 
 
@@ -132,7 +132,7 @@ def in_si(fields: Iterable[Field], values: Mapping[str, float]) -> dict[str, str
 
 
 class _Form(Protocol):
-    def mounts(self, values: Values) -> dict[str, Mount]: ...
+    def mounts(self, values: Values) -> dict[str, MountEntry]: ...
 
     def made(self, values: Values, networks: Networks) -> Vehicle: ...
 
@@ -146,7 +146,7 @@ class _Form(Protocol):
 
 
 def _form(model: str) -> _Form:
-    return _Parts() if model == MECHANISM else _Row(model)
+    return _OwnMechanism() if model == MECHANISM else _Model(model)
 
 
 def _without_seat(values: Values) -> dict[str, Any]:
@@ -154,14 +154,14 @@ def _without_seat(values: Values) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class _Row:
+class _Model:
     """A vehicle that is a row of the table of vehicles."""
 
     model: str
 
-    def mounts(self, values: Values) -> dict[str, Mount]:
+    def mounts(self, values: Values) -> dict[str, MountEntry]:
         kind = VEHICLES[self.model]
-        return {name: Mount(needed=name in needed_mounts_of(kind)) for name in mounts_of(kind)}
+        return {name: MountEntry(needed=name in needed_mounts_of(kind)) for name in mounts_of(kind)}
 
     def made(self, values: Values, networks: Networks) -> Vehicle:
         arguments: dict[str, Any] = {**values, **networks}
@@ -183,12 +183,12 @@ class _Row:
         return {kind.moved: "m", **kind.forces}
 
 
-class _Parts:
+class _OwnMechanism:
     """A mechanism, given by the tables of its parts."""
 
-    def mounts(self, values: Values) -> dict[str, Mount]:
+    def mounts(self, values: Values) -> dict[str, MountEntry]:
         parts = {**values["struts"], **values["tyres"]}
-        return {name: Mount(part["network"] is None, part["network"]) for name, part in parts.items()}
+        return {name: MountEntry(part["network"] is None, part["network"]) for name, part in parts.items()}
 
     def made(self, values: Values, networks: Networks) -> Vehicle:
         given = values["measures"]

@@ -54,6 +54,7 @@ from inerter.files.study.places import by_place
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
+from inerter.networks.elements.registry import units_told
 from inerter.rows import made_of_rows
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
@@ -233,12 +234,7 @@ class StudyFile(WithVehicle):
     )
     vehicle: Any
     road: Any
-    elements: dict[ElementName, _AnyElement] = Field(
-        min_length=1,
-        description="What struts are made of, by names of your own. The unit tells the element: N/m spring, "
-        "N s/m damper, kg inerter, N dry friction, m gap. A value is fixed, or free between two bounds.",
-        examples=['a section [elements] with lines such as k = "120 kN/m"'],
-    )
+    elements: Any
     layouts: Any
     indices: Any
     conditions: list[ConditionShape] = Field(
@@ -265,6 +261,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     *others, last = map(shown, judged_models())
     cars = f"{', '.join(others)} or {last}"
     some_road: Any = RoadShape | None
+    elements: Any = dict[ElementName, _AnyElement]
     layout, tables = layouts()
     section: dict[str, Any] = (
         {"methods": (method, Field(default_factory=method, description="Settings of methods, a table for each."))}
@@ -284,6 +281,15 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         road=(
             some_road,
             Field(description="What the vehicle drives on, and how fast.", examples=[ROAD_EXAMPLE]),
+        ),
+        elements=(
+            elements,
+            Field(
+                min_length=1,
+                description="What struts are made of, by names of your own. The unit tells the element: "
+                f"{units_told()}. A value is fixed, or free between two bounds.",
+                examples=['a section [elements] with lines such as k = "120 kN/m"'],
+            ),
         ),
         layouts=(layout, Field(description="How elements are joined: | side by side, - end to end.")),
         indices=(

@@ -60,7 +60,7 @@ class Study:
     model: str
     vehicle: dict[str, Any]
     road: Road | None  # of indices that are asked on one
-    elements: dict[str, Element]  # a free element's value is named after its key, so that it is one variable
+    elements: dict[str, Element]  # a free element's value is named after its key, so that it is one in all layouts
     layouts: dict[str, StrutLayout]
     indices: tuple[str, ...]
     conventions: str = "exact"

@@ -28,6 +28,11 @@ def kinds_by_unit() -> dict[str, type[Element]]:
     return told
 
 
+def units_told() -> str:
+    """What the unit of a value tells, for a reader, such as "N/m spring"."""
+    return ", ".join(f"{unit} {kind.key}" for unit, kind in kinds_by_unit().items())
+
+
 def kinds_in_unit() -> dict[str, type[Element]]:
     """The first kind with a value in each unit."""
     return {**{kind.unit: kind for kind in reversed(list(ELEMENTS.values()))}, **kinds_by_unit()}

@@ -18,7 +18,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 @dataclass(frozen=True)
 class Free:
-    """A value that an optimiser may choose between two bounds. Two of the same name are one variable."""
+    """A value that an optimiser may choose between two bounds. Two of the same name are one."""
 
     lower: float
     upper: float
@@ -37,7 +37,7 @@ class Free:
 
 
 def free(lower: float, upper: float, name: str | None = None) -> Free:
-    """A design variable between `lower` and `upper`, in the unit of the element that it is given to.
+    """A value to be chosen between `lower` and `upper`, in the unit of the element that it is given to.
 
     Raises `NetworkError` unless 0 <= lower < upper, both finite.
     """

@@ -9,7 +9,7 @@ from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method, evaluate
 from inerter.methods.norm import Norm
-from inerter.norms.hinf import Peak
+from inerter.norms.hinf import GainPeak
 from inerter.papers.wang_su_2008.source import PrintedRow, linear_rows, simulated_rows
 from inerter.signals.harmonics import sine
 from inerter.simulation.simulate import simulate
@@ -37,7 +37,7 @@ class SimulatedRow:
     paper2008_error: float
     exact: float
     exact_error: float
-    peaks: tuple[Peak, ...]  # local maxima over all frequencies, for J5 by a sine
+    peaks: tuple[GainPeak, ...]  # local maxima over all frequencies, for J5 by a sine
     begun: tuple[float, ...] = ()  # gains at their frequencies in a short run from rest
     improvement: float | None = None  # of `paper2008` over the norm of S1, for rows of Method 1 [%]
 
@@ -54,7 +54,7 @@ class SimulatedRow:
         return (self.paper2008 - self.row.value) / (sqrt(2.0) * self.paper2008_error)
 
     @property
-    def nearest(self) -> Peak | None:
+    def nearest(self) -> GainPeak | None:
         """The local maximum of J5 that the printed value follows most closely."""
         return min(self.peaks, key=lambda peak: abs(log(peak.gain / self.row.value)), default=None)
 
@@ -70,7 +70,7 @@ class SimulatedRow:
         return STARTED if self.peaks[0] in self.compatible else OTHER_PEAK
 
     @property
-    def compatible(self) -> tuple[Peak, ...]:
+    def compatible(self) -> tuple[GainPeak, ...]:
         """The local maxima of J5 whose steady gain is the printed value or more, and in a short run less."""
         pairs = zip(self.peaks, self.begun, strict=True) if self.begun else ()
         digit, value = self.row.last_digit, self.row.value
@@ -112,7 +112,7 @@ def judged(table: int, name: str, found: dict[str, object]) -> SimulatedRow:
     """A row from its numbers."""
     lists = ("peaks", "begun", "status", "seconds")
     numbers = {key: value for key, value in found.items() if key not in lists}
-    peaks = tuple(Peak(*pair) for pair in found["peaks"])  # type: ignore[attr-defined]
+    peaks = tuple(GainPeak(*pair) for pair in found["peaks"])  # type: ignore[attr-defined]
     begun: tuple[float, ...] = tuple(found["begun"])  # type: ignore[arg-type]
     return SimulatedRow(_row(table, name), peaks=peaks, begun=begun, **numbers)  # type: ignore[arg-type]
 
@@ -130,7 +130,7 @@ def _row(table: int, name: str) -> PrintedRow:
     return next(row for row in simulated_rows(table) if f"{row.index} {row.case}" == name)
 
 
-def _begun(row: PrintedRow, peak: Peak) -> float:
+def _begun(row: PrintedRow, peak: GainPeak) -> float:
     """R.m.s. displacement over r.m.s. force in a short run from rest, at the frequency of a peak."""
     if not 0.0 < peak.omega < inf:
         return peak.gain

@@ -1,10 +1,11 @@
 """A sweep of very many cases: how long it takes, how much memory it holds, and how it goes on after kill -9.
 
-python benchmarks/many_cases.py [CASES] [--jobs 2] [--made-up]
+python benchmarks/many_cases.py [CASES] [--jobs 2] [--made-up] [--once]
 
 A quarter car whose spring is swept, one layout, one index, nothing optimised. With `--made-up` each case has a number
 at once that nothing computes, which shows what is spent beside the cases. The study is run once without a break, and
-once killed in the middle and resumed; the results must be the same bytes.
+once killed in the middle and resumed (not with `--once`); the results must be the same bytes. Where others use the
+machine too, cases per second of processor time tell whether it slows down.
 """
 
 from __future__ import annotations
@@ -16,10 +17,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import psutil
 
 from inerter.cli.main import call
 from inerter.files.study import running
@@ -60,7 +64,7 @@ class Run:
     arguments: list[str]
     journal: Path
     begun: float = field(default_factory=time.perf_counter)
-    lines: list[tuple[float, int]] = field(default_factory=list)  # seconds since the beginning, and lines by then
+    lines: list[tuple[float, float, int]] = field(default_factory=list)  # seconds, those of processors, lines by then
     memory: float = 0.0  # MiB that the coordinator held at most
     _seen: int = 0
     _count: int = 0
@@ -86,13 +90,22 @@ class Run:
                 stream.seek(self._seen)
                 self._count += stream.read(size - self._seen).count(b"\n")
             self._seen = size
-            self.lines.append((time.perf_counter() - self.begun, self._count))
+            self.lines.append((time.perf_counter() - self.begun, _used(self.process.pid), self._count))
 
-    def pace(self, first: float, last: float) -> float:
-        """Cases a second between two parts of the whole."""
-        total = self.lines[-1][1]
-        (a, m), (b, n) = (next(at for at in self.lines if at[1] >= part * total) for part in (first, last))
-        return (n - m) / (b - a) if b > a else float("nan")  # all at once
+    def pace(self, first: float, last: float) -> str:
+        """Cases a second between two parts of the whole, and those of a second of processor time."""
+        total = self.lines[-1][2]
+        (a, p, m), (b, q, n) = (next(at for at in self.lines if at[2] >= part * total) for part in (first, last))
+        return f"{(n - m) / (b - a):.0f} ({(n - m) / (q - p):.0f})" if b > a and q > p else "all at once"
+
+
+def _used(process: int) -> float:
+    """Processor time of a process and of those that it has started [s]."""
+    total = 0.0
+    with suppress(psutil.NoSuchProcess):
+        for one in (parent := psutil.Process(process), *parent.children(recursive=True)):
+            total += sum(one.cpu_times()[:2])
+    return total
 
 
 def _read(path: Path) -> str:
@@ -102,7 +115,7 @@ def _read(path: Path) -> str:
         return ""
 
 
-def measure(cases: int, jobs: int, invented: bool, folder: Path) -> None:
+def measure(cases: int, jobs: int, invented: bool, once: bool, folder: Path) -> None:
     study = folder / "many.toml"
     study.write_text(STUDY.format(cases=cases))
     command = ["-c", "from inerter.cli.start import main; main()"]
@@ -119,10 +132,15 @@ def measure(cases: int, jobs: int, invented: bool, folder: Path) -> None:
     assert one.process.returncode == 0
     print(f"{cases} cases, -j {jobs}: {seconds:.0f} s, {used.ru_utime + used.ru_stime:.0f} s of CPU")
     print(f"  coordinator at most {one.memory:.0f} MiB")
-    print(f"  {one.pace(0.01, 0.1):.0f} cases/s in the first tenth, {one.pace(0.9, 1.0):.0f} in the last")
-    print(
-        f"  journal {one.journal.stat().st_size / 1e6:.0f} MB, {seconds - one.lines[-1][0]:.1f} s from the last case on"
-    )
+    tenths = [one.pace(max(i / 10, 0.01), (i + 1) / 10) for i in range(10)]
+    print(f"  cases a second (of processor time), tenth by tenth: {', '.join(tenths)}")
+    size, after = one.journal.stat().st_size / 1e6, seconds - one.lines[-1][0]
+    print(f"  journal {size:.0f} MB, {after:.1f} s from the last case on", flush=True)
+    if not once:
+        _broken_off(run, cases, whole, broken)
+
+
+def _broken_off(run: Callable[..., Run], cases: int, whole: Path, broken: Path) -> None:
     two = run(broken)
     for count in two.watch():
         if count > cases // 2:
@@ -159,6 +177,7 @@ if __name__ == "__main__":
     parser.add_argument("cases", type=int, nargs="?", default=100_000)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--made-up", action="store_true")
+    parser.add_argument("--once", action="store_true")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
-        measure(given.cases, given.jobs, given.made_up, Path(place))
+        measure(given.cases, given.jobs, given.made_up, given.once, Path(place))

@@ -81,10 +81,12 @@ def main() -> None:
 
 
 def _measure(page: Any, link: str, steps: int) -> None:
-    begun = time.perf_counter()
-    page.goto(link)
-    page.wait_for_selector("td[data-index]")
-    print(f"from the request to numbers      {time.perf_counter() - begun:8.2f} s")
+    for what in ("request", "reload"):
+        begun = time.perf_counter()
+        page.goto(link) if what == "request" else page.reload()
+        for part, selector in (("the page", ".values .amount"), ("numbers", "td[data-index]")):
+            page.wait_for_selector(selector)
+            print(f"{f'from the {what} to {part}':32} {time.perf_counter() - begun:8.2f} s")
     page.wait_for_timeout(1000)
     for panels in (["indices"], ["indices", "response"]):
         page.evaluate(STEP, [10, panels])

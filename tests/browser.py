@@ -56,9 +56,13 @@ class Served:
             self.process = None
 
     def wait_until_ready(self) -> None:
-        request = urllib.request.Request(f"{self.origin}/api/ready", headers={"Authorization": f"Bearer {self.token}"})
+        self.get("ready")
+
+    def get(self, what: str) -> bytes:
+        """What the server answers to a script."""
+        request = urllib.request.Request(f"{self.origin}/api/{what}", headers={"Authorization": f"Bearer {self.token}"})
         with urllib.request.urlopen(request, timeout=_READY) as answer:
-            answer.read()
+            return bytes(answer.read())
 
 
 @dataclass
@@ -92,6 +96,16 @@ class Visitor:
         """Wait until every question that the page asked is answered."""
         self.page.wait_for_function(
             "() => !document.querySelector('[aria-busy=true]') && document.querySelector('td[data-index]')"
+        )
+
+    def drawn(self) -> None:
+        """Wait until the tab that is shown has its answers, and they are drawn."""
+        self.page.evaluate(
+            """async () => {
+              const drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+              do await drawn(); while (document.querySelector("#tab-panel [aria-busy=true]"));
+              await drawn();
+            }"""
         )
 
     def values(self) -> dict[str, float]:

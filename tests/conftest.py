@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Generator
 from importlib import import_module
 from pkgutil import iter_modules
 from types import ModuleType
@@ -18,7 +19,7 @@ from inerter.kernels.prepare import prepare
 collect_ignore_glob = ["conftest.py", "*/conftest.py"]  # as modules with doctests: two cannot have one name
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have a process for each core already
-for name, count in (("short", 40), ("long", 100)):  # --hypothesis-profile=long tries more examples
+for name, count in (("short", 25), ("long", 100)):  # --hypothesis-profile=long tries more examples
     settings.register_profile(
         name,
         derandomize=True,
@@ -44,10 +45,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
 
 
-def pytest_collection_finish(session: pytest.Session) -> None:
-    """What is loaded by now stays to the end: to look through it for what can be freed takes long."""
-    gc.collect()
-    gc.freeze()
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """What is loaded here stays to the end: to look through it for what can be freed takes long."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.collect()
+        gc.freeze()
+        gc.set_threshold(100_000, 20, 100)  # what tests make is small, and looking took a twentieth of their time
+        gc.enable()
 
 
 def _imported(name: str) -> ModuleType:

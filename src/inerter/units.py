@@ -82,6 +82,17 @@ def unit_in(text: str) -> str:
     return _split(text, "its unit", "kN/m")[1]
 
 
+def is_unit(unit: str) -> bool:
+    """Whether that is a unit, which quantities can be read in."""
+    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
+        return False
+    try:
+        _registry().parse_units(unit)
+    except Exception:  # pint's errors share no base: AttributeError, TypeError, AssertionError, tokenize's own
+        return False
+    return True
+
+
 def are_alike(unit: str, other: str) -> bool:
     """Whether both are units of the same kind of quantity.
 
@@ -211,7 +222,7 @@ def _split(text: object, expected: str, unit: str) -> tuple[str, str]:
         _fail(text, "a comma in a number, where the decimal mark is a point", expected, example)
     if not given:
         _fail(text, "no unit", expected, example)
-    if not _is_known(given):
+    if not is_unit(given):
         why = "is not known (capitals matter; a product needs a space or *)"
         _fail(text, f"the unit {shown(given)} {why}", expected, example)
     return number.group(1), given
@@ -234,16 +245,6 @@ def _as_force(given: str, units: Iterable[str]) -> str:
 def _prefixed(given: str, unit: str) -> str:
     """`unit`, with the k or M of `given` where that is what the author meant ("120 kN" for N/m)."""
     return given[0] + unit if given[0] in "kM" and given[1:2] == unit[0] else unit
-
-
-def _is_known(unit: str) -> bool:
-    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
-        return False
-    try:
-        _registry().parse_units(unit)
-    except Exception:  # pint's errors share no base: AttributeError, TypeError, AssertionError, tokenize's own
-        return False
-    return True
 
 
 def _converted(text: str, number: str, given: str, unit: str) -> float:

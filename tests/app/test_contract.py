@@ -166,7 +166,11 @@ def test_quantities(client: TestClient, asked: Any, expected: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    "asked", [{}, {"text": "x", "value": 1.0}, {"text": "3 kg", "unit": "N/m"}, {"text": "3 blurbs"}]
+    "asked",
+    [
+        *({}, {"text": "x", "value": 1.0}, {"text": "3 kg", "unit": "N/m"}, {"text": "3 blurbs"}),
+        *({"text": "3 kg", "unit": unit} for unit in ("", "2", "nan", "((", "1e999 N/m", "-3 kg", "kg\0", "potato")),
+    ],
 )
 def test_no_quantity_has_a_sentence(client: TestClient, asked: Any) -> None:
     assert client.post("/api/quantity", json=asked).json()["sentence"].endswith(".")

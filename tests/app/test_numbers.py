@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 import inerter as it
-from inerter.app.answers import answered
+from inerter.app.answers import answered, first
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
 from inerter.app.fixed import fixed
@@ -301,3 +301,9 @@ def test_examples_answer(client: TestClient, path: Path) -> None:
         assert answer.status_code == (400 if told["problems"] else 200)
     if told["problems"]:
         assert any("inerter" in problem["sentence"] for problem in told["problems"])
+
+
+def test_what_a_process_loads_first_is_answered(capfd: pytest.CaptureFixture[str]) -> None:
+    """Where it fails, nobody is told, and the first page waits."""
+    first()
+    assert capfd.readouterr().err == ""

@@ -238,7 +238,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["simulate", "--help"], ["reproduce", "--help"]])
 def test_help_has_examples_and_is_quick(arguments: list[str]) -> None:
-    command = [sys.executable, "-c", "from inerter.cli.main import main; main()", *arguments]
+    command = [sys.executable, "-c", "from inerter.cli.start import main; main()", *arguments]
     taken = []  # seconds of the processor
     for _ in range(3):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -111,10 +111,18 @@ def test_the_folder_holds_numbers_residuals_figures_and_the_page(fitted: Path) -
 
 
 def test_text_says_all_in_80_columns(
-    fitted: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    fitted: Path, fits: list[it.Fit], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    given: list[int] = []
+
+    def known(records: list[it.Record], *arguments: object, **settings: object) -> it.Fit:
+        given.extend(len(record.time) for record in records)
+        return fits[0]
+
     monkeypatch.chdir(fitted)
+    monkeypatch.setattr(identification_run, "identify", known)
     assert call(["identify", "bench.csv", "--config", "rig.toml", "--trim", "0:0.8", "--unit", "force=N"]) == 0
+    assert given == [401]
     out, err = capsys.readouterr()
     for words in ("501 samples", "Trimmed", "interval of 95 %", "goodness", "checked", "[elements]", "Status: ok"):
         assert words in out.replace("401 samples", "501 samples")
@@ -201,6 +209,7 @@ def test_a_faulty_sensor_is_named_in_the_first_line(
     assert data["misfit"]["fitted"] > 1.5
 
 
+@pytest.mark.campaign
 def test_a_known_mass_in_front_of_the_cell_is_an_option(rattled: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = [str(rattled / "heavy.csv"), "--config", str(rattled / "rig.toml"), "-o", str(rattled / "heavy")]
     sensors = ["--fixture-mass", "6 kg", "--force-noise", "0.15 N", "--displacement-noise", "0.42 um"]

@@ -97,6 +97,7 @@ def test_nobody_at_home(temporary: Path) -> None:
     assert err.count(WORDS) == 1
 
 
+@pytest.mark.campaign
 def test_a_cache_is_used_and_its_files_that_were_cut_short_are_made_anew(tmp_path: Path, temporary: Path) -> None:
     cache = tmp_path / "cache"
     said = [compile_with(cache, temporary)[1] for _ in range(2)]

@@ -74,10 +74,12 @@ def test_check_loads_nothing_that_only_the_work_needs(study: str) -> None:
     assert not loaded_by("check", str(EXAMPLES / study)) & HEAVY
 
 
+@pytest.mark.campaign
 def test_a_run_loads_no_distributions(tmp_path: Path) -> None:
     assert "scipy.stats" not in loaded_by("run", str(EXAMPLES / "quarter-car.toml"), "-o", str(tmp_path / "out"))
 
 
+@pytest.mark.campaign
 def test_an_import_compiles_nothing_and_starts_nothing(tmp_path: Path) -> None:
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "MPLCONFIGDIR": matplotlib.get_cachedir()}
     done = subprocess.run(

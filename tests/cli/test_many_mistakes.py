@@ -75,6 +75,7 @@ def beyond_reason(seed: int, tmp_path: Path, capsys: pytest.CaptureFixture[str])
 
 
 @pytest.mark.usefixtures("no_drawing")
+@pytest.mark.campaign
 def test_values_beyond_reason_are_numbers_or_say_why_not(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for seed in range(3):
         beyond_reason(seed, tmp_path, capsys)

@@ -117,3 +117,27 @@ def test_a_name_that_is_no_text(home: Path) -> None:
     assert code == 0, err
     assert "Traceback" not in out + err
     assert "caf\\udce9" in out
+
+
+END = """
+import atexit, sys
+import inerter.cli.main as commands
+from inerter.cli import start
+command = commands.main
+commands.main = lambda: (atexit.register(print, "what a library does last"), command())[1]
+sys.argv = ["inerter", *sys.argv[1:]]
+start.main()
+"""
+
+
+@pytest.mark.parametrize(("arguments", "code"), [(["--version"], 0), (["check", "none.toml"], 2)])
+def test_a_command_ends_after_what_was_registered_for_its_end(arguments: list[str], code: int) -> None:
+    found = subprocess.run([sys.executable, "-c", END, *arguments], capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stdout.splitlines()[-1]) == (code, "what a library does last")
+
+
+def test_an_error_of_the_program_has_its_traceback() -> None:
+    broken = END.replace("command())[1]", "command(1))[1]")
+    found = subprocess.run([sys.executable, "-c", broken], capture_output=True, text=True, check=False)
+    assert found.returncode == 1
+    assert "TypeError" in found.stderr

@@ -163,7 +163,7 @@ def rows(results: Path) -> list[dict[str, str]]:
 def test_check_knows_rows_of_another_distribution(session: Session, study: Path) -> None:
     said = " ".join(session.command("check", study.name, cwd=study.parent)[0].split())
     assert "seated-car; layouts S1, S3; indices J1, T1, W1: 6 designs to find." in said
-    for method in ("norm", "quadrature"):
+    for method in ("exact norms", "quadrature"):
         assert f"Note: S3: {method}: friction 'J_friction' in 'strut' left out." in said
 
 
@@ -454,6 +454,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.campaign
 def test_processes_that_are_spawned_know_the_rows_of_distributions_and_scripts(place: Path, tmp_path: Path) -> None:
     text = BASE.replace('["J1", "T1", "W1"]', '["J3", "T1", "W1", "D1"]').replace('optimise = "norm"\n', "")
     text = text.replace('{ from = "500 N s/m", to = "20 kN s/m" }', '"3 kN s/m"')

@@ -32,6 +32,7 @@ def problem(record: Record) -> FitProblem:
     return solution_of(record, MODELS["ball-screw"], FitOptions(starts=8), None).problem
 
 
+@pytest.mark.campaign
 def test_an_identification_on_other_processes_is_the_same(record: Record) -> None:
     with Processes(2) as processes:
         there = it.identify(record, "friction", starts=8, executor=processes)
@@ -41,6 +42,7 @@ def test_an_identification_on_other_processes_is_the_same(record: Record) -> Non
     assert there.misfit == here.misfit
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("gap", [0.0, 1e-16, 1e-10, 0.5])
 def test_residuals_do_not_depend_on_what_was_asked_before(problem: FitProblem, gap: float) -> None:
     """A gap beyond what can be computed with, which a search comes by, is refused when such a system is made first."""

@@ -36,6 +36,7 @@ def problem_of(record: it.Record, model: it.Network) -> FitProblem:
     return FitProblem(rig, space_of(rig), [experiment], [plain(experiment.kept, 0.12)])
 
 
+@pytest.mark.campaign
 def test_the_right_valley_of_a_rattling_device() -> None:
     fit = it.identify(rattle(), BALL_SCREW, seed=0)
     assert fit.status.ok
@@ -118,6 +119,7 @@ def test_a_motion_repeats_only_without_tones_between_its_harmonics() -> None:
     assert np.array_equal(repeated(mixed), mixed.motion.displacement)
 
 
+@pytest.mark.campaign
 def test_a_device_that_nobody_can_predict_has_no_parameters() -> None:
     """Hardly damped, it rattles chaotically: errors of the encoder alone change much of its force."""
     command = it.cosine(amplitude=2e-3, frequency=4.0) + it.cosine(amplitude=3e-4, frequency=23.0)

@@ -100,6 +100,7 @@ def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return folder
 
 
+@pytest.mark.campaign
 def test_an_identification_is_the_same_with_tokens_for_words(bench: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ran = []
     for name in ("sentences", "tokens"):

@@ -9,6 +9,7 @@ import pytest
 from strategies import paper_quarter_car
 
 import inerter as it
+from inerter.errors import DesignError
 from inerter.methods.asking import objective_of
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -53,6 +54,28 @@ def test_mean_and_worst_are_those_of_the_conditions(index):
         assert many[i] == pytest.approx(expected, rel=1e-9)
         for over, value in zip((USE.mean(index), USE.worst(index)), expected, strict=False):
             assert it.evaluate(design, over, NORM).value == pytest.approx(value, rel=1e-12)
+
+
+def test_a_seat_over_conditions():
+    """Numbers of the vehicle below, of the occupant, and of elements that both have."""
+    below = paper_quarter_car(it.Spring(1.2e5) | it.Damper(it.free(100.0, 1e5, "c")))
+    seat = it.Seat(below, mass=70.0, network=it.Spring(2e4) | it.Damper(1.5e3, name="cs"))
+    use = it.Conditions(
+        [
+            it.Condition(1.0, vehicle={"mass": 100.0, "sprung_mass": 240.0}),
+            it.Condition(1.0, vehicle={"cs": 900.0, "k": 5e4, "tyre_stiffness": 1.5e5}),
+        ]
+    )
+    named = dataclasses.replace(seat, network=it.Spring(2e4, name="k") | it.Damper(1.5e3, name="cs"))
+    heavy = it.Seat(dataclasses.replace(below, sprung_mass=240.0), mass=100.0, network=named.network)
+    softer = paper_quarter_car(it.Spring(5e4) | below.strut.parts[1])
+    softer = dataclasses.replace(softer, tyre_stiffness=1.5e5)
+    soft = it.Seat(softer, mass=70.0, network=it.Spring(5e4, name="k") | it.Damper(900.0, name="cs"))
+    expected = [it.evaluate(one.with_values({"c": 3e3}), J1, NORM).value for one in (heavy, soft)]
+    found = it.evaluate(named.with_values({"c": 3e3}), use.mean(J1), NORM).value
+    assert found == pytest.approx(np.mean(expected), rel=1e-12)
+    with pytest.raises(DesignError, match="sprung_mass, unsprung_mass, tyre_stiffness, mass, k, c, cs"):
+        it.evaluate(seat.with_values({"c": 3e3}), it.Conditions([it.Condition(1.0, vehicle={"m": 1.0})]).mean(J1), NORM)
 
 
 @pytest.mark.parametrize("index", [J1, J5], ids=["J1", "J5"])
@@ -132,3 +155,64 @@ def test_simulated_means_have_errors():
 def test_conditions_that_cannot_be(given, said):
     with pytest.raises(it.InerterError, match=said):
         given()
+
+
+def seated(given, mass):
+    return it.Seat(given, mass, it.Spring(12e3, "ks") | it.Damper(300.0, "cs"))
+
+
+CAR = it.QuarterCar(250.0, 35.0, 1.8e5, it.Spring(2.5e4, "k1") | it.Damper(1500.0))
+TRAIN = it.Mechanism(
+    coordinates=(it.Coordinate("sprung", 250.0), it.Coordinate("bogie", 35.0)),
+    struts=(it.Strut("strut", CAR.strut, upper={"sprung": 1.0}, lower={"bogie": 1.0}),),
+    tyres=(it.Tyre("tyre", it.Spring(1.8e5, "kt"), port={"bogie": 1.0}, road="road"),),
+    roads=(it.RoadInput("road"),),
+)
+
+
+class Given:
+    """A vehicle that says nothing of what it is made of, and makes its elements anew whenever it is asked."""
+
+    def mechanism(self):
+        return dataclasses.replace(TRAIN, tyres=(dataclasses.replace(TRAIN.tyres[0], network=it.Spring(1.8e5, "kt")),))
+
+    def free_values(self):
+        return {}
+
+    def with_values(self, values):
+        return self
+
+
+SEATED = {
+    "sprung_mass": (CAR, lambda: seated(dataclasses.replace(CAR, sprung_mass=200.0), 70.0), 200.0),
+    "tyre_stiffness": (CAR, lambda: seated(dataclasses.replace(CAR, tyre_stiffness=2e5), 70.0), 2e5),
+    "mass": (CAR, lambda: seated(CAR, 90.0), 90.0),
+    "k1": (CAR, lambda: seated(dataclasses.replace(CAR, strut=it.Spring(3e4) | it.Damper(1500.0)), 70.0), 3e4),
+    "kt": (TRAIN, lambda: seated(dataclasses.replace(CAR, tyre_stiffness=2e5), 70.0), 2e5),
+    "bogie": (TRAIN, lambda: seated(dataclasses.replace(CAR, unsprung_mass=50.0), 70.0), 50.0),
+}
+
+
+@pytest.mark.parametrize("name", SEATED)
+def test_numbers_of_a_vehicle_that_carries_a_seat(name):
+    below, other, value = SEATED[name]
+    use = it.Conditions([it.Condition(vehicle={name: value})])
+    expected = it.evaluate(other(), J1, NORM).value
+    assert it.evaluate(seated(below, 70.0), use.mean(J1), NORM).value == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("carried", [False, True])
+def test_elements_of_a_vehicle_that_makes_them_anew(carried):
+    given, same = (seated(Given(), 70.0), seated(TRAIN, 70.0)) if carried else (Given(), TRAIN)
+    use = it.Conditions([it.Condition(vehicle={"kt": 3e5})])
+    index = it.RandomResponse({"sprung_acceleration": 1.0}, ROAD)
+    expected = it.evaluate(same, use.mean(index), NORM).value
+    assert it.evaluate(given, use.mean(index), NORM).value == pytest.approx(expected, rel=1e-12)
+    scattered = [it.tolerance(one, index, NORM, spread={"kt": 0.1}, samples=16).mean for one in (given, same)]
+    assert scattered[0] == pytest.approx(scattered[1], rel=1e-12)
+
+
+def test_what_stands_for_the_tyre_of_a_model_is_not_its_name():
+    for vehicle in (CAR, seated(CAR, 70.0)):
+        with pytest.raises(it.InerterError, match="nothing named 'k' to change"):
+            it.evaluate(vehicle, it.Conditions([it.Condition(vehicle={"k": 3e5})]).mean(J1), NORM)

@@ -28,6 +28,7 @@ def check(car, refusable=True, roads=ROADS):
     return refused
 
 
+@pytest.mark.campaign
 def test_what_friction_damps_is_simulated_on_roads_that_resolve_it():
     check(drawn(0), roads=8)
 

@@ -43,9 +43,10 @@ def answer(name, strut, method):
         return str(error)
 
 
-@pytest.mark.parametrize("strut", STRUTS.values(), ids=STRUTS)
-def test_every_output_means_the_same_to_every_method(strut):
+@pytest.mark.parametrize("kind", sampled(STRUTS, ["tiny gap"]))
+def test_every_output_means_the_same_to_every_method(kind):
     """Frictions and gaps are so small here that all methods must agree about everything else."""
+    strut = STRUTS[kind]
     mechanism = asking("sprung_acceleration", strut)
     in_linear = outputs(mechanism, linear_graph(mechanism))
     some = np.random.default_rng(0).permutation(list(in_linear))[:4]  # simulations take long

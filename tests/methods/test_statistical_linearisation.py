@@ -262,6 +262,7 @@ def test_random_networks_meet_their_own_equation(inner, other, force, second, se
     assert it.evaluate(car, J5, METHOD).value > 0.0
 
 
+@pytest.mark.campaign
 def test_values_gradients_and_optima():
     free = it.free
     inner = screw - (Inerter(free(1.0, 2e3, "b")) | Friction(free(1.0, 100.0, "f")))

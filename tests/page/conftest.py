@@ -56,7 +56,7 @@ def visitors(chromium: Any) -> Iterator[Callable[..., Visitor]]:
     def visitor(served: Served, *, context: Any = None, **settings: Any) -> Visitor:
         if context is None:
             context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, **settings})
-            context.set_default_timeout(20_000)
+            context.set_default_timeout(60_000)  # [ms], for busy machines
             contexts.append(context)
         window = Visitor(context.new_page(), served)
         window.page.on("pageerror", lambda error: window.faults.append(str(error)))

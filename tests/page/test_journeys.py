@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, wait_until
+from browser import EXAMPLES, Served, Visitor, free_port, wait_until
 
 import inerter as it
 from inerter.app.designs import design_of
@@ -150,15 +150,17 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
 
 
 @pytest.mark.campaign
-def test_every_example_opens(visitors: Any, served: Served) -> None:
+def test_every_example_opens(visitor: Visitor) -> None:
+    """One after another in one window, each in place of the one before."""
+    page = visitor.page
     opened = 0
     for path in sorted(EXAMPLES.glob("*.toml")):
-        visitor = visitors(served).visit()
-        page = visitor.page
         before = visitor.text
         visitor.open(path)
         page.wait_for_selector(".notice")
         told = page.inner_text(".notice")
+        page.get_by_role("button", name="Close the message").click()
+        page.wait_for_selector(".notice", state="detached")
         try:
             study = load_study(path)
         except it.InerterError:
@@ -207,6 +209,27 @@ def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: 
     wait_until(lambda: page.input_value("[id='entry elements.k']") == "100 kN/m")
     visitor.settled()
     assert page.locator(".problem").count() == 0
+
+
+@pytest.mark.campaign
+def test_the_page_is_there_while_kernels_are_compiled(
+    visitors: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    fresh = Served(EXAMPLES / "quarter-car.toml", free_port())
+    fresh.begin()
+    try:
+        window = visitors(fresh)
+        window.page.goto(fresh.link)
+        window.page.wait_for_selector("[data-connection=compiling]")
+        assert "The numerical kernels are compiled" in window.page.inner_text("[data-connection=compiling]")
+        window.page.wait_for_function("() => /\\d of \\d/.test(document.querySelector('[data-connection]').innerText)")
+        window.page.fill("#network-text", "k | c | b")
+        window.page.wait_for_selector("[data-connection=ready]", state="attached", timeout=240_000)
+        assert window.text == "k | c | b"
+        assert window.values()["J1"] > 0.0
+    finally:
+        fresh.stop()
 
 
 def test_what_is_typed_stays_while_answers_arrive(visitor: Visitor) -> None:
@@ -338,6 +361,25 @@ def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
     form.locator("[name=points]").fill("2")
     form.get_by_role("button", name="Begin").click()
     page.wait_for_selector(".job[data-state=done] .plot canvas", timeout=120_000)
+
+
+@pytest.mark.campaign
+def test_a_point_of_a_front_is_taken_into_the_editor(visitor: Visitor) -> None:
+    """Its values become those of the layout, and the page then shows the indices of the point in all digits."""
+    page = visitor.page
+    page.click("#tab-work")
+    form = page.locator("form.begin", has_text="Trade-off front")
+    form.locator("[name=points]").fill("3")
+    form.get_by_role("button", name="Begin").click()
+    page.wait_for_selector(".job[data-state=done] circle.point", timeout=120_000)
+    (front,) = [job for job in json.loads(visitor.served.get("work"))["work"] if job["kind"] == "front"]
+    fronts = json.loads(visitor.served.get(f"work/{front['id']}/result"))["fronts"]
+    points = [(found["layout"], point) for found in fronts for point in found["points"]]
+    assert page.locator("circle.point").count() == len(points) == 3 * len(fronts)
+    layout, point = points[-2]
+    page.locator("circle.point").nth(len(points) - 2).press("Enter")
+    page.wait_for_selector(f"[aria-label=Layouts] [aria-pressed=true]:has-text('{layout}')")
+    wait_until(lambda: {index: visitor.values()[index] for index in point["values"]} == point["values"])
 
 
 @pytest.mark.campaign

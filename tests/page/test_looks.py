@@ -1,13 +1,13 @@
 """How the page looks and reads: no serious fault of accessibility, nothing wider than the screen, and pictures of it.
 
-With a folder in the environment variable INERTER_PICTURES, the pictures are written there; docs/ has those of this run:
-`INERTER_PICTURES=docs .venv/bin/pytest -m campaign tests/page/test_looks.py`.
+With a folder in the environment variable INERTER_PICTURES, pictures are taken: those that docs/ shows are written
+there by `INERTER_PICTURES=docs .venv/bin/pytest -m campaign tests/page/test_looks.py`, all to the folders of the tests.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from browser import EXAMPLES, Served, Visitor
 AXE = pytest.importorskip("axe_playwright_python.sync_playwright")
 SERIOUS = ("serious", "critical")
 SIZES = {"wide": (1280, 800), "narrow": (420, 800), "projector": (1920, 1080)}
+TABS = ("response", "history", "compare", "tolerance", "work", "rig")
 DOCUMENTED = {("quarter-car", "wide", "light", "response"), ("ball_screw", "wide", "dark", "history")}
 HEAD = """[vehicle]
 model = "quarter-car"
@@ -60,9 +61,15 @@ STUDIES: dict[str, Callable[[], str] | None] = {
 }
 
 
-def _faults(visitor: Visitor) -> list[str]:
-    """Serious faults that axe finds, each with the first element that has it."""
-    found = AXE.Axe().run(visitor.page).response["violations"]
+def _faults(visitor: Visitor, within: tuple[str, ...] = ()) -> list[str]:
+    """Serious faults that axe finds in the page or in parts of it, each with the first element that has it."""
+    page = visitor.page
+    if not page.evaluate("() => 'axe' in window"):
+        page.evaluate(AXE.Axe().axe_script)
+    run = (
+        "parts => axe.run(parts.length ? parts : document, { resultTypes: ['violations'] }).then(all => all.violations)"
+    )
+    found = page.evaluate(run, list(within))
     return [f"{each['id']}: {each['nodes'][0]['html'][:200]}" for each in found if each["impact"] in SERIOUS]
 
 
@@ -74,9 +81,22 @@ def _too_wide(visitor: Visitor) -> int:
 
 
 def _picture(visitor: Visitor, folder: Path, what: tuple[str, ...]) -> None:
-    visitor.page.screenshot(path=folder / f"{'-'.join(what)}.png", full_page=True)
-    if what in DOCUMENTED and (wanted := os.environ.get("INERTER_PICTURES")):
-        visitor.page.screenshot(path=Path(wanted) / f"workbench-{what[-1]}.png", full_page=True)
+    if wanted := os.environ.get("INERTER_PICTURES"):
+        visitor.page.screenshot(path=folder / f"{'-'.join(what)}.png", full_page=True)
+        if what in DOCUMENTED:
+            visitor.page.screenshot(path=Path(wanted) / f"workbench-{what[-1]}.png", full_page=True)
+
+
+def _looked_at(visitor: Visitor, tabs: tuple[str, ...]) -> Iterator[tuple[str, str, tuple[list[str], int]]]:
+    """Each size and tab with what is wrong; of the tabs after the first, in what turning to them changes."""
+    for size, (width, height) in SIZES.items():
+        visitor.page.set_viewport_size({"width": width, "height": height})
+        for tab in tabs:
+            if tab != "none":
+                visitor.page.click(f"#tab-{tab}")
+                visitor.drawn()
+            within = () if tab == tabs[0] else ("[role=tablist]", "#tab-panel")
+            yield size, tab, (_faults(visitor, within), _too_wide(visitor))
 
 
 @pytest.mark.campaign
@@ -85,26 +105,20 @@ def test_looks(name: str, visitors: Any, serve: Callable[..., Served], served: S
     make = STUDIES[name]
     here = served if make else serve(None)
     faults: dict[tuple[str, ...], Any] = {}
-    for size, (width, height) in SIZES.items():
-        for theme in ("light", "dark"):
-            visitor = visitors(here, viewport={"width": width, "height": height}, color_scheme=theme).visit()
-            page = visitor.page
-            if make:
-                study = tmp_path / f"{name}.toml"
-                study.write_text(make())
-                visitor.open(study)
-                page.wait_for_selector(".notice")
-                page.get_by_role("button", name="Close the message").click()
-                visitor.settled()
-            for tab in ("response", "history", "compare", "tolerance", "work", "rig") if make else ("none",):
-                if make:
-                    page.click(f"#tab-{tab}")
-                    page.wait_for_timeout(200)
-                    page.wait_for_selector("#tab-panel [aria-busy=true]", state="detached")
-                    page.wait_for_timeout(300)
-                what = (name, size, theme, tab)
-                _picture(visitor, tmp_path, what)
-                if (found := (_faults(visitor), _too_wide(visitor))) != ([], 0):
-                    faults[what] = found
-            page.context.close()
+    for theme in ("light", "dark"):
+        visitor = visitors(here, color_scheme=theme).visit()
+        page = visitor.page
+        if make:
+            study = tmp_path / f"{name}.toml"
+            study.write_text(make())
+            visitor.open(study)
+            page.wait_for_selector(".notice")
+            page.get_by_role("button", name="Close the message").click()
+            visitor.settled()
+        for size, tab, found in _looked_at(visitor, TABS if make else ("none",)):
+            what = (name, size, theme, tab)
+            _picture(visitor, tmp_path, what)
+            if found != ([], 0):
+                faults[what] = found
+        page.context.close()
     assert faults == {}

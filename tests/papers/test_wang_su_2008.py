@@ -74,7 +74,9 @@ def test_seeds_agree_on_the_half_car(layout: str, index: str) -> None:
     assert np.ptp(values) <= (1e-4 if index == "J5" else 1e-6) * min(values)
 
 
-@pytest.mark.parametrize("part", ["table1", "table2", "figure11", "friction1", "friction2"])
+@pytest.mark.parametrize(
+    "part", sampled(["table1", "table2", "figure11", "friction1", "friction2"], ["table1", "table2"])
+)
 def test_studies_can_be_run(part: str) -> None:
     check_study(study(part))
 

@@ -11,6 +11,7 @@ import scipy.optimize
 from strategies import paper_quarter_car
 
 import inerter as it
+from inerter.errors import DesignError
 from inerter.methods.asking import objective_of
 from inerter.scatter.spread import scatter_of
 
@@ -90,6 +91,22 @@ def test_quantities_of_the_vehicle_scatter_one_by_one():
     assert strut.values == pytest.approx(alike.values, rel=1e-9)
     with ThreadPoolExecutor(2) as pool:
         assert np.array_equal(found_again(pool).values, found_again().values)
+
+
+@pytest.mark.parametrize("others", [{}, {"sprung_mass": 0.01}])
+def test_elements_of_one_name_and_several_values_do_not_scatter_as_one(others):
+    axle = {"unsprung_mass": 40.0, "tyre_stiffness": 2e5}
+    car = it.HalfCar(
+        sprung_mass=600.0,
+        pitch_inertia=900.0,
+        distance_front=1.2,
+        distance_rear=1.4,
+        **{f"{name}_{where}": value for name, value in axle.items() for where in ("front", "rear")},
+        front=it.Spring(2e4, "k") | it.Damper(1500.0),
+        rear=it.Spring(4e4, "k") | it.Damper(1500.0),
+    )
+    with pytest.raises(DesignError, match="which cannot scatter as one"):
+        it.tolerance(car, J1, NORM, spread={"k": 0.01, **others}, samples=16)
 
 
 def test_a_design_whose_index_is_not_known_somewhere():

@@ -134,6 +134,20 @@ def test_conditions_are_those_of_python(load: Callable[..., Study], tmp_path: Pa
     assert "over conditions" in headlines(found)[0]
 
 
+def test_conditions_of_a_car_with_a_seat(load: Callable[..., Study], tmp_path: Path) -> None:
+    fixed = 'k = "20 kN/m"\nc = "1 kN s/m"\nks = "10 kN/m"\ncs = "300 N s/m"'
+    seat = '[vehicle.seat]\nmass = "70 kg"\nnetwork = "ks | cs"\n'
+    loads = '[[conditions]]\nvehicle.sprung_mass = "320 kg"\n[[conditions]]\nvehicle.seat.mass = "95 kg"\n'
+    study = load('indices = ["J1"]', seat + loads, fixed, layouts='S1 = "k | c"')
+    values = []
+    for body, mass in ((320.0, 70.0), (250.0, 95.0)):
+        car = it.QuarterCar(body, 35.0, 150e3, it.Spring(20e3) | it.Damper(1e3))
+        seated = it.Seat(car, mass, it.Spring(10e3) | it.Damper(300.0))
+        values.append(it.evaluate(seated, it.RideComfort(study.road), it.Norm()).value)
+    found = run_study(study, tmp_path / "out").data["value"]
+    assert float(found.squeeze()) == pytest.approx(np.mean(values), rel=1e-9)
+
+
 def test_a_limit_holds_in_each_condition(load: Callable[..., Study]) -> None:
     limits = 'subject_to = { J3 = { at_most = "900 N", at_least = "400 N" } }'
     study = load(f'indices = ["J1"]\noptimise = "norm"\n{limits}', TWO)

@@ -204,7 +204,8 @@ def memory(work: Callable[[], object]) -> float:
     return peak
 
 
-@pytest.mark.parametrize("points", [500, pytest.param(5000, marks=pytest.mark.campaign)])
+@pytest.mark.campaign
+@pytest.mark.parametrize("points", [500, 5000])
 def test_a_case_takes_so_many_bytes_and_no_more(tmp_path: Path, swift: object, points: int) -> None:
     """In arrays it has 200 bytes; an outcome as it is has several thousand. Twice as many cases tell what one takes."""
     small, large = study_of(tmp_path, points), study_of(tmp_path, 2 * points)
@@ -223,6 +224,7 @@ def test_a_case_takes_so_many_bytes_and_no_more(tmp_path: Path, swift: object, p
     assert (peaks[1] - peaks[0]) / (4 * points) < 400.0
 
 
+@pytest.mark.campaign
 def test_a_page_of_many_cases_is_as_small_as_any(tmp_path: Path, swift: object) -> None:
     """Rows of tables hold the extremes, and say where all are; no list on the page grows with the sweep."""
     pages = []

@@ -1,9 +1,14 @@
 """Study files: what a good one means, that it survives being written out, and what is said about a bad one."""
 
 import ast
+import contextlib
+import copy
+import functools
 import json
 import math
+import operator
 import re
+import tomllib
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -16,7 +21,7 @@ from inerter.errors import NetworkError, StudyError
 from inerter.fields import fields_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.vehicle_shapes import MECHANISM
-from inerter.files.study.loading import load_study
+from inerter.files.study.loading import load_study, study_of
 from inerter.files.study.places import place_of
 from inerter.files.study.study import Study, Sweep
 from inerter.files.study.written import write_resolved
@@ -644,6 +649,25 @@ def test_a_bad_file_is_refused_with_the_place_and_what_to_try(load, changes, pla
     assert line.endswith((".", "?"))
     assert "Value error" not in line
     assert "pydantic" not in line
+
+
+def tables_in(given, place=()):
+    for key, value in given.items() if isinstance(given, dict) else enumerate(given):
+        if isinstance(value, dict | list):
+            yield (*place, key)
+            yield from tables_in(value, (*place, key))
+
+
+@pytest.mark.parametrize("wrong", [0, [], {}], ids=str)
+def test_anything_in_the_place_of_any_table_is_refused_or_read(wrong):
+    own = {"indices": {"own": {"kind": "tyre-load"}}}
+    for path in EXAMPLES:
+        given = own | tomllib.loads(path.read_text(encoding="utf-8"))
+        for *above, last in tables_in(given):
+            changed = copy.deepcopy(given)
+            functools.reduce(operator.getitem, above, changed)[last] = wrong
+            with contextlib.suppress(StudyError):
+                study_of(changed, path)
 
 
 @pytest.mark.parametrize("name", sorted(BAD.keys() - {"section", "section missing", "not a section"}))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from study_text import study_text
 
@@ -11,6 +13,7 @@ import inerter as it
 from inerter.errors import StudyError
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
+from inerter.files.study.places import place_of, with_numbers
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.written import write_resolved
@@ -53,6 +56,45 @@ def test_a_tie_follows_a_sweep_and_survives_being_written(tmp_path: Path) -> Non
     again = load_study(tmp_path / "copy.toml")
     assert again == study
     assert again.resolved() == study.resolved()
+
+
+@pytest.mark.parametrize(
+    ("tie", "layouts"),
+    [
+        ("0.4 * k", 'S1 = "k | c"\nS2 = "k | c - x"'),
+        ("1 / (1 / k - 1 / k1)", 'S1 = "k1 | c"\nS2 = "k1 - x | c"'),
+        ("c * c / b", 'S1 = "k | c - b"\nS2 = "k | x | c - b"'),
+        ("c * c / k", 'S1 = "k | c"\nS2 = "k | c - x"'),
+    ],
+)
+def test_a_tie_follows_a_condition(tmp_path: Path, tie: str, layouts: str) -> None:
+    """The mean over conditions is that of a study that has these numbers from the beginning."""
+    rng = np.random.default_rng(len(tie))
+    elements = 'k = "60 kN/m"\nk1 = "300 kN/m"\nc = "2 kN s/m"\nb = "100 kg"\n' + f'x = {{ tied = "{tie}" }}'
+    for _ in range(4):
+        k, c = rng.uniform(20e3, 90e3, 2).tolist(), rng.uniform(1e3, 4e3, 2).tolist()
+        sections = [f'[[conditions]]\nk = "{k[i]!r} N/m"\nc = "{c[i]!r} N s/m"\nshare = {i + 1}\n' for i in range(2)]
+        study = study_of(tmp_path, elements, layouts, 'indices = ["J1"]\n' + "".join(sections))
+        for layout in study.layouts:
+            found = it.evaluate(study.design(layout), study.asked("J1", layout), it.Norm()).value
+            values = []
+            for i in range(2):
+                numbers = [(place_of("k"), k[i]), (place_of("c"), c[i])]
+                there = with_numbers(replace(study, conditions=()), numbers)
+                values.append(it.evaluate(there.design(layout), there.asked("J1", layout), it.Norm()).value)
+            assert found == pytest.approx((values[0] + 2.0 * values[1]) / 3.0, rel=1e-9)
+
+
+def test_a_condition_of_what_a_free_value_follows_from_too_is_refused(tmp_path: Path) -> None:
+    condition = ASK + '\n[[conditions]]\nk = "50 kN/m"'
+    with pytest.raises(StudyError, match="k2 follows from it and from what is free"):
+        study_of(tmp_path, MADE_UP, 'S1 = "k | c"\nS2 = "k1 - k2 | c"', condition)
+
+
+def test_what_is_in_no_layout_itself_does_not_scatter(tmp_path: Path) -> None:
+    elements = 'k = "60 kN/m"\nc = "2 kN s/m"\nx = { tied = "2 * k" }'
+    study = study_of(tmp_path, elements, 'S1 = "k | c"\nS2 = "x | c"', 'indices = ["J1"]\ntolerance = { k = 0.1 }')
+    assert [study.spread(layout) for layout in ("S1", "S2")] == [{"k": 0.1}, {}]
 
 
 @pytest.mark.parametrize(

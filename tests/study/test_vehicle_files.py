@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -69,6 +70,25 @@ def test_a_seat_has_its_network_from_the_vehicle_or_from_the_layout(load: Load) 
     assert isinstance(seated, it.Seat)
     assert seated.mass == 70.0
     assert list(seated.free_values()) == ["c", "cs"]
+
+
+def test_drivers_of_several_masses_are_conditions(load: Load) -> None:
+    drivers = """
+[[conditions]]
+"vehicle.seat.mass" = "55 kg"
+share = 0.4
+[[conditions]]
+"vehicle.seat.mass" = "100 kg"
+"vehicle.sprung_mass" = "380 kg"
+share = 0.6
+"""
+    study = load("seat", ('baseline = "S1"', f'baseline = "S1"\n{drivers}'))
+    values = {"c": 1500.0, "cs": 400.0}
+    seated = study.design("S1").with_values(values)
+    found = it.evaluate(seated, study.asked("J1", "S1"), it.Norm()).value
+    laden = replace(seated, mass=100.0, vehicle=replace(seated.vehicle, sprung_mass=380.0))
+    alone = [it.evaluate(one, study.index("J1"), it.Norm()).value for one in (replace(seated, mass=55.0), laden)]
+    assert found == pytest.approx(0.4 * alone[0] + 0.6 * alone[1], rel=1e-12)
 
 
 @pytest.mark.parametrize("place", ['{ sprung = 1, pitch = "-0.3 m", roll = "0.4 m" }', "{ sprung = 1 }"])

@@ -73,6 +73,18 @@ TWO = [(J1, J3), (J1, J5), (J3, J5)]
 KINDS = ["S2", "S3", "S1 k", "S3 k", "four"]
 
 
+@pytest.mark.parametrize("other", [J5, it.SuspensionTravel(ROAD)], ids=["J5", "travel"])
+def test_an_end_that_leaves_the_other_criterion_open_is_the_best_in_that_too(other):
+    """The least static stiffness has any damper."""
+    car, indices = paper_quarter_car(strut("S3 k")), [it.static_stiffness("strut"), other]
+    front = it.pareto(car, indices, NORM, points=9, seed=0)
+    softest = paper_quarter_car(it.Spring(3e4) | strut("S3").parts[1])
+    least = it.optimise(softest, other, NORM, seed=0).value
+    assert front.values[0] == pytest.approx([3e4, least], rel=1e-6)
+    check_undominated(front, random_designs(car, indices, 2000))
+    assert gaps(front).max() < 2.0 * np.median(gaps(front))
+
+
 @pytest.mark.parametrize(
     ("kind", "pair", "number"),
     sampled(product(KINDS, range(3), range(3)), [("S3", 0, 0)]),

@@ -110,6 +110,7 @@ def there(tmp_path: Path) -> Iterator[Cluster]:
         yield made
 
 
+@pytest.mark.campaign
 def test_a_study_on_a_cluster_is_the_same_to_the_last_byte(tmp_path: Path, there: Cluster) -> None:
     study = study_file(tmp_path, 2, 2)
     it.run_study(it.load_study(study), tmp_path / "own")

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from itertools import count
 from multiprocessing import active_children
@@ -21,7 +22,7 @@ from hypothesis import strategies as st
 from inerter.errors import WorkError
 from inerter.work.pieces import WORTH, Cutter, Worked
 from inerter.work.pool import KILLS, Pool, _Start, pooled
-from inerter.work.processes import Processes
+from inerter.work.processes import Processes, is_started
 from inerter.work.running import mapped, running_on
 
 PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
@@ -73,6 +74,7 @@ def test_processes_stay_for_the_next_list_and_end_with_the_crew() -> None:
     assert none_left()
 
 
+@pytest.mark.campaign
 def test_the_first_are_worked_on_here_until_processes_would_be_there() -> None:
     slow = f"__import__('time').sleep(0.9) or {PROCESS}"
     with Pool(2) as pool:
@@ -250,3 +252,22 @@ def test_processes_start_when_the_pace_tells_that_they_are_worth_it(
     assert bool(start.starting) is begins
     ready.set_result(None)
     assert start.is_over(done + 1, seconds + 0.01) is begins  # work goes on here until the first of them is ready
+
+
+def test_processes_have_started_when_one_has_unless_all_have_ended():
+    done, broken, waiting = Future(), Future(), Future()
+    done.set_result(None)
+    broken.set_exception(BrokenProcessPool())
+    assert is_started([broken, done])
+    assert not is_started([broken, waiting])
+    assert not is_started([waiting])
+    with pytest.raises(WorkError, match="no process can be started"):
+        is_started([broken, broken])
+
+
+def test_a_process_that_ends_has_said_what_it_had_to_say(tmp_path: Path) -> None:
+    said = 'if __name__ == "__main__":\n    with Pool(2) as pool:\n        pool.begin(help_me)\n'
+    script = f"from inerter.work.pool import Pool\ndef help_me():\n    print('a word')\n{said}"
+    (tmp_path / "script.py").write_text(script, encoding="utf-8")
+    done = subprocess.run([sys.executable, tmp_path / "script.py"], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("a word\n", "")

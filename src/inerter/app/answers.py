@@ -14,6 +14,7 @@ from inerter.app.documents import study_from
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.valued import limits_at, valued
+from inerter.app.warm import is_compiled
 from inerter.app.wire import encoded
 from inerter.errors import DesignError, StudyError
 from inerter.fields import fields_of
@@ -44,15 +45,21 @@ _SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
 def first() -> None:
     """Answer once what is asked most, so that nothing is left to be loaded."""
     model, kind = next(iter(VEHICLES.items()))
-    study = {
+    elements: dict[str, Any] = {element.symbol: element.example for element in (Spring, Damper)}
+    study: dict[str, dict[str, Any]] = {
         "vehicle": {"model": model, **{field.key: field.example for field in fields_of(kind)}},
         "road": {field.key: field.example for field in ROAD},
-        "elements": {element.symbol: element.example for element in (Spring, Damper)},
+        "elements": elements,
         "layouts": {"first": f"{Spring.symbol} | {Damper.symbol}"},
         "study": {"indices": [next(iter(INDICES))]},
     }
     for key in ("indices", "response"):
         encoded(answered(key, {"study": study}))
+    search = methods_that(searches)[0]
+    if is_compiled(search):  # else it would wait here for the compiler
+        elements[Damper.symbol] = {"from": "100 N s/m", "to": "10 kN s/m"}
+        study["study"]["optimise"] = search
+        encoded(answered("optimise", {"study": study}))
 
 
 def answered(key: str, body: Body) -> Answer:

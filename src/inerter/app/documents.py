@@ -9,14 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import InerterError
-from inerter.files.common.problem import Problem
+from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import FileError, refusal
 from inerter.files.common.toml import tables_of
 from inerter.files.study.loading import WHAT, study_of
 from inerter.files.study.study import Study
 from inerter.report.json_data import json_data
+from inerter.units import shown
 
 Document = Mapping[str, Any]
+_Stamp = tuple[int, int] | None
 PATH = Path("study.toml")  # what a document is called that is no file
 _KEPT = 256  # documents whose studies are kept
 
@@ -45,14 +47,31 @@ def study_from(document: object) -> Study:
     if not isinstance(document, dict):
         raise refusal(PATH, [Problem(fault="not a study document", expected="the tables of a study file")])
     try:
-        return _study(json.dumps(document))
+        return _study(json.dumps(document), _stamp(document))
     except RecursionError:
         raise refusal(PATH, [Problem(said="Tables or lists are nested too deeply.")]) from None
 
 
 @lru_cache(_KEPT)
-def _study(document: str) -> Study:
+def _study(document: str, stamp: _Stamp) -> Study:
     return study_of(json.loads(document), PATH)
+
+
+def _stamp(document: Document) -> _Stamp:
+    """What tells whether the profile of a document's road has changed; none if it has none.
+
+    A page may read what stands beside the place where its server was started, and nothing else of the machine.
+    """
+    road = document.get("road")
+    name = road.get("profile") if isinstance(road, dict) else None
+    if not isinstance(name, str):
+        return None
+    if Path(name).name != name or not Path(name).is_file():
+        fault = "the page reads only profiles that lie in the folder in which inerter serve was started"
+        hint = "Start it there, or write the roughness that inerter check tells in the place of the profile."
+        raise refusal(PATH, [at(("road", "profile"), got=shown(name), fault=fault, expected="one of them", hint=hint)])
+    there = Path(name).stat()
+    return there.st_mtime_ns, there.st_size
 
 
 def problems_of(error: InerterError) -> list[dict[str, Any]]:

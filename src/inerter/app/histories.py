@@ -11,7 +11,7 @@ from inerter.app.designs import Design
 from inerter.errors import StudyError
 from inerter.figures.curves import thinned
 from inerter.files.study.study import Study
-from inerter.signals.harmonics import multisine
+from inerter.signals.harmonics import random_road
 from inerter.simulation.simulate import simulate
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import main_outputs
@@ -35,7 +35,7 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
         )
     if study.road is None:
         raise StudyError("The motion is one over a road, and this study has none. Add [road].")
-    road = multisine(study.road, seed=int(body.get("seed") or 0))
+    road = random_road(study.road, seed=int(body.get("seed") or 0))
     run = simulate(design.vehicle, road=road, duration=duration, step=step, initial="rest")
     mechanism = design.mechanism
     names = body.get("outputs") or main_outputs(mechanism)

@@ -9,6 +9,7 @@ from typing import Any
 
 from inerter.errors import InerterError
 from inerter.indices.registry import INDICES, make_index
+from inerter.kernels.cache import is_kept
 from inerter.kernels.prepare import prepare
 from inerter.methods.method import Compiled
 from inerter.methods.registry import METHODS, is_blind, searches
@@ -29,14 +30,19 @@ def warm(told: str) -> None:
         prepare(dict.fromkeys(_kernels()), tell)
 
 
+def is_compiled(method: str) -> bool:
+    """Whether what a method calls is compiled, as far as can be seen at once."""
+    return all(is_kept(kernel) for kernel in _of_method(method))
+
+
 def _kernels() -> Iterator[Any]:
+    for name in sorted(METHODS, key=is_blind, reverse=True):
+        yield from _of_method(name)
+
+
+def _of_method(name: str) -> Iterator[Any]:
     parts = {"k": Spring(1e5), "c": Damper(free(1e2, 1e5)), "b": Inerter(1e2), "f": Friction(10.0)}
     car = QuarterCar(250.0, 35.0, 150e3, strut=network("k | c - (b | f)", **parts)).mechanism()
-    for name in sorted(METHODS, key=is_blind, reverse=True):
-        yield from _of_method(name, car)
-
-
-def _of_method(name: str, car: Any) -> Iterator[Any]:
     kind: Callable[..., Any] = METHODS[name]
     for symbol in INDICES:
         try:

@@ -292,8 +292,8 @@ app.command(
 )
 
 
-def main() -> None:
-    """Run the command line of this process, and end it."""
+def main() -> int:
+    """Run the command line of this process; returns its exit code, unless Ctrl-C ends it."""
     endure()
     heed()
     try:
@@ -305,7 +305,7 @@ def main() -> None:
     if came():
         sweep()
         os._exit(code)  # compiled code that was cut short may not survive the interpreter's own end
-    sys.exit(code)
+    return code
 
 
 def call(arguments: list[str]) -> int:

@@ -1,15 +1,15 @@
-"""Where the command begins: it heeds Ctrl-C and has its streams before anything else is loaded."""
+"""Where the command begins and ends: it heeds Ctrl-C and has its streams before anything else is loaded."""
 
 from __future__ import annotations
 
-import gc
+import atexit
 import os
 import signal
+import sys
 
 from inerter.cli.interrupts import INTERRUPTED
 from inerter.cli.streams import endure
-
-_GARBAGE = 200_000  # new objects until garbage is looked for: most of a command's stay, and looking took a tenth of it
+from inerter.work.own_process import leave, look_for_garbage_seldom
 
 
 def main() -> None:
@@ -17,10 +17,18 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # as it is for work in the background
         signal.signal(signal.SIGINT, _stop)
     endure()
-    gc.set_threshold(_GARBAGE, 20, 100)
+    look_for_garbage_seldom()
+    codes: list[int] = []
+    atexit.register(_leave, codes)  # before all that others register: it is called after them
     from inerter.cli.main import main as command
 
-    command()
+    codes.append(command())
+    sys.exit(codes[-1])
+
+
+def _leave(codes: list[int]) -> None:
+    if codes:  # there are none after an error of the program
+        leave(codes[-1])
 
 
 def _stop(number: int, frame: object) -> None:

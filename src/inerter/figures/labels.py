@@ -93,9 +93,8 @@ def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
 
 def infeasible(results: xr.Dataset) -> xr.DataArray:
     """Where no design keeps the limits."""
-    kind = StatusKind.INFEASIBLE.value
-    status = results["status"]
-    return status.copy(data=np.vectorize(lambda text: str(text).startswith(kind), otypes=[bool])(status.values))
+    kept_by_none = np.vectorize(lambda text: str(text).partition(":")[0] == StatusKind.INFEASIBLE.value, otypes=[bool])
+    return results["status"].copy(data=kept_by_none(results["status"].values))
 
 
 def held_back(results: xr.Dataset) -> xr.DataArray:

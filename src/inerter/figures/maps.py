@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ from inerter.figures.style import log_axis, suits_log_axis
 Array = NDArray[np.float64]
 
 _LEVELS = 8  # about so many bands of colour
+_TITLE = 30  # characters above a panel
 _MOST_DOTS = 400  # of designs that were found
 _NO_VALUE = "#D9D9D9"
 _OPEN: dict[str, Any] = {
@@ -55,14 +57,14 @@ def index_maps(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequenc
     label = axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit)
     for ax, name in zip(axes, valued, strict=False):
         _draw(data.sel(layout=name), values.sel(layout=name).values, ax, _sequential(values.values), label)
-        ax.set_title(f"{name} (baseline)" if others else name)
+        ax.set_title(_in_lines(f"{name} (baseline)" if others else name))
     better = data["improvement"].sel(layout=others).clip(min=WORST)
     look = _diverging(better.values) if others else {}
     for ax, name in zip(axes[len(valued) :], others, strict=True):
         numbers = better.sel(layout=name).values
         _draw(data.sel(layout=name), numbers, ax, look, IMPROVEMENT)
         _draw_zero(data, numbers, ax)
-        ax.set_title(name)
+        ax.set_title(_in_lines(name))
     return axes
 
 
@@ -84,8 +86,13 @@ def parameter_maps(results: xr.Dataset, index: str, parameter: str, axes: Sequen
         x, y = _places(data)
         held = np.argwhere(row["at_bound"].values != "")
         _mark(ax, x[held[:, 0]], y[held[:, 1]], markersize=4.5, **_OPEN)
-        ax.set_title(name)
+        ax.set_title(_in_lines(name))
     return axes
+
+
+def _in_lines(title: str) -> str:
+    """A title that stays within its panel."""
+    return fill(title, _TITLE)
 
 
 def _ordered(data: xr.Dataset) -> xr.Dataset:

@@ -159,7 +159,7 @@ def draw_loop(result: SimulationResult, inside: NDArray[np.bool_], ax: Axes) -> 
         result.run[name][inside] if name else result.run.time[inside] for name in ("", road, f"{device}_force")
     )
     along, up = (scale([np.abs(v).max()], unit) for v, unit in ((x, "m"), (y, "N")))
-    period = result.request.make_signal().period
+    period = result.request.period
     last = time >= time[-1] - (period or np.inf) * (1.0 + 1e-9)
     if not last.all():
         ax.plot(x * along.factor, y * up.factor, color="#BBBBBB", linewidth=0.6)

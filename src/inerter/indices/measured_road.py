@@ -3,30 +3,75 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
-from inerter.indices.excitation import Shaped
+from inerter.indices.excitation import Excitation, Shaped
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road
+from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
+from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 DEVIATION = 5e-3  # of the density from that of the line
-_BEYOND = 10.0  # how much further than the line the filter follows its slope, as a factor at each end
+_BEYOND = (10.0, 20.0, 40.0)  # how much further than the line the filter follows its slope, as a factor at each end
 _MOST = 24  # poles
 _SLOPES = (0.0, 4.0)  # of wavinesses that a filter of this kind can have, without its ends
 
 
-def measured_road(spectrum: RoadSpectrum, speed: float) -> Shaped:
+@dataclass(frozen=True)
+class MeasuredRoad:
+    """A road with a waviness of its own between two wavenumbers, as an excitation; at another speed it is the same.
+
+    `road` is the one of waviness 2 that has the same density at 0.1 cycle/m.
+    """
+
+    road: Road
+    waviness: float
+    lowest: float  # [cycle/m]
+    highest: float
+    is_random = True
+
+    @property
+    def filter(self) -> Filter:
+        """What gives the white velocity of the road its waviness, at its speed."""
+        return _of_waviness(self.waviness, self.lowest, self.highest, self.road.speed)
+
+    @property
+    def size(self) -> float:
+        """That of the road."""
+        return self._shaped.size
+
+    @property
+    def unit(self) -> str:
+        """That of the road."""
+        return self._shaped.unit
+
+    @property
+    def _shaped(self) -> Excitation:
+        return Shaped(self.road, self.filter)
+
+    def driven(self, mechanism: Mechanism) -> Mechanism:
+        """As the road does."""
+        return self._shaped.driven(mechanism)
+
+    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+        """As those of the road, each through the filter."""
+        return self._shaped.arrivals(mechanism)
+
+
+def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
     """The road whose density is the line of a spectrum, Gd(n0) (n / n0)^-waviness, driven at `speed` [m/s].
 
     An index takes it in the place of a road. The filter has poles and zeros in turn, evenly over the logarithm of
     frequency; within the wavenumbers of the line the density deviates by half a per cent at most, and ten times further
-    on each side the road has a waviness of 2. Source: Oustaloup et al. (2000).
+    on each side, or more, the road has a waviness of 2. Source: Oustaloup et al. (2000).
 
     Raises `PerformanceIndexError` unless `speed` is positive and the waviness lies between 0 and 4.
     """
@@ -39,21 +84,30 @@ def measured_road(spectrum: RoadSpectrum, speed: float) -> Shaped:
             f"Is the profile in the unit that was named?"
         )
     road = Road(0.5 * spectrum.unevenness * N0**2, speed)
-    ends = (2.0 * math.pi * speed * spectrum.lowest, 2.0 * math.pi * speed * spectrum.highest)
-    return Shaped(road, _power_law(0.5 * (2.0 - spectrum.waviness), ends, 2.0 * math.pi * speed * N0))
+    return MeasuredRoad(road, spectrum.waviness, spectrum.lowest, spectrum.highest)
+
+
+@lru_cache(maxsize=64)
+def _of_waviness(waviness: float, lowest: float, highest: float, speed: float) -> Filter:
+    ends = (2.0 * math.pi * speed * lowest, 2.0 * math.pi * speed * highest)
+    return _power_law(0.5 * (2.0 - waviness), ends, 2.0 * math.pi * speed * N0)
 
 
 def _power_law(power: float, ends: tuple[float, float], unit: float) -> Filter:
     """A filter whose size is (omega / unit)^power between the ends [rad/s], by as few poles as will do."""
     omega = np.geomspace(*ends, 400)
     wanted = (omega / unit) ** (2.0 * power)
-    for count in range(1, _MOST + 1):
-        found = _alternating(power, (ends[0] / _BEYOND, ends[1] * _BEYOND), unit, count)
-        ratio = np.abs(found.response(omega)) ** 2 / wanted
-        level = math.sqrt(float(ratio.max() * ratio.min()))
-        if max(ratio.max() / level, level / ratio.min()) <= 1.0 + DEVIATION:
-            break
-    return Filter([float(c) / math.sqrt(level) for c in found.numerator], found.denominator)
+    for beyond in _BEYOND:
+        for count in range(1, _MOST + 1):
+            found = _alternating(power, (ends[0] / beyond, ends[1] * beyond), unit, count)
+            ratio = np.abs(found.response(omega)) ** 2 / wanted
+            level = math.sqrt(float(ratio.max() * ratio.min()))
+            if max(ratio.max() / level, level / ratio.min()) <= 1.0 + DEVIATION:
+                return Filter([float(c) / math.sqrt(level) for c in found.numerator], found.denominator)
+    raise PerformanceIndexError(
+        f"No filter follows a line from {ends[0] / unit * N0:g} to {ends[1] / unit * N0:g} cycle/m. Lay the line over "
+        f"fewer wavenumbers: road_spectrum(profile, lowest=..., highest=...)."
+    )
 
 
 def _alternating(power: float, ends: tuple[float, float], unit: float, count: int) -> Filter:

@@ -124,6 +124,11 @@ class CompiledQuestion:
     def _free(self) -> dict[str, Any]:
         return dict(self.problem.descriptor.free)
 
+    def _columns(self, one: CompiledQuestion) -> list[int]:
+        """Which of the free values those of the question of one source are."""
+        names = list(self._free)
+        return [names.index(name) for name in one._free]
+
     def _closed(self, point: Array) -> LinearSystem:
         return close(self.problem.descriptor, dict(zip(self._free, point.tolist(), strict=True)))
 
@@ -134,6 +139,9 @@ class CompiledQuestion:
         return h2(self.problem.system(self._closed(point)), self.problem.pade_order).outputs
 
     def _exact_norms(self, point: Array) -> Array:
+        if self.apart:
+            parts = [one._exact_norms(point[self._columns(one)]) for one in self.apart]
+            return np.asarray(np.linalg.norm(parts, axis=0))
         return h2_exactly(self.problem.system(self._closed(point)), self.problem.pade_order)[0]
 
     def values(self, points: Array) -> Array:
@@ -194,7 +202,8 @@ class CompiledQuestion:
         squares, good = np.zeros((points.shape[0], self.serves.size)), np.ones(points.shape[0], dtype=bool)
         found = []
         for seen, one in self.sighted:
-            norms, _, fine = one._with_gradients(points, np.empty(0))
+            own = np.ascontiguousarray(points[:, self._columns(one)])
+            norms, _, fine = one._with_gradients(own, np.empty(0))
             squares[:, seen] += norms**2
             found.append(norms)
             good &= fine
@@ -203,7 +212,9 @@ class CompiledQuestion:
         for row in range(gradients.shape[0]):
             for (seen, one), norms in zip(self.sighted, found, strict=True):
                 shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
-                gradients[row] += one._with_gradients(points[row : row + 1], shares)[1][0]
+                columns = self._columns(one)
+                own = np.ascontiguousarray(points[row : row + 1, columns])
+                gradients[row, columns] += one._with_gradients(own, shares)[1][0]
         return total, gradients, good
 
     def _steady(self, points: Array, norms: Array) -> NDArray[np.bool_]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, PerformanceIndexError, Status
+from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_composed, objective_of
 from inerter.methods.combined import Part, combined
@@ -32,7 +33,8 @@ class Condition:
 
     `vehicle` has other numbers of it by their names, such as `sprung_mass`, `tyre_stiffness` or the label of an
     element; `road` is another road, or other numbers of the one of the index, such as `speed`. What is not named stays
-    as it is. `share` is how much of the time, or distance, that is; shares need not add up to 1.
+    as it is. `share` is how much of the time, or distance, that is; shares need not add up to 1. With `if_there` a
+    vehicle need not have all that is named, as one of several designs that are compared.
 
     Raises `PerformanceIndexError` for a share that is not positive, or what is neither a road nor numbers of one.
     """
@@ -41,6 +43,7 @@ class Condition:
     vehicle: Mapping[str, float] = field(default_factory=dict)
     road: Road | Mapping[str, float] = field(default_factory=dict)
     name: str = ""
+    if_there: bool = False
 
     def __post_init__(self) -> None:
         if not is_number(self.share) or self.share <= 0.0:
@@ -136,7 +139,10 @@ class OverConditions(OfIndex):
 
     def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, Asked]]:
         """The vehicle and the index in each condition; raises `DesignError` for a name that stands for nothing."""
-        return [(changed(vehicle, one.vehicle), one.of(self.index)) for one in self.conditions.conditions]
+        return [
+            (changed(vehicle, one.vehicle, if_there=one.if_there), one.of(self.index))
+            for one in self.conditions.conditions
+        ]
 
     def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
         """What is asked in all conditions."""
@@ -210,8 +216,11 @@ def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, no
 
 def _on_other_road(value: Any, road: Road | Mapping[str, Any]) -> Any:
     """The same with another road wherever it holds one."""
-    if isinstance(value, Road):
-        return road if isinstance(road, Road) else dataclasses.replace(value, **road)
+    if isinstance(road, Road):
+        if isinstance(value, Road | MeasuredRoad):
+            return road
+    elif isinstance(value, Road):
+        return dataclasses.replace(value, **road)
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return value
     held = {f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.init}

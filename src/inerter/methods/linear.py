@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import PerformanceIndexError
 from inerter.indices.question import Question
 from inerter.methods.method import Estimate
+from inerter.methods.sides import on_one_side
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import Peak, hinf_norm
 from inerter.systems.arrivals import Column, columns_of, fed, inputs_of
@@ -113,7 +114,16 @@ class LinearProblem:
         return replace(self, question=question, unfiltered=descriptor)
 
     def of_source(self, source: str) -> LinearProblem:
-        """The problem with one of its sources alone."""
+        """The problem with one of its sources alone, of half the mechanism where that moves as the whole does.
+
+        Free values of mounts that lie still there are none of it.
+        """
+        names = [output.output for output in self.question.outputs]
+        mechanism = self.unfiltered.mechanism
+        half = on_one_side(mechanism, [a for a in self.question.arrivals(mechanism) if a.source == source])
+        if half is not None:
+            described = describe(half[0], inputs_of(half[1]), names)
+            return replace(self, unfiltered=fed(described, half[1]), arrivals=tuple(columns_of(half[1])))
         d, chosen = self.unfiltered, [i for i, of in enumerate(self.sources) if of == source]
         S, R, F, Y_eta, Y_x, Y_u = d.sizes
         descriptor = replace(

@@ -18,7 +18,7 @@ from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.units import format_quantity
-from inerter.vehicle.changed import mounted, with_elements
+from inerter.vehicle.changed import mounted, opened, with_elements
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -151,6 +151,7 @@ def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
 
     Raises `DesignError` if there is none, or if they are of several kinds.
     """
+    vehicle = opened(vehicle)
     chosen = {id(element) for element in _elements(vehicle, parameter)}
     return with_elements(vehicle, lambda element: element.with_value(value) if id(element) in chosen else element)
 

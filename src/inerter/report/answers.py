@@ -26,6 +26,7 @@ def answers(
     """A sentence for each index, and one for each budget of a layout that is the best for some index."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     return [
+        *(() if study.line is None else study.line.warnings),
         *headlines(results, Telling(write, static)),
         *front_sentences(results, write),
         *_of_budgets(results, study, budgets, write),

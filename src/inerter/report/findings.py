@@ -10,7 +10,6 @@ import numpy as np
 import scipy
 import xarray as xr
 
-from inerter.errors import StatusKind
 from inerter.figures.labels import (
     NOTICEABLE,
     by_method,
@@ -20,6 +19,7 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     indices,
+    infeasible,
     listed,
     methods,
     one_method,
@@ -298,15 +298,14 @@ def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
 
 def _without(results: xr.Dataset, index: str, layout: str) -> str:
     """That a layout has no value, and why."""
-    status = str(results["status"].sel(layout=layout, index=index).item())
-    infeasible = status.startswith(StatusKind.INFEASIBLE.value)
-    return f"no {layout} keeps the limits" if infeasible else f"{layout} has no finite value"
+    missed = bool(infeasible(results.sel(layout=layout, index=index)))
+    return f"no {layout} keeps the limits" if missed else f"{layout} has no finite value"
 
 
 def _none(results: xr.Dataset, index: str) -> str:
     """Why there is no best layout."""
-    kinds = {str(status).partition(":")[0] for status in results["status"].sel(index=index).values.ravel()}
-    return "no layout keeps the limits" if kinds == {StatusKind.INFEASIBLE.value} else "no layout has a finite value"
+    missed = bool(infeasible(results.sel(index=index)).all())
+    return "no layout keeps the limits" if missed else "no layout has a finite value"
 
 
 def _range(least: float, largest: float) -> str:

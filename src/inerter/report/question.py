@@ -56,6 +56,8 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     rows += [(capital(s.words), _told(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
     if study.road is not None:
         rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
+        rows += [] if study.line is None else [("Road measured in", study.line.source)]
+        rows += list(_coherence_rows(study))
     for name in study.indices:
         symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
@@ -67,6 +69,14 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         given = [field for field in method_settings(name) if field.key in settings]
         rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
     return rows
+
+
+def _coherence_rows(study: Study) -> Iterator[tuple[str, str]]:
+    known = places(study)
+    for key, value in study.coherence.items():
+        label = f"road.coherence.{key}"
+        words = known[label].words if label in known else f"{key} of the coherence"
+        yield capital(words), _told(study, label) if label in known else f"{value:g}"
 
 
 def element_rows(study: Study) -> list[tuple[str, str, str]]:

@@ -39,7 +39,7 @@ def simulation_data(result: SimulationResult) -> dict[str, Any]:
             for name, load in run.static_loads.items()
         },
         "lift_offs": [vars(one) for one in run.lift_offs],
-        "notes": list(run.notes),
+        "notes": [*result.request.notes, *run.notes],
         "nonlinear": {
             n.name: {"kind": n.kind, "strut": n.strut, "events": n.events, "shares": n.shares} for n in result.nonlinear
         },
@@ -128,7 +128,7 @@ def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
         yield f"The figure shows {window[0]:g} to {window[1]:g} s; another part with --window FROM:TO."
     if window is not None and run.lift_offs:
         yield from _elsewhere(run.lift_offs, window, (begin, end))
-    for note in run.notes:
+    for note in (*result.request.notes, *run.notes):
         yield from wrap(f"Note: {note}", WIDTH)
     yield from wrap(f"Status: {run.status}", WIDTH)
 

@@ -38,6 +38,7 @@ class RoadSpectrum:
     scatter: float
     lowest: float  # [cycle/m] of the line
     highest: float
+    bands: int = 0  # of the line
 
     @property
     def iso8608_class(self) -> RoadClass:
@@ -91,6 +92,7 @@ def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIG
         scatter=math.exp(float(np.std(y - slope * x - intercept))),
         lowest=float(n[0]),
         highest=float(n[-1]),
+        bands=int(n.size),
     )
 
 

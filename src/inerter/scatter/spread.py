@@ -11,11 +11,9 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import DesignError
-from inerter.fields import fields_of
 from inerter.networks.elements import Element, Free, Tied
-from inerter.vehicle.changed import changed, labelled, with_elements
-from inerter.vehicle.mechanism import Mechanism
-from inerter.vehicle.vehicle import Vehicle, VehicleModel
+from inerter.vehicle.changed import changed, labelled, masses, opened, quantities, with_elements
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = ("uniform", "normal")
@@ -74,7 +72,11 @@ def scatter_of(spread: object, distribution: str) -> Scatter:
 def elements_scatter(vehicle: Vehicle, scatter: Scatter) -> bool:
     """Whether all that scatters is values of elements; raises `DesignError` for a name that stands for nothing."""
     nominal(vehicle, scatter)
-    return all(labelled(vehicle, name) or name in vehicle.free_values() for name in scatter.names)
+    return all(name in vehicle.free_values() or _is_of_elements(vehicle, name) for name in scatter.names)
+
+
+def _is_of_elements(vehicle: Vehicle, name: str) -> bool:
+    return name not in quantities(vehicle) and bool(labelled(vehicle, name))
 
 
 def nominal(vehicle: Vehicle, scatter: Scatter) -> dict[str, float]:
@@ -91,18 +93,19 @@ def nominal(vehicle: Vehicle, scatter: Scatter) -> dict[str, float]:
 def _value(vehicle: Vehicle, name: str) -> float:
     if name in vehicle.free_values():
         return np.nan
-    if isinstance(vehicle, VehicleModel) and name in {field.name for field in fields_of(type(vehicle))}:
-        return float(getattr(vehicle, name))
+    if name in quantities(vehicle):
+        return float(quantities(vehicle)[name])
     chosen = labelled(vehicle, name)
     if chosen:
         value = chosen[0].value
         if isinstance(value, Free | Tied):
             raise DesignError(f"{name!r} is tied to others, and scatters with them; name those.")
+        if any(element.value != value for element in chosen):
+            several = " and ".join(dict.fromkeys(str(element) for element in chosen))
+            raise DesignError(f"{name!r} stands for {several}, which cannot scatter as one. Give them different names.")
         return value
-    if isinstance(vehicle, Mechanism):
-        for coordinate in vehicle.coordinates:
-            if coordinate.name == name:
-                return coordinate.inertia
+    if name in masses(vehicle):
+        return masses(vehicle)[name]
     changed(vehicle, {name: 1.0})  # which says what there is
     raise AssertionError("unreachable")
 
@@ -110,7 +113,7 @@ def _value(vehicle: Vehicle, name: str) -> float:
 def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
     """The vehicle with a free value in the place of each fixed one that scatters, by its name."""
     parts = dict(scatter.spread)
-    free = vehicle.free_values()
+    vehicle, free = opened(vehicle), vehicle.free_values()
     chosen = {id(element) for name in parts if name not in free for element in labelled(vehicle, name)}
 
     def loose(element: Element) -> Element:

@@ -149,6 +149,13 @@ def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000
     }
 
 
+def random_road(
+    road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.0
+) -> Harmonics | dict[str, Harmonics]:
+    """The road as `simulate(..., road=...)` takes it: the left and the right track if it has a coherence, else one."""
+    return (multisine if road.coherence is None else two_tracks)(road, seed, lowest, highest)
+
+
 def flat_multisine(seed: int, rms: float, lowest: float, highest: float, speed: float | None = None) -> Harmonics:
     """Harmonics `lowest`, 2 `lowest`, ... up to `highest` [Hz] of one amplitude, with independent uniform phases.
 

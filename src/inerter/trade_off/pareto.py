@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from numbers import Integral
@@ -87,7 +87,7 @@ def pareto(
             if not np.isfinite(end.value) or end.status.kind is StatusKind.INFEASIBLE:
                 return _empty(criteria, int(seed), end.status)
             ends.append(end)
-        trade = _trade(vehicle, criteria, method, limits, free, ends, int(seed))
+        trade = _trade(vehicle, criteria, method, limits, free, ends, int(seed)).from_strict_ends()
         found = trade.front(int(points))
         return _front(trade, found, int(seed))
 
@@ -158,6 +158,11 @@ class _Trade:
     @cached_property
     def _quick(self) -> bool:
         return all(isinstance(one, Differentiable) for one in self.objectives) and is_smooth(self.bounds)
+
+    def from_strict_ends(self) -> _Trade:
+        """The same, where a single optimum that leaves another criterion open is the best in that, too."""
+        strict = tuple(self.strict(self.at(point)).point for point in self.ends)
+        return replace(self, ends=strict)
 
     def problem(self, aim: Array, which: Sequence[int]) -> Limited:
         """The least of what the normalised criteria exceed their aims by."""

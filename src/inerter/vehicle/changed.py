@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 from inerter.checks import is_number
 from inerter.errors import DesignError
@@ -12,56 +12,101 @@ from inerter.fields import fields_of
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.mechanism import Mechanism
-from inerter.vehicle.vehicle import Vehicle, VehicleModel
+from inerter.vehicle.vehicle import Stage, Vehicle, VehicleModel
 
 
-def changed(vehicle: Vehicle, values: Mapping[str, float]) -> Vehicle:
+def changed(vehicle: Vehicle, values: Mapping[str, float], *, if_there: bool = False) -> Vehicle:
     """The same vehicle with other numbers (SI), each by its name.
 
-    That is a quantity of the vehicle such as `sprung_mass`, else the label of elements, else a coordinate of a
-    `Mechanism`, whose mass it is.
+    That is a quantity of the vehicle such as `sprung_mass`, or of what stands on it, else the label of elements, else a
+    coordinate of a `Mechanism`, whose mass it is.
 
-    Raises `DesignError` for a name that stands for nothing here, or for elements of several kinds.
+    Raises `DesignError` for a name that stands for nothing here, unless what is not there may be named (`if_there`), or
+    for elements of several kinds.
     """
+    vehicle = opened(vehicle)
     for name, value in values.items():
         if not is_number(value):
             raise DesignError(f"The value of {name!r} must be a finite number in SI units, got {value!r}.")
-        vehicle = _one_changed(vehicle, name, float(value))
+        if not if_there or name in _known(vehicle):
+            vehicle = _one_changed(vehicle, name, float(value))
     return vehicle
 
 
+def opened(vehicle: Vehicle) -> Vehicle:
+    """The vehicle, as its mechanism if it does not say what it is made of; its elements then stay the same objects."""
+    if isinstance(vehicle, Stage):
+        return _standing_on(vehicle, opened(vehicle.vehicle))
+    return vehicle if isinstance(vehicle, VehicleModel | Mechanism) else vehicle.mechanism()
+
+
+def quantities(vehicle: Vehicle) -> dict[str, float]:
+    """The quantities of a vehicle by name, and of what stands on it."""
+    below = quantities(vehicle.vehicle) if isinstance(vehicle, Stage) else {}
+    return below | _own_quantities(vehicle)
+
+
+def masses(vehicle: Vehicle) -> dict[str, float]:
+    """The inertias of the coordinates of a `Mechanism`, which may carry something, by their names."""
+    if isinstance(vehicle, Stage):
+        return masses(vehicle.vehicle)
+    return {c.name: c.inertia for c in vehicle.coordinates} if isinstance(vehicle, Mechanism) else {}
+
+
+def _own_quantities(vehicle: Vehicle) -> dict[str, float]:
+    if not isinstance(vehicle, VehicleModel | Stage):
+        return {}
+    return {field.name: getattr(vehicle, field.name) for field in fields_of(type(vehicle))}
+
+
 def _one_changed(vehicle: Vehicle, name: str, value: float) -> Vehicle:
-    if isinstance(vehicle, VehicleModel) and name in {field.name for field in fields_of(type(vehicle))}:
-        return dataclasses.replace(vehicle, **{name: value})
+    if name in quantities(vehicle):
+        return _with_quantity(vehicle, name, value)
     chosen = {id(element) for element in labelled(vehicle, name)}
     if chosen:
         return with_elements(vehicle, lambda e: e.with_value(value) if id(e) in chosen else e)
-    mechanism = vehicle.mechanism()
-    if isinstance(vehicle, Mechanism) and name in {c.name for c in mechanism.coordinates}:
-        return dataclasses.replace(
-            mechanism,
-            coordinates=tuple(
-                dataclasses.replace(c, inertia=value) if c.name == name else c for c in mechanism.coordinates
-            ),
-        )
+    if name in masses(vehicle):
+        return _with_mass(vehicle, name, value)
     raise DesignError(f"There is nothing named {name!r} to change (there are: {', '.join(_known(vehicle))}).")
 
 
+def _with_quantity(vehicle: Vehicle, name: str, value: float) -> Vehicle:
+    if isinstance(vehicle, Stage) and name not in _own_quantities(vehicle):
+        return _standing_on(vehicle, _with_quantity(vehicle.vehicle, name, value))
+    of: Any = vehicle
+    return cast(Vehicle, dataclasses.replace(of, **{name: value}))
+
+
+def _standing_on(stage: Stage, vehicle: Vehicle, **other: Network) -> Vehicle:
+    """The stage on another vehicle."""
+    of: Any = stage
+    return cast(Vehicle, dataclasses.replace(of, vehicle=vehicle, **other))
+
+
+def _with_mass(vehicle: Vehicle, name: str, value: float) -> Vehicle:
+    if isinstance(vehicle, Stage):
+        return _standing_on(vehicle, _with_mass(vehicle.vehicle, name, value))
+    mechanism = vehicle.mechanism()
+    coordinates = tuple(dataclasses.replace(c, inertia=value) if c.name == name else c for c in mechanism.coordinates)
+    return dataclasses.replace(mechanism, coordinates=coordinates)
+
+
 def _known(vehicle: Vehicle) -> list[str]:
-    quantities = [field.name for field in fields_of(type(vehicle))] if isinstance(vehicle, VehicleModel) else []
-    masses = [c.name for c in vehicle.coordinates] if isinstance(vehicle, Mechanism) else []
-    return list(dict.fromkeys([*quantities, *(e.label for part in mounted(vehicle) for e in part), *masses]))
+    labels = [element.label for part in mounted(vehicle) for element in part]
+    return list(dict.fromkeys([*quantities(vehicle), *labels, *masses(vehicle)]))
 
 
 def mounted(vehicle: Vehicle) -> tuple[list[Element], list[Element]]:
     """The elements of the struts, and of tyres that are given as networks."""
+    if isinstance(vehicle, Stage):
+        struts, tyres = mounted(vehicle.vehicle)
+        return [*struts, *vehicle.network.elements()], tyres
     if isinstance(vehicle, VehicleModel):
-        struts: list[Network] = list(vehicle.networks().values())
-        tyres: list[Network] = []
-    else:
-        mechanism = vehicle.mechanism()
-        struts, tyres = [s.network for s in mechanism.struts], [t.network for t in mechanism.tyres]
-    return [e for network in struts for e in network.elements()], [e for network in tyres for e in network.elements()]
+        return [e for network in vehicle.networks().values() for e in network.elements()], []
+    mechanism = vehicle.mechanism()
+    parts = (mechanism.struts, mechanism.tyres)
+    of_struts, of_tyres = ([e for mount in part for e in mount.network.elements()] for part in parts)
+    return of_struts, of_tyres
 
 
 def labelled(vehicle: Vehicle, label: str) -> list[Element]:
@@ -81,6 +126,9 @@ def labelled(vehicle: Vehicle, label: str) -> list[Element]:
 
 def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Vehicle:
     """The same vehicle with other elements in what is mounted."""
+    if isinstance(vehicle, Stage):
+        network = map_elements(vehicle.network, change)
+        return _standing_on(vehicle, with_elements(vehicle.vehicle, change), network=network)
     if isinstance(vehicle, VehicleModel):
         mounted: dict[str, Any] = {name: map_elements(network, change) for name, network in vehicle.networks().items()}
         return dataclasses.replace(vehicle, **mounted)

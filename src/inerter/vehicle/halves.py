@@ -11,6 +11,15 @@ from inerter.vehicle.mechanism import Coordinate, Mechanism, Point, Port, Strut,
 
 
 def half_of(mechanism: Mechanism) -> Mechanism:
+    """`alike_half`, unless a mount that nothing moves then has a free value, which is to be told of."""
+    half = alike_half(mechanism)
+    still = half.still[len(mechanism.still) :]
+    if any(isinstance(element.value, Free) for strut in still for element in strut.network.elements()):
+        return mechanism
+    return half
+
+
+def alike_half(mechanism: Mechanism) -> Mechanism:
     """What moves where both sides move alike, if both are alike: an equal mechanism of fewer coordinates; else itself.
 
     Of two coordinates that are each other's mirror image the first has the mass of both, and those that turn round lie
@@ -19,7 +28,32 @@ def half_of(mechanism: Mechanism) -> Mechanism:
     """
     if not mechanism.mirror or not _is_its_image(mechanism):
         return mechanism
-    follows: dict[str, Port] = {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror}
+    return _folded(mechanism, {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror})
+
+
+def opposed_half(mechanism: Mechanism) -> Mechanism:
+    """What moves where the right side moves against the left, on roads that do so too, if both sides are alike; else
+    the mechanism itself.
+
+    What is its own image lies still, and what turns round moves. Tyres of the right are turned over, onto the roads of
+    the left.
+    """
+    merged = mechanism.on_one_track()
+    if not mechanism.mirror or any(road.track != "left" for road in merged.roads) or not _is_its_image(merged):
+        return mechanism
+    follows: dict[str, Port] = {b: {a: -1.0} for a, b in mechanism.mirror if a != b}
+    moved = {a for a, _ in mechanism.mirror}
+    follows |= {c.name: {} for c in mechanism.coordinates if c.name not in {*moved, *follows}}
+    half = _folded(replace(mechanism, tyres=merged.tyres, roads=merged.roads), follows)
+    turned = (
+        one if one.road == own.road else replace(one, port={name: -lever for name, lever in one.port.items()})
+        for one, own in zip(half.tyres, mechanism.tyres, strict=True)
+    )
+    return replace(half, tyres=tuple(turned))
+
+
+def _folded(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
+    """The mechanism whose coordinates follow others so."""
     doubled = {a for a, b in mechanism.mirror if a != b}
 
     def folded(port: Port) -> Port:
@@ -31,8 +65,6 @@ def half_of(mechanism: Mechanism) -> Mechanism:
 
     struts = [replace(s, upper=folded(s.upper), lower=folded(s.lower)) for s in mechanism.struts]
     still = tuple(strut for strut in struts if strut.upper == strut.lower)
-    if any(isinstance(element.value, Free) for strut in still for element in strut.network.elements()):
-        return mechanism  # which is to be told of
     coordinates = (replace(c, inertia=2.0 * c.inertia) if c.name in doubled else c for c in mechanism.coordinates)
     gone = (Point(c.name, follows[c.name], c.angle) for c in mechanism.coordinates if c.name in follows)
     return replace(

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 from inerter.checks import check_positive
 from inerter.errors import MechanismError
 from inerter.fields import mount, quantity
-from inerter.networks.elements import Free, Network, check_network
-from inerter.networks.transform import name_free_values, with_values
-from inerter.vehicle.mechanism import Coordinate, Mechanism, Port, Strut, Weighted, check_known
-from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.networks.elements import Network, check_network
+from inerter.networks.transform import name_free_values
+from inerter.vehicle.mechanism import Coordinate, Mechanism, Port, Strut, Weighted
+from inerter.vehicle.vehicle import Stage, Vehicle, check_vehicle
 
 
 @dataclass(frozen=True)
-class Seat:
+class Seat(Stage):
     """A vehicle with an occupant on a seat, where comfort is that of the occupant.
 
     The seat is mounted at `place`, a port of the vehicle: {"sprung": 1.0, "pitch": 0.2, "roll": 0.4} is the body of a
@@ -53,14 +52,3 @@ class Seat:
             struts=(*below.struts, Strut(self.strut, self.network, upper=upper, lower=self.place)),
             measures=replace(below.measures, comfort=(Weighted(f"{self.coordinate}_acceleration"),)),
         )
-
-    def free_values(self) -> dict[str, Free]:
-        """The design variables by name: those of the vehicle, then those of the seat."""
-        return self.mechanism().free_values()
-
-    def with_values(self, values: Mapping[str, float]) -> Self:
-        """The same with the named free values fixed; raises `DesignError` for a name that is not free here."""
-        check_known(values, self.free_values())
-        below = {name: value for name, value in values.items() if name in self.vehicle.free_values()}
-        vehicle: Any = self.vehicle.with_values(below)
-        return replace(self, vehicle=vehicle, network=with_values(self.network, values))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Protocol, Self
@@ -79,3 +80,26 @@ class VehicleModel:
         check_known(values, self.free_values())
         fixed: dict[str, Any] = {name: with_values(network, values) for name, network in self.networks().items()}
         return replace(self, **fixed)
+
+
+class Stage(ABC):
+    """What stands on another vehicle, on a network of its own, and is a vehicle together with it; a dataclass."""
+
+    vehicle: Vehicle
+    network: Network
+
+    @abstractmethod
+    def mechanism(self) -> Mechanism:
+        """Both as a `Mechanism`."""
+
+    def free_values(self) -> dict[str, Free]:
+        """The design variables by name: those of the vehicle, then its own."""
+        return self.mechanism().free_values()
+
+    def with_values(self, values: Mapping[str, float]) -> Self:
+        """The same with the named free values fixed; raises `DesignError` for a name that is not free here."""
+        check_known(values, self.free_values())
+        below = {name: value for name, value in values.items() if name in self.vehicle.free_values()}
+        other: Any = self
+        fixed: Self = replace(other, vehicle=self.vehicle.with_values(below), network=with_values(self.network, values))
+        return fixed

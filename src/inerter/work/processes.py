@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator
@@ -14,12 +15,15 @@ from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing.connection import wait as wait_for_end
 from multiprocessing.process import BaseProcess
+from multiprocessing.util import Finalize
 from typing import Any
 
 from inerter.errors import WorkError
+from inerter.work.own_process import leave, look_for_garbage_seldom
 from inerter.writing import undisturbed
 
 _ASKED, _KILLED = 0.4, 10.0  # seconds that a process has to end, and to be gone where it must
+_LAST = -1000  # of what a process does when it ends
 
 
 @dataclass(eq=False)
@@ -143,9 +147,16 @@ def _deaf_to_interrupts() -> Iterator[None]:
 
 
 def _begin_worker() -> None:
+    look_for_garbage_seldom()
+    Finalize(None, _leave, exitpriority=_LAST)
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _leave() -> None:
+    if sys.exc_info()[0] is None:  # an error is told by those who end it
+        leave()
 
 
 def _end_with(sentinel: int) -> None:

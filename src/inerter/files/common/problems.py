@@ -94,7 +94,7 @@ def _example(place: tuple[str, ...], shapes: Shapes) -> str:
     for name, field in _shape(place[:-1], shapes).model_fields.items():
         if place[-1] in (name, field.alias) and field.examples:
             return str(field.examples[0])
-    raise KeyError(place)
+    return f"a section [{'.'.join(place)}]"
 
 
 def _has_shape(place: tuple[str, ...], shapes: Shapes) -> bool:

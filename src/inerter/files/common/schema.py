@@ -21,6 +21,7 @@ USUAL = {  # units of each kind as they are often written; others are not refuse
     "m/s": ("m/s", "km/h", "mm/s", "mph"),
     "m/s^2": ("m/s^2", "mm/s^2"),
     "m^3/cycle": ("m^3/cycle",),
+    "cycle/m": ("cycle/m", "cycle/km"),
     "kg m^2": ("kg m^2",),
     "rad/s": ("rad/s", "Hz", "kHz"),
     "s": ("s", "ms", "min"),

@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
-    ConfigDict,
     Discriminator,
     Field,
     Tag,
@@ -34,7 +33,6 @@ from inerter.files.common.entries import (
     word,
 )
 from inerter.files.common.kind_entry import KindEntry, kind_entry, kind_schema, names_kind
-from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import NEVER, Says, checked
 from inerter.files.common.tables import Shape, Shapes
 from inerter.files.common.vehicle_shapes import (
@@ -47,7 +45,6 @@ from inerter.files.common.vehicle_shapes import (
     mechanism_shapes,
 )
 from inerter.rows import made_of_rows
-from inerter.signals.road import ROAD_CLASSES
 from inerter.vehicle.registry import VEHICLES
 
 ROAD = (
@@ -55,25 +52,6 @@ ROAD = (
     Quantity("roughness", "m^3/cycle", "kappa = Gd(n0) n0^2 / 2 of ISO 8608.", "5e-7 m^3/cycle", "roughness"),
 )
 ANY = "<any>"  # the shape of what does not say its kind
-
-
-class RoadTable(Shape):
-    """A table [road] may say the class of a road in place of its roughness."""
-
-    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("roughness"))
-    letter: Annotated[str | None, word("a class of ISO 8608", ROAD_CLASSES)] = Field(
-        default=None, alias="class", description="Of ISO 8608, in place of a roughness.", examples=['class = "C"']
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _of_a_class(cls, table: Any) -> Any:
-        if not isinstance(table, dict) or "class" not in table:
-            return table
-        if "roughness" in table:
-            raise EntryError(got="both roughness and class", expected="one of the two")
-        known = ROAD_CLASSES.get(str(table["class"]), ROAD_CLASSES["A"])  # of another one, that is what is told
-        return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
 
 
 AmountText = Annotated[Amount, AMOUNT]

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from pydantic import PlainValidator
 
-from inerter.errors import RowError
+from inerter.errors import RecordError, RowError, SignalError
 from inerter.files.common.entries import any_quantity, one_of, positive, text, whole, yes_or_no
-from inerter.roads.reading import profile
+from inerter.roads.reading import profile, read_profile
 from inerter.rows import Rows, made_of_rows
-from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
+from inerter.signals.harmonics import cosine, flat_multisine, random_road, sine
 from inerter.signals.records import held_noise, recorded
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
@@ -21,6 +22,7 @@ from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
 
 NEEDED: Any = ...
+BOTH = "both"  # tracks of a profile, each under its own wheels
 UNITS = ("m", "N", "N m")  # of what a signal can be
 _SQUARES = {"m": "m^2", "N": "N^2", "N m": "N^2 m^2"}
 _SIZES = {"m": "1 mm", "N": "100 N", "N m": "100 N m"}
@@ -63,24 +65,41 @@ _WAVE = {
 
 @dataclass(frozen=True)
 class SignalKind:
-    """How one kind is made: `make` takes the keys of [signal] and `given`, some of `road`, `speed` and `unit`."""
+    """How one kind is made: `make` takes the keys of [signal] and `given`, some of `road`, `speed` and `unit`.
+
+    It returns a signal, or one for the left and one for the right track.
+    """
 
     key: str
-    make: Callable[..., Signal]
+    make: Callable[..., Signal | Mapping[str, Signal]]
     keys: Mapping[str, SignalKey]
     given: tuple[str, ...] = ("speed",)
     needs: tuple[str, ...] = ()  # keys of [road]
     of_roads: bool = False  # a force cannot be of this kind
+    random: bool = False  # a road with the coherence that [road] says
+
+
+def _measured(file: str, track: str, speed: float) -> Signal | Mapping[str, Signal]:
+    if track != BOTH:
+        return profile(file, speed, track)
+    try:
+        found = read_profile(file).signals(speed)
+    except RecordError as problem:
+        raise SignalError(str(problem)) from None
+    if isinstance(found, Signal):
+        raise SignalError(f"{Path(file).name} has one track; leave the track out, or give a profile of two.")
+    return found
 
 
 _OWN = (
     SignalKind(
         "multisine",
-        multisine,
+        random_road,
         {"seed": _SEED, "lowest": _frequency("lowest", "0.1", 0.1), "highest": _frequency("highest", "1000", 1000.0)},
         given=("road",),
         needs=("speed", "roughness"),
         of_roads=True,
+        random=True,
     ),
     SignalKind(
         "flat-multisine",
@@ -140,8 +159,8 @@ _OWN = (
     ),
     SignalKind(
         "profile",
-        lambda file, track, speed: profile(path=file, track=track, speed=speed),
-        {"file": _FILE, "track": SignalKey("", 'track = "left"', "", _plain(one_of("a track", TRACKS)))},
+        _measured,
+        {"file": _FILE, "track": SignalKey("", 'track = "left"', "", _plain(one_of("a track", (*TRACKS, BOTH))))},
         needs=("speed",),
         of_roads=True,
     ),

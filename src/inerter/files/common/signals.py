@@ -11,10 +11,11 @@ from pydantic import ConfigDict, Field, PlainValidator, create_model
 
 from inerter.files.common.entries import one_of, text
 from inerter.files.common.shape import ANY, one_of_shapes
-from inerter.files.common.signal_kinds import NEEDED, SIGNALS, UNITS, unit_of
+from inerter.files.common.signal_kinds import BOTH, NEEDED, SIGNALS, UNITS, unit_of
 from inerter.files.common.tables import Shape, Shapes
 from inerter.files.common.vehicle_shapes import Driving
 from inerter.rows import made_of_rows
+from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 
@@ -43,12 +44,27 @@ class SignalRequest:
         """The files that it is read from."""
         return (Path(self.values["file"]),) if "file" in self.values else ()
 
-    def make(self, speed: float | None = None, roughness: float | None = None) -> Signal:
-        """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
+    @property
+    def on_tracks(self) -> bool:
+        """Whether its file is to give a signal for each track."""
+        return self.values.get("track") == BOTH
+
+    def make(self) -> Signal:
+        """The signal of what has no road; raises as `tracks` does."""
+        return self.tracks()[""]
+
+    def tracks(
+        self, speed: float | None = None, roughness: float | None = None, coherence: Coherence | None = None
+    ) -> dict[str, Signal]:
+        """The signal of each track, "left" and "right"; of a single one by the name "".
+
+        Raises `SignalError` if its values do not go together, or its file cannot be read.
+        """
         kind = SIGNALS[self.kind]
-        road = None if speed is None or roughness is None else Road(roughness, speed)
+        road = None if speed is None or roughness is None else Road(roughness, speed, coherence)
         known = {"road": road, "speed": speed, "unit": self.unit}
-        return kind.make(**self.values, **{name: known[name] for name in kind.given})
+        found = kind.make(**self.values, **{name: known[name] for name in kind.given})
+        return {"": found} if isinstance(found, Signal) else dict(found)
 
     def resolved(self) -> dict[str, Any]:
         """How a file says it, in SI units."""

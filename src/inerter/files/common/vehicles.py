@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from inerter.errors import MechanismError
+from inerter.errors import InerterError, MechanismError
 from inerter.fields import Field, fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
@@ -112,6 +112,18 @@ def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
 def inputs(model: str, values: Values) -> dict[str, str]:
     """What a signal may move, with the unit of each; first what it moves if nothing else is said."""
     return _form(model).inputs(values)
+
+
+def tracks(model: str, values: Values) -> dict[str, str] | None:
+    """The track of each of its roads, empty where there is but one; None if the vehicle cannot be."""
+    if any(vehicle_problems(model, values)):
+        return None
+    own = _without_seat(values)
+    try:
+        roads = made(model, own, dict.fromkeys(mounts(model, own), _ANY)).mechanism().roads
+    except InerterError:
+        return None
+    return {road.name: road.track for road in roads}
 
 
 def in_si(fields: Iterable[Field], values: Mapping[str, float]) -> dict[str, str]:

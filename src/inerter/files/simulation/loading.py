@@ -9,12 +9,13 @@ from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
+from inerter.files.common.roads import MeasuredLine, coherence_values, line_through, track_problems
 from inerter.files.common.shape import ROAD
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_shape
-from inerter.files.common.vehicles import inputs, values_of, vehicle_problems
+from inerter.files.common.vehicles import inputs, tracks, values_of, vehicle_problems
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.shape import SimulationFile, shapes
 from inerter.simulation.inputs import whole_steps
@@ -30,15 +31,16 @@ def load_simulation(path: str | Path) -> SimulationRequest:
     """
     path = Path(path)
     shape = read_shape(path, "a simulation file", *shapes())
-    request = _resolve(path, shape)
+    line, line_problems = line_through(shape.road, path)
+    request = _resolve(path, shape, line)
     for check in (_names, _needs, _parts):
-        problems = list(check(request))
+        problems = [*line_problems, *check(request)]
         if problems:
             raise refusal(path, problems)
     return request
 
 
-def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
+def _resolve(path: Path, shape: SimulationFile, line: MeasuredLine | None) -> SimulationRequest:
     (model, vehicle), settings = values_of(shape.vehicle), shape.simulation.model_dump()
     layouts = {name: StrutLayout(struts_of(model, vehicle, entry)) for name, entry in shape.layouts.items()}
     chosen = settings.pop("layout")
@@ -50,7 +52,9 @@ def _resolve(path: Path, shape: SimulationFile) -> SimulationRequest:
         model=model,
         vehicle=vehicle,
         speed=None if shape.road is None else shape.road.speed,
-        roughness=None if shape.road is None else shape.road.roughness,
+        roughness=line.roughness if line else None if shape.road is None else shape.road.roughness,
+        coherence=coherence_values(shape.road),
+        line=line,
         elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
         layouts=layouts,
         signal=signal_of(path, inputs(model, vehicle), shape.signal.model_dump()),
@@ -92,6 +96,7 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
             fault="missing, but the rear wheel meets the road later than the front one",
             expected='speed = "25 m/s"',
         )
+    yield from _of_tracks(request)
     if request.duration is None and request.initial != "periodic":
         yield at(("simulation", "duration"), fault="missing", expected='duration = "10 s"')
     if request.duration is not None:
@@ -99,6 +104,17 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
             whole_steps(request.duration, request.step)
         except SimulationError as error:
             yield at(("simulation", "step"), str(error))
+
+
+def _of_tracks(request: SimulationRequest) -> Iterator[Problem]:
+    """A road that differs from left to right, where the vehicle or the signal cannot have it."""
+    asked = {("road", "coherence"): bool(request.coherence), ("signal", "track"): request.signal.on_tracks}
+    for place in (place for place, wanted in asked.items() if wanted):
+        yield from track_problems(place, tracks(request.model, request.vehicle))
+    if request.coherence and not SIGNALS[request.signal.kind].random:
+        random = some(shown(kind.key) for kind in SIGNALS.values() if kind.random)
+        fault = f"a {request.signal.kind} has none"
+        yield at(("road", "coherence"), fault=fault, expected=f"a signal of kind {random}, or no coherence")
 
 
 def _has_delays(request: SimulationRequest) -> bool:
@@ -112,7 +128,7 @@ def _has_delays(request: SimulationRequest) -> bool:
 def _parts(request: SimulationRequest) -> Iterator[Problem]:
     """The signal, or the vehicle, cannot be."""
     try:
-        request.make_signal()
+        request.signals()
     except InerterError as error:
         yield at(("signal",), str(error))
     try:

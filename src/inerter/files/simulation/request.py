@@ -9,6 +9,7 @@ from typing import Any
 
 from inerter.files.common.kind_entry import entry_of
 from inerter.files.common.layouts import StrutLayout
+from inerter.files.common.roads import MeasuredLine, coherence_entry, coherence_of, remark
 from inerter.files.common.shape import ROAD
 from inerter.files.common.signals import SignalRequest
 from inerter.files.common.toml import as_toml
@@ -40,28 +41,45 @@ class SimulationRequest:
     initial: str = "rest"
     energy: bool = False
     every: int = 1
+    coherence: dict[str, float] = field(default_factory=dict)  # of a random road, as the file says it
+    line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
 
     @property
     def length(self) -> float | None:
         """Time from the first to the last sample [s]; None for a period that the signal does not have."""
-        return self.make_signal().period if self.duration is None else self.duration
+        return self.period if self.duration is None else self.duration
+
+    @property
+    def period(self) -> float | None:
+        """After what time the signal repeats [s]; None if it does not."""
+        return self.make_signal().period
 
     @property
     def inputs(self) -> tuple[Path, ...]:
         """The files that it is read from."""
-        return (self.path, *self.signal.inputs)
+        return (self.path, *self.signal.inputs, *(() if self.line is None else (self.line.path,)))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What stands for the road, where it was measured."""
+        return () if self.line is None else (self.line.note, *self.line.warnings)
 
     def design(self) -> Vehicle:
         """The vehicle, or rig, with the chosen layout."""
         return self.layouts[self.layout].design(self.model, self.vehicle, self.elements)
 
     def make_signal(self) -> Signal:
-        """The signal; raises `SignalError` if its values do not go together, or its file cannot be read."""
-        return self.signal.make(self.speed, self.roughness)
+        """The signal, of two tracks that of the left; raises `SignalError` as `signals` does."""
+        return next(iter(self.signals().values()))
+
+    def signals(self) -> dict[str, Signal]:
+        """The signal of each track, as `SignalRequest.tracks` has it."""
+        return self.signal.tracks(self.speed, self.roughness, coherence_of(self.coherence))
 
     def run(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Simulate it; raises what `simulate` raises."""
-        signal = self.make_signal()
+        signals = self.signals()
+        signal = signals.get("", signals)
         moved: Any = {"road": signal} if self.signal.input == "road" else {"forces": {self.signal.input: signal}}
         if self.signal.input == "displacement":
             moved = {"displacement": signal}
@@ -80,7 +98,9 @@ class SimulationRequest:
 
     def resolved(self) -> dict[str, Any]:
         """The request as a simulation file says it: every default filled in, every quantity in SI units."""
-        road = in_si(ROAD, {f.key: v for f in ROAD if (v := getattr(self, f.key)) is not None})
+        road: dict[str, Any] = in_si(ROAD, {f.key: v for f in ROAD if (v := getattr(self, f.key)) is not None})
+        if self.coherence:
+            road["coherence"] = coherence_entry(self.coherence)
         return {
             "title": self.title,
             "vehicle": vehicle_entry(self.model, self.vehicle),
@@ -102,4 +122,4 @@ class SimulationRequest:
 
 def write_simulation(request: SimulationRequest) -> str:
     """`request.resolved()` as TOML. `load_simulation` reads an equal request from it, to the last bit."""
-    return as_toml(request.resolved())
+    return remark(request.line) + as_toml(request.resolved())

@@ -8,7 +8,8 @@ from pydantic import ConfigDict, Field, PlainValidator, create_model
 
 from inerter.files.common.entries import Amount, fixed_amount, one_of, positive, text, whole, yes_or_no
 from inerter.files.common.kind_entry import KindEntry
-from inerter.files.common.shape import ElementName, RoadTable, WithVehicle, layouts, vehicle_shapes
+from inerter.files.common.roads import CoherenceTable, RoadTable
+from inerter.files.common.shape import ElementName, WithVehicle, layouts, vehicle_shapes
 from inerter.files.common.signals import signal_shapes
 from inerter.files.common.tables import Shape, Shapes
 from inerter.files.common.vehicles import models
@@ -83,6 +84,7 @@ def shapes() -> tuple[type[SimulationFile], Shapes]:
         **vehicles,
         (): file,
         ("road",): PassedRoad,
+        ("road", "coherence"): CoherenceTable,
         **tables,
         **signals,
         ("simulation",): SimulationSettings,

@@ -14,6 +14,7 @@ from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
 from inerter.files.study.limits import limits_in, questions_limited
+from inerter.files.study.notes import road_notes
 from inerter.files.study.study import Study, elements_used
 from inerter.methods.asking import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
@@ -83,9 +84,11 @@ def study_notes(study: Study) -> list[str]:
             notes.setdefault(note, []).append(layout)
     used = elements_used(study)
     unused = [name for name in study.elements if name not in used]
-    return [f"{some(layouts)}: {note}" for note, layouts in notes.items()] + (
-        [f"no layout uses {some(unused)}"] if unused else []
-    )
+    return [
+        *road_notes(study),
+        *(f"{some(layouts)}: {note}" for note, layouts in notes.items()),
+        *([f"no layout uses {some(unused)}"] if unused else []),
+    ]
 
 
 def kernels(study: Study) -> list[Any]:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inerter.fields import fields_of
+from inerter.files.common.roads import COHERENCE
 from inerter.files.common.shape import ROAD
-from inerter.files.study.places import Place, number_at, place_of
+from inerter.files.common.ties import with_known_values
+from inerter.files.common.vehicle_shapes import SEAT
+from inerter.files.study.places import Place, element_at, number_at, place_of, with_numbers
 from inerter.methods.conditions import Condition
+from inerter.networks.elements import Element, Tied
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
 
@@ -37,7 +42,10 @@ def what_of(study: Study, place: Place) -> tuple[str, str] | None:
     """Whether a place is one of the vehicle or of the road, and what it is called there; None if of neither."""
     names = {
         "vehicle": _of_vehicle(study),
-        "road": {f.key: ("road", f.name) for f in ROAD},
+        "road": {
+            **{f.key: ("road", f.name) for f in ROAD},
+            **{f"coherence.{f.key}": ("road", "coherence") for f in COHERENCE},
+        },
         "elements": {name: ("vehicle", name) for name in study.elements},
     }
     return names.get(place.section, {}).get(place.key)
@@ -46,15 +54,32 @@ def what_of(study: Study, place: Place) -> tuple[str, str] | None:
 def _of_vehicle(study: Study) -> dict[str, tuple[str, str]]:
     coordinates = {f"coordinates.{name}": ("vehicle", name) for name in study.vehicle.get("coordinates", {})}
     fields = fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ()
-    return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates}
+    seat = {f"{SEAT}.mass": ("vehicle", "mass")} if SEAT in study.vehicle else {}
+    return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates, **seat}
+
+
+def following(study: Study, numbers: Mapping[str, float]) -> dict[str, Element]:
+    """The elements whose values follow from others that have these numbers, with what they then are."""
+    changed = [(place_of(label), number) for label, number in numbers.items()]
+    there = with_known_values(with_numbers(study, changed).elements)
+    sources = {element_at(place) for place, _ in changed}
+    tied = {name: e.value.names for name, e in study.elements.items() if isinstance(e.value, Tied)}
+    return {name: there[name] for name, names in tied.items() if sources.intersection(names)}
 
 
 def condition_of(study: Study, stated: StudyCondition) -> Condition:
     """What a method takes."""
-    changed: dict[str, dict[str, float]] = {"vehicle": {}, "road": {}}
+    changed: dict[str, dict[str, Any]] = {"vehicle": {}, "road": {}}
+    there = with_numbers(
+        study, [(p, n) for label, n in stated.numbers.items() if (p := place_of(label)).section == "road"]
+    )
     for label, number in stated.numbers.items():
         found = what_of(study, place_of(label))
         assert found is not None, label
-        changed[found[0]][found[1]] = number
+        section, name = found
+        changed[section][name] = getattr(there.road, name) if section == "road" else number
+    changed["vehicle"] |= {
+        name: e.value for name, e in following(study, stated.numbers).items() if isinstance(e.value, float)
+    }
     name = stated.name or ", ".join(f"{label} = {shown(number)}" for label, number in stated.numbers.items())
-    return Condition(stated.share, changed["vehicle"], changed["road"], name)
+    return Condition(stated.share, changed["vehicle"], changed["road"], name, if_there=True)

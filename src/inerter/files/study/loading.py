@@ -10,10 +10,11 @@ from typing import Any
 from inerter.files.common.layouts import StrutLayout, elements_of, layout_problems, struts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
+from inerter.files.common.roads import MeasuredLine, coherence_of, coherence_values, line_through, track_problems
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
 from inerter.files.common.toml import read_tables, shape_of
-from inerter.files.common.vehicles import values_of, vehicle_problems
+from inerter.files.common.vehicles import tracks, values_of, vehicle_problems
 from inerter.files.study.conditions import OVER
 from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
@@ -49,11 +50,13 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     Raises `StudyError` as `load_study` does.
     """
     shape = shape_of(tables, path, *shapes())
-    study = replace(_resolve(path, shape), texts=texts_of(tables))
+    line, line_problems = line_through(shape.road, path)
+    study = replace(_resolve(path, shape, line), texts=texts_of(tables))
     problems = [
         *elements_of(shape.elements)[1],
         *vehicle_problems(study.model, study.vehicle),
         *layout_problems(study.model, study.vehicle, study.elements, study.layouts),
+        *line_problems,
         *_road_problems(study, shape),
     ]
     limits, limit_problems = limits_of(study, shape.study.subject_to or {})
@@ -81,7 +84,7 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     return study
 
 
-def _resolve(path: Path, shape: StudyFile) -> Study:
+def _resolve(path: Path, shape: StudyFile, line: MeasuredLine | None) -> Study:
     model, vehicle = values_of(shape.vehicle)
     layouts = {name: StrutLayout(struts_of(model, vehicle, entry)) for name, entry in shape.layouts.items()}
     settings = shape.study
@@ -93,7 +96,9 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
         path=path,
         model=model,
         vehicle=vehicle,
-        road=None if shape.road is None else Road(**shape.road.model_dump(exclude={"letter"})),
+        road=_road(shape, line),
+        coherence=coherence_values(shape.road),
+        line=line,
         elements=elements_of(shape.elements)[0],
         layouts=layouts,
         indices=settings.indices,
@@ -115,7 +120,16 @@ def _resolve(path: Path, shape: StudyFile) -> Study:
     )
 
 
+def _road(shape: StudyFile, line: MeasuredLine | None) -> Road | None:
+    if shape.road is None:
+        return None
+    roughness = shape.road.roughness if line is None else line.roughness
+    return Road(roughness, shape.road.speed, coherence_of(coherence_values(shape.road)))
+
+
 def _road_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    if study.coherence:
+        yield from track_problems(("road", "coherence"), tracks(study.model, study.vehicle))
     asked = [*study.indices, *study.trade_off, *(name for name in shape.study.subject_to or {} if study.knows(name))]
     on_roads = [name for name in dict.fromkeys(asked) if is_on_road(study.symbol(name))]
     if study.road is None and on_roads:

@@ -6,10 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.study import Study
 from inerter.methods.note import text_of
 
 Part = str | float
 _Words = tuple[str | None, ...]  # of a note, with None for its numbers
+
+
+def road_notes(study: Study) -> list[str]:
+    """What stands for the road, where it was measured."""
+    return [] if study.line is None else [study.line.note]
 
 
 @dataclass

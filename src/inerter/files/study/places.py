@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inerter.fields import Field, fields_of
+from inerter.files.common.roads import COHERENCE, coherence_of
 from inerter.files.common.shape import ROAD
 from inerter.files.common.vehicle_shapes import SEAT, Inertia
 from inerter.indices.registry import INDICES, index_settings
@@ -20,7 +21,7 @@ from inerter.vehicle.registry import VEHICLES
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
-_ELEMENTS, _LIMITS = "elements", "subject_to"
+_ELEMENTS, _LIMITS, _COHERENCE = "elements", "subject_to", "coherence"
 _LOWER, _UPPER = "from", "to"  # the keys of the bounds of a free value
 
 
@@ -143,11 +144,20 @@ def _put(table: Mapping[str, Any], keys: list[str], number: float) -> dict[str, 
 def _road_numbers(study: Study) -> dict[str, Number]:
     if study.road is None:
         return {}
-    return {f.key: Number(f.unit, f.in_words, getattr(study.road, f.name)) for f in ROAD}
+    own = {f.key: Number(f.unit, f.in_words, getattr(study.road, f.name)) for f in ROAD}
+    values = study.coherence
+    alike = {
+        f.key: Number(f.unit, f"{f.in_words} of the coherence", values[f.key]) for f in COHERENCE if f.key in values
+    }
+    return {**own, **{f"{_COHERENCE}.{key}": number for key, number in alike.items()}}
 
 
 def _put_road(study: Study, key: str, number: float) -> Study:
     assert study.road is not None
+    section, _, part = key.rpartition(".")
+    if section == _COHERENCE:
+        values = {**study.coherence, part: number}
+        return replace(study, coherence=values, road=replace(study.road, coherence=coherence_of(values)))
     changed: dict[str, Any] = {f.name: number for f in ROAD if f.key == key}
     return replace(study, road=replace(study.road, **changed))
 

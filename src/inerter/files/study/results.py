@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import inerter
 from inerter.errors import StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
-from inerter.files.study.notes import Notes
+from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
 from inerter.files.study.study import Study
 from inerter.files.study.ways import ways
@@ -86,7 +86,7 @@ class Gathered:
             model=study.model,
             seed=study.seed,
             inerter_version=inerter.__version__,
-            notes="\n".join(self._notes.texts(tuple(study.layouts))),
+            notes="\n".join([*road_notes(study), *self._notes.texts(tuple(study.layouts))]),
         )
         if study.baseline is not None:
             base = data["value"].sel(layout=study.baseline, drop=True)

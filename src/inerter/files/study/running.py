@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -118,7 +119,7 @@ def run_study(
         tolerances = tuple(one for case in tolerance_cases(study) if isinstance(one := done[case], ToleranceOutcome))
         data = with_fronts(study, gathered.dataset(), fronts)
         write_text(results.draft / RESOLVED, write_resolved(study))
-        write_text(results.draft / VERSIONS, json.dumps({**versions(), "seed": study.seed}, indent=2) + "\n")
+        write_text(results.draft / VERSIONS, json.dumps(_origins(study), indent=2) + "\n")
         if budgets:
             write_text(results.draft / BUDGETS, budgets_csv(budgets))
         if fronts:
@@ -135,12 +136,18 @@ def run_study(
     return result
 
 
+def _origins(study: Study) -> dict[str, Any]:
+    """What the numbers come of, beside the study: versions, the seed, and the SHA-256 of what was measured."""
+    measured = {} if study.line is None else {"inputs": {study.line.path.name: study.line.digest}}
+    return {**versions(), "seed": study.seed, **measured}
+
+
 @contextmanager
 def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool) -> Iterator[Results]:
     if isinstance(folder, Results):
         yield folder
         return
-    with claimed(Intent(Path(folder), "run", NAMES, (study.path,), resume, force)) as results:
+    with claimed(Intent(Path(folder), "run", NAMES, study.inputs, resume, force)) as results:
         yield results
 
 

@@ -31,13 +31,13 @@ from inerter.files.common.entries import (
     whole,
     word,
 )
+from inerter.files.common.roads import CoherenceTable, RoadTable
 from inerter.files.common.schema import OrDeeper, checked, words_schema
 from inerter.files.common.shape import (
     ROAD,
     ElementEntry,
     ElementName,
     Range,
-    RoadTable,
     WithVehicle,
     if_given,
     layouts,
@@ -286,7 +286,14 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
             Field(description="What the vehicle drives on, and how fast.", examples=[ROAD_EXAMPLE]),
         ),
         layouts=(layout, Field(description="How elements are joined: | side by side, - end to end.")),
-        indices=(index, Field(default_factory=dict, description="Indices of your own: a kind, with its settings.")),
+        indices=(
+            index,
+            Field(
+                default_factory=dict,
+                description="Indices of your own: a kind, with its settings.",
+                examples=['a section [indices.comfort] with kind = "ride-comfort"'],
+            ),
+        ),
         study=(
             settings,
             Field(
@@ -300,6 +307,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         (): file,
         **vehicles,
         ("road",): RoadShape,
+        ("road", "coherence"): CoherenceTable,
         **kinds,
         ("elements", "*", "<own>", "<range>"): Range,
         **tables,

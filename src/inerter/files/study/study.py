@@ -11,6 +11,7 @@ from inerter.errors import NetworkError, StudyError
 from inerter.files.common.kind_entry import entry_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
+from inerter.files.common.roads import MeasuredLine, coherence_entry
 from inerter.files.common.shape import ROAD
 from inerter.files.common.suggest import nearest
 from inerter.files.common.vehicles import in_si, vehicle_entry
@@ -25,7 +26,7 @@ from inerter.methods.asking import Asked
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
-from inerter.networks.elements import Element, Tied
+from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
 from inerter.scatter.robust import Quantile
 from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
@@ -67,6 +68,8 @@ class Study:
     evaluate: tuple[str, ...] = (DEFAULT,)
     baseline: str | None = None  # the layout that the others are compared with; None if there is but one
     sweeps: tuple[Sweep, ...] = ()  # each value of one with each of the others
+    coherence: dict[str, float] = field(default_factory=dict)  # of the road, as the file says it
+    line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
     seed: int = 0
     realisations: int | None = None  # random roads of methods that average; None: as many as they like
     relative_error: float | None = None  # or as many as this needs
@@ -87,6 +90,11 @@ class Study:
     def methods(self) -> tuple[str, ...]:
         """All methods that it uses."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The files that it is read from."""
+        return (self.path,) if self.line is None else (self.path, self.line.path)
 
     def knows(self, name: str) -> bool:
         """Whether there is an index that the study can call so."""
@@ -112,7 +120,7 @@ class Study:
         """By what part of themselves values of a layout scatter, by their names."""
         if not self.tolerance:
             return {}
-        names, found = {e for e, layouts in elements_used(self).items() if layout in layouts}, {}
+        names, found = _scattering(self, layout), {}
         for label, part in self.tolerance.items():
             place = place_of(label)
             known = what_of(self, place)
@@ -197,8 +205,9 @@ class Study:
             **({"methods": own} if (own := self._of_methods()) else {}),
         }
 
-    def _road(self) -> dict[str, str]:
-        return in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
+    def _road(self) -> dict[str, Any]:
+        own = in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
+        return {**own, "coherence": coherence_entry(self.coherence)} if self.coherence else own
 
     def _of_methods(self) -> dict[str, Any]:
         return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}
@@ -240,6 +249,13 @@ def elements_used(study: Study) -> dict[str, list[str]]:
         for element in dict.fromkeys([*named, *(other for name in named for other in _followed(study, name))]):
             used.setdefault(element, []).append(layout)
     return used
+
+
+def _scattering(study: Study, layout: str) -> set[str]:
+    """The elements of a layout that can scatter: those in it, and what is free."""
+    mounted = {name for text in study.layouts[layout].struts.values() for name in _names(text)}
+    used = (name for name, layouts in elements_used(study).items() if layout in layouts)
+    return {name for name in used if name in mounted or isinstance(study.elements[name].value, Free)}
 
 
 def _followed(study: Study, name: str) -> tuple[str, ...]:

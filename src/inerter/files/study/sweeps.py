@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import prod
 from typing import Any
@@ -13,7 +13,7 @@ from inerter.errors import InerterError
 from inerter.files.common.entries import MOST_POINTS, quantity_text
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.conditions import StudyCondition, what_of
+from inerter.files.study.conditions import StudyCondition, following, what_of
 from inerter.files.study.places import Number, Place, element_at, number_at, place_of, places, with_numbers
 from inerter.files.study.shape import SweepRange
 from inerter.files.study.study import Study, Sweep, elements_used
@@ -123,7 +123,8 @@ def _spread(number: Number, entry: SweepRange, low: float, high: float) -> tuple
 
 def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCondition, ...], list[Problem]]:
     """The conditions that a file states, and what is wrong with them."""
-    conditions, problems = [], []
+    conditions: list[StudyCondition] = []
+    problems: list[Problem] = []
     for i, entry in enumerate(entries, start=1):
         numbers = {}
         for label, given in (entry.model_extra or {}).items():
@@ -131,6 +132,7 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
             try:
                 place = place_of(label)
                 numbers[place.label] = _number(study, place, given)
+                problems += _not_followed(study, where, {place.label: numbers[place.label]})
             except EntryError as error:
                 problems.append(replace(error.problem, place=where))
             except InerterError as error:
@@ -142,6 +144,14 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
             both = f"{label} is swept, and in a condition"
             problems.append(at((f"{_CONDITIONS}[{i}]", label), fault=both, expected="one of the two"))
     return tuple(conditions), problems
+
+
+def _not_followed(study: Study, where: tuple[str, ...], number: Mapping[str, float]) -> Iterator[Problem]:
+    """That what follows from a number of a condition follows from free values too."""
+    for name, element in following(study, number).items():
+        if isinstance(element.value, Tied):
+            fault = f"{name} follows from it and from what is free"
+            yield at(where, fault=fault, expected="an element from which no such value follows")
 
 
 def _number(study: Study, place: Place, given: Any) -> float:

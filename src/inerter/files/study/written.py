@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from inerter.errors import UnitError
+from inerter.files.common.roads import remark
 from inerter.files.common.toml import as_toml
 from inerter.files.study.study import Study
 from inerter.units import parse_quantity
@@ -46,7 +47,7 @@ def write_resolved(study: Study) -> str:
 
     `load_study` reads an equal study from it, to the last bit of every value.
     """
-    return as_toml(_rewritten(study, study.resolved()))
+    return remark(study.line) + as_toml(_rewritten(study, study.resolved()))
 
 
 def _rewritten(study: Study, entry: Any) -> Any:

@@ -1,0 +1,49 @@
+"""One half of a mechanism in the place of the whole, where one source drives both sides alike or against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from inerter.networks.elements.roles import Linear
+from inerter.systems.arrivals import Arrival
+from inerter.systems.filters import Filter
+from inerter.vehicle.halves import alike_half, opposed_half
+from inerter.vehicle.mechanism import Mechanism
+
+
+def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mechanism, tuple[Arrival, ...]] | None:
+    """The half that moves as the whole does, and what arrives there; None if there is none.
+
+    The two tracks must meet one source at the same times, with levers that are alike, or opposite, on every axle.
+    """
+    at = {arrival.input: arrival for arrival in arrivals}
+    if len(at) < len(arrivals) or at.keys() != {road.name for road in mechanism.roads}:
+        return None
+    merged = mechanism.on_one_track()
+    on = {own.road: one.road for own, one in zip(mechanism.tyres, merged.tyres, strict=True)}
+    signs = {_sign(at[own], at[one]) for own, one in on.items() if own != one}
+    if len(signs) != 1 or signs == {0.0}:
+        return None
+    alike = signs == {1.0}
+    half = alike_half(merged) if alike else opposed_half(mechanism)
+    if len(half.coordinates) == len(mechanism.coordinates):
+        return None
+    arriving = tuple(at[road.name] for road in half.roads)
+    springs = all(e.linear is Linear.STIFFNESS for tyre in half.tyres for e in tyre.network.elements())
+    return half, tuple(map(_by_displacement, arriving)) if springs and not alike else arriving
+
+
+def _sign(one: Arrival, other: Arrival) -> float:
+    """How an arrival follows from another: 1 or -1 times it; 0 if it does not."""
+    if replace(one, input=other.input, lever=other.lever) != other or abs(one.lever) != abs(other.lever):
+        return 0.0
+    return 1.0 if one.lever == other.lever else -1.0
+
+
+def _by_displacement(arrival: Arrival) -> Arrival:
+    """The same by the displacement of the road, where that stays bounded: no state is then left that only it moves."""
+    shape = arrival.filter
+    if arrival.displacement or shape is None or len(shape.numerator) < 2 or shape.numerator[-1] != 0.0:
+        return arrival
+    return replace(arrival, filter=Filter(shape.numerator[:-1], shape.denominator), displacement=True)

@@ -1,0 +1,108 @@
+"""A search on two tracks asks halves of a car: the same norms as the whole has, without rounding."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import inerter as it
+from inerter.methods.compiled_norm import CompiledQuestion
+from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.norms.exact import h2_exactly
+
+FORMS = (it.Coherence.isotropic, lambda x: it.Coherence.first_order(0.3 * x), lambda x: it.Coherence.constant(0.6 * x))
+
+
+def car(rng, **bars):
+    """A full car of random values with two free ones, whose struts hold an inerter."""
+    about = [
+        float(v * np.exp(rng.uniform(-0.4, 0.4))) for v in (1400, 2400, 520, 45, 40, 220e3, 210e3, 1.2, 1.5, 1.5, 1.4)
+    ]
+    spring = it.Spring(float(25e3 * np.exp(rng.uniform(-0.4, 0.4))))
+    strut = (
+        spring | it.Damper(it.free(100.0, 20e3, name="c")) | it.Damper(3e3) - it.Inerter(it.free(1.0, 900.0, name="b"))
+    )
+    return it.FullCar(*about, front=strut, rear=spring | it.Damper(1.5e3) | it.Inerter(20.0), **bars)
+
+
+def compiled(mechanism, index):
+    return CompiledQuestion(linear_problem(mechanism, index.question(mechanism), CONVENTIONS["exact"]))
+
+
+def whole(question, point):
+    """Norms of the whole mechanism, without rounding."""
+    return h2_exactly(question.problem.system(question._closed(point)), None)[0]
+
+
+def check(seed):
+    rng = np.random.default_rng(seed)
+    found = car(rng, anti_roll_front=it.Spring(8e3)).mechanism()
+    road = it.Road(5e-7, float(rng.uniform(5.0, 40.0)), FORMS[seed % 3](float(rng.uniform(0.5, 1.5))))
+    index = (it.SuspensionTravel if seed % 2 == 0 and seed % 3 < 2 else it.RideComfort)(road)
+    question, point = compiled(found, index), np.exp(rng.uniform(np.log([200.0, 5.0]), np.log([9e3, 500.0])))
+    expected = whole(question, point)
+    assert np.all(np.isfinite(expected))
+    assert question._exact_norms(point) == pytest.approx(expected, rel=1e-12)
+    quick = question._compiled_norms(point[None])[0]
+    sure = np.isfinite(quick)
+    assert quick[sure] == pytest.approx(expected[sure], rel=1e-9)
+    return question, point, sure.all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_halves_have_the_norms_of_the_whole(seed):
+    question, _, sure = check(seed)
+    sizes = [len(one.problem.unfiltered.mechanism.coordinates) for one in question.apart]
+    assert sizes == [4, 3]  # bounce, pitch and two wheels; roll and two wheels
+    assert sure or seed % 3 == 2
+
+
+@pytest.mark.campaign
+def test_halves_of_many_cars():
+    sure = sum(check(seed)[2] for seed in range(3, 90) if seed % 3 < 2)
+    assert sure >= 50
+    for seed in range(5, 60, 3):
+        check(seed)
+
+
+def test_slopes_of_halves_are_those_of_the_whole():
+    question, point, _ = check(1)
+    value, gradient = question.value_and_gradient(point)
+    problem = question.problem
+    total = lambda at: float(problem.question.combined(whole(question, at), problem.weights))  # noqa: E731
+    assert value == pytest.approx(total(point), rel=1e-9)
+    for i, slope in enumerate(gradient):
+        step = 1e-4 * (np.arange(2) == i)
+        assert slope * point[i] == pytest.approx(
+            (total(point * (1 + step)) - total(point * (1 - step))) / 2e-4, rel=1e-5
+        )
+
+
+def test_a_car_with_one_heavier_wheel_stays_whole():
+    mechanism = car(np.random.default_rng(4)).mechanism()
+    (wheel,) = (c for c in mechanism.coordinates if c.name == "unsprung_front_left")
+    heavier = replace(wheel, inertia=wheel.inertia * (1.0 + 1e-12))
+    lopsided = replace(mechanism, coordinates=tuple(heavier if c is wheel else c for c in mechanism.coordinates))
+    question = compiled(lopsided, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
+    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.apart] == [7, 7]
+
+
+def test_a_free_bar_keeps_the_half_that_feels_it():
+    """Where both sides move alike nothing moves the bar, and its value makes no difference there."""
+    rng = np.random.default_rng(7)
+    mechanism = car(rng, anti_roll_front=it.Spring(it.free(1e3, 1e5, name="bar"))).mechanism()
+    question = compiled(mechanism, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
+    point = np.array([{"c": 2e3, "b": 50.0, "bar": 9e3}[name] for name in mechanism.free_values()])
+    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.apart] == [4, 3]
+    assert question._exact_norms(point) == pytest.approx(whole(question, point), rel=1e-12)
+    assert question._compiled_norms(point[None])[0] == pytest.approx(whole(question, point), rel=1e-9)
+    _, gradient = question.value_and_gradient(point)
+    ahead, behind = (
+        whole(question, point * (1 + step * (np.array(list(mechanism.free_values())) == "bar")))
+        for step in (1e-4, -1e-4)
+    )
+    weighted = [float(question.problem.question.combined(one, question.problem.weights)) for one in (ahead, behind)]
+    at = list(mechanism.free_values()).index("bar")
+    assert gradient[at] * point[at] == pytest.approx((weighted[0] - weighted[1]) / 2e-4, rel=1e-5)

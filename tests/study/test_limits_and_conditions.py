@@ -24,6 +24,7 @@ from inerter.files.study.written import write_resolved
 from inerter.report.findings import headlines
 from inerter.report.page import report
 from inerter.report.text import WIDTH, summary_table
+from inerter.units import are_alike
 
 FREE = """k = { from = "10 kN/m", to = "200 kN/m" }
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -81,6 +82,17 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
     assert max(map(len, text.splitlines())) <= WIDTH
     assert "at its limit: 1 % more" in text
     assert "Every design keeps these limits" in report(result.data, study, tmp_path)
+
+
+@pytest.mark.parametrize("of", [symbol for symbol, index in it.INDICES.items() if are_alike(index.unit, "1")])
+@pytest.mark.parametrize("sense", ["at_most", "at_least", "equal"])
+def test_a_limit_on_a_ratio_is_a_number(load: Callable[..., Study], of: str, sense: str) -> None:
+    with_unit, alone = (
+        load(f'indices = ["J1"]\noptimise = "norm"\nsubject_to = {{ {of} = {{ {sense} = {value} }} }}').limits
+        for value in (f'"0.3 {it.INDICES[of].unit}"', "0.3")
+    )
+    assert with_unit == alone
+    assert alone[0].value == 0.3
 
 
 def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., Study], tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved
 from inerter.report.findings import headlines
 from inerter.report.page import report
+from inerter.report.question import condition_rows
 from inerter.report.text import WIDTH, summary_table
 from inerter.units import are_alike
 
@@ -158,6 +159,17 @@ def test_conditions_of_a_car_with_a_seat(load: Callable[..., Study], tmp_path: P
         values.append(it.evaluate(seated, it.RideComfort(study.road), it.Norm()).value)
     found = run_study(study, tmp_path / "out").data["value"]
     assert float(found.squeeze()) == pytest.approx(np.mean(values), rel=1e-9)
+
+
+def test_conditions_are_told_and_written_as_they_were(load: Callable[..., Study]) -> None:
+    """Of quantities in a unit that is not the SI one, in tables of a list as in any other."""
+    sections = '[[conditions]]\nroad.speed = "50 km/h"\n[[conditions]]\nvehicle.sprung_mass = "0.32 t"\nshare = 3\n'
+    study = load('indices = ["J1"]\noptimise = "norm"', sections)
+    assert [row[1:] for row in condition_rows(study)] == [
+        ("25 %", "road.speed = 50\xa0km/h"),
+        ("75 %", "vehicle.sprung_mass = 0.32\xa0t"),
+    ]
+    assert all(f'"{text}"' in write_resolved(study) for text in ("50 km/h", "0.32 t"))
 
 
 def test_a_limit_holds_in_each_condition(load: Callable[..., Study]) -> None:

@@ -16,7 +16,7 @@ OUTPUTS = {"J1": ["sprung_acceleration", "pitch_acceleration"], "J3": ["tyre_loa
 GAINS = {
     "J1": ("(m/s^2)/(m/s)", "body acceleration per road velocity", 60.0),
     "J3": ("N/(m/s)", "tyre force per road velocity", 1.5e4),
-    "J5": ("m/N", "body displacement per force on the body", 3e-5),
+    "J5": ("m/N", "displacement per force", 3e-5),
 }
 LONG = ["S1", "S2", "S3", "a-layout-with-a-name-of-forty-characters", *(f"layout_{i}_of_many" for i in range(4, 10))]
 

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from synthetic import designs, sweep
 
+from inerter.fields import fields_of
 from inerter.figures.labels import (
     axis_label,
     compared,
@@ -15,12 +16,23 @@ from inerter.figures.labels import (
     percent,
     scale,
     swept_element,
+    together,
     typeset,
     with_unit,
 )
-from inerter.units import parse_quantity
+from inerter.indices.registry import INDICES, index_settings
+from inerter.networks.elements.registry import ELEMENTS
+from inerter.units import format_quantity, parse_quantity
+from inerter.vehicle.registry import VEHICLES
 
 SIZES = st.floats(1e-6, 1e9)
+UNITS = sorted(
+    {index.unit for index in INDICES.values()}
+    | {setting.unit for setting in index_settings().values()}
+    | {one.unit for vehicle in VEHICLES.values() for one in fields_of(vehicle)}
+    | {element.unit for element in ELEMENTS.values()}
+    | {"m/s", "m^3/cycle", "Hz"}
+)
 
 
 @given(st.lists(SIZES, min_size=1, max_size=5), st.sampled_from(["N/m", "N s/m", "kg", "N", "m", "m/s^2"]))
@@ -83,3 +95,17 @@ def test_flat_optima_show_their_range() -> None:
     assert flat_range(entry) == ""
     wide = entry.assign(parameter_low=3000.0, parameter_high=40e3)
     assert flat_range(wide) == "3 kN s/m to 40 kN s/m"
+
+
+@given(SIZES, st.sampled_from(UNITS))
+def test_a_number_and_its_unit_stay_on_one_line_and_words_part(value, unit):
+    quantity = format_quantity(value, unit)
+    text = (
+        f"no design of 3 layouts has at most {quantity} with 2 {quantity}, 12 % of {quantity}; the nearest {quantity}."
+    )
+    lines = together(text).split(" ")
+    assert "".join(lines).replace("\xa0", "") == text.replace(" ", "")
+    assert [line.replace("\xa0", " ") for line in lines] == [
+        *("no", "design", "of", "3", "layouts", "has", "at", "most", quantity, "with", "2"),
+        *(f"{quantity},", "12 %", "of", f"{quantity};", "the", "nearest", f"{quantity}."),
+    ]

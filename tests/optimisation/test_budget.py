@@ -181,6 +181,35 @@ def test_both_struts_of_a_half_car_change():
     assert [t.network.value for t in changed.mechanism().tyres] == [120e3, 100e3]  # tyres keep theirs
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_in_a_tyre_has_a_budget(seed):
+    """Of two vehicles that differ in the tyre alone, the softer one is the more comfortable: they cross where it is
+    as stiff, beside another damper in the tyre or not."""
+    random = np.random.default_rng(seed)
+    body, wheel, stiffness = (float(x) for x in random.uniform((150, 20, 80e3), (400, 60, 300e3)))
+
+    def car(tyre):
+        return it.Mechanism(
+            coordinates=(it.Coordinate("body", body), it.Coordinate("wheel", wheel)),
+            struts=(
+                it.Strut("strut", Spring(30e3, "k") | Damper(2e3, "c"), upper={"body": 1.0}, lower={"wheel": 1.0}),
+            ),
+            tyres=(it.Tyre("tyre", tyre, port={"wheel": 1.0}, road="road"),),
+            roads=(it.RoadInput("road"),),
+            measures=it.Measures(comfort=(it.Weighted("body_acceleration", 1.0),)),
+        )
+
+    more = Damper(10.0, "hysteresis") - Spring(1e5, "more")
+    for design, plain in (
+        (Spring(1.3 * stiffness, "kt"), Spring(stiffness)),
+        (Spring(1e5, "kt") | more, Spring(stiffness) | more),
+    ):
+        found = budget(
+            car(design), car(plain), J1, parameter="kt", method=Norm(), bounds=(stiffness / 3, 3 * stiffness)
+        )
+        assert [c.value for c in found.crossings] == pytest.approx([stiffness], rel=3e-5)
+
+
 def test_bounds_by_default_lie_about_the_present_value():
     found = budget(series(friction=10.0), conventional(), J3, parameter="f", method=Linearisation())
     assert found.bounds == pytest.approx((0.01, 1e4))

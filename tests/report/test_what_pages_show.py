@@ -1,5 +1,6 @@
 """What an editor asks of pages and terminals: methods by their words, limits told wherever they hold designs back."""
 
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,8 @@ from synthetic import LONG, a_map, designs, judged, limited, sweep
 import inerter as it
 from inerter.figures.study import study_figures
 from inerter.figures.style import styled
+from inerter.files.common.roads import MeasuredLine
+from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import cases
 from inerter.files.study.limits import StudyLimit
 from inerter.files.study.loading import load_study
@@ -131,6 +134,21 @@ def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study, tmp_
         ] * 3
 
 
+def test_no_number_on_a_page_is_parted_from_its_unit(study, sweep_study, tmp_path):
+    nearest = "infeasible: no design was found that has suspension travel at most 9 mm; the nearest has 7.5 kN s/m"
+    for make, asked in ((designs, study), (sweep, sweep_study)):
+        missed = np.ones(make()["status"].shape, dtype=bool)
+        data = limited(make(), np.zeros((*missed.shape, 2), dtype=bool), missed)
+        data["status"][:] = nearest
+        data.attrs["notes"] = "S2: a friction of 12 N was left out"
+        page = report(data, replace(asked, limits=LIMITS), tmp_path).split("<summary>")[0]
+        text = re.sub(
+            r"<style>.*?</style>|<wbr>|<[^>]*>", lambda tag: "" if tag[0] == "<wbr>" else "|", page, flags=re.S
+        )
+        assert re.findall(r"\d (?:%|[kmµ]?[Nmg]\b)[^|]*", text) == []
+        assert text.count("9\xa0mm; the") == text.count("7.5\xa0kN\xa0s/m") > 0
+
+
 @pytest.mark.parametrize("where", [[], ["S2"], ["S1", "S3"]])
 def test_layouts_that_keep_no_limit_are_named(study, sweep_study, where):
     for make, asked in ((designs, study), (sweep, sweep_study)):
@@ -193,6 +211,17 @@ def test_a_caption_says_that_something_is_cut_where_it_is(worst):
         assert cut == {name: worst == -150.0 and name in ("improvement", "sweep-J3") for name in cut}
 
 
+@pytest.mark.parametrize("signs", [(1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])
+def test_a_caption_of_a_map_tells_of_a_heavy_line_where_there_is_one(signs):
+    data = a_map()
+    row = data["improvement"].transpose("layout", "index", ...)
+    for sign, half in zip(signs, (slice(0, 1), slice(1, None)), strict=True):
+        row[1:, :, half] = 5.0 * sign
+    maps = [figure for figure in study_figures(data) if figure.name.startswith("map-J")]
+    assert len(maps) == data.sizes["index"]
+    assert {"Heavy line" in figure.caption for figure in maps} == {len(set(signs)) == 2}
+
+
 @pytest.mark.parametrize("count", [1, 2])
 def test_outputs_that_are_not_excited_are_left_out_and_said(count):
     data = designs()
@@ -241,3 +270,46 @@ def test_a_weighted_output_is_called_after_its_lever_or_what_it_is_compared_with
     assert [float(name.split(" over ")[1].split()[0]) for name in named["output_dynamic-load-coefficient"].values] == [
         pytest.approx(load / 1e3, rel=1e-3) for load in loads.values()
     ]
+
+
+@pytest.mark.parametrize("reasons", [["x", "x", "x"], ["x", "y", "x"], ["x", "y", "z"]])
+def test_a_reason_for_no_budget_is_told_once_for_all_indices(study, reasons):
+    data = designs()
+    outcomes = [
+        BudgetOutcome("S3", index, "b", "kg", "norm", False, None, None, None, [], "unbounded", f"{reason} it is.")
+        for index, reason in zip(("J1", "J3", "J5"), reasons, strict=True)
+    ]
+    told = " ".join(answers(data, replace(study, budgets=("b",)), outcomes)[3:])
+    assert [told.count(f"{reason} it is") for reason in dict.fromkeys(reasons)] == [1] * len(set(reasons))
+    assert [told.count(title) for title in ("ride comfort", "dynamic tyre load", "dynamic load carrying")] == [1, 1, 1]
+
+
+@pytest.mark.parametrize("rows", [1, 12, 13, 40])
+def test_long_tables_of_facts_may_go_on_on_the_next_sheet(study, tmp_path, rows):
+    elements = {f"k{i}": it.Spring(1e3 + i) for i in range(rows)}
+    page = report(designs(), replace(study, elements=elements), tmp_path)
+    table = re.search(r'<table class="([^"]*)">\s*<caption><span>Elements', page)
+    assert table
+    assert table[1].split() == ["facts", *(["short"] if rows <= 12 else [])]
+    kept = re.search(r"@media print \{.*?([^}]*)\{ break-inside: avoid; \}\s*figure svg", page, re.S)
+    assert kept
+    assert {"table.short", "tr"} <= set(re.split(r",\s*", kept[1].strip()))
+    assert "facts" not in kept[1]
+
+
+def test_notes_are_sentences_and_their_numbers_are_printed(study, tmp_path):
+    data = designs()
+    data.attrs["notes"] = "the road has the roughness 2.25325e-07 m^3/cycle\nS2: a friction of -3 N was left out"
+    text = re.sub(r"<[^>]*>", "|", report(data, study, tmp_path)).replace("\xa0", " ")
+    assert "|The road has the roughness 2.25325 × 10⁻⁷ m³/cycle|" in text
+    assert "|S2: a friction of −3 N was left out|" in text
+
+
+@pytest.mark.parametrize("roughness", [2.25325150879e-07, 1.2345678e-6])
+def test_a_roughness_that_was_measured_has_no_more_digits_than_it_bears(study, roughness):
+    line = MeasuredLine(Path("road.csv"), "0" * 64, "", roughness, 1e-4, 2.0, 1.2, 60, 0.01, 2.8)
+    measured = dict(vehicle_rows(replace(study, road=replace(study.road, roughness=roughness), line=line)))
+    digits = re.match(r"[\d.]+", measured["Road roughness"])
+    assert digits
+    assert len(digits[0].replace(".", "")) == 4
+    assert float(digits[0]) == pytest.approx(roughness / 10 ** math.floor(math.log10(roughness)), rel=1e-3)

@@ -23,7 +23,9 @@ from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved
 from inerter.report.findings import headlines
 from inerter.report.page import report
+from inerter.report.question import condition_rows
 from inerter.report.text import WIDTH, summary_table
+from inerter.units import are_alike
 
 FREE = """k = { from = "10 kN/m", to = "200 kN/m" }
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -81,6 +83,17 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
     assert max(map(len, text.splitlines())) <= WIDTH
     assert "at its limit: 1 % more" in text
     assert "Every design keeps these limits" in report(result.data, study, tmp_path)
+
+
+@pytest.mark.parametrize("of", [symbol for symbol, index in it.INDICES.items() if are_alike(index.unit, "1")])
+@pytest.mark.parametrize("sense", ["at_most", "at_least", "equal"])
+def test_a_limit_on_a_ratio_is_a_number(load: Callable[..., Study], of: str, sense: str) -> None:
+    with_unit, alone = (
+        load(f'indices = ["J1"]\noptimise = "norm"\nsubject_to = {{ {of} = {{ {sense} = {value} }} }}').limits
+        for value in (f'"0.3 {it.INDICES[of].unit}"', "0.3")
+    )
+    assert with_unit == alone
+    assert alone[0].value == 0.3
 
 
 def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., Study], tmp_path: Path) -> None:
@@ -146,6 +159,17 @@ def test_conditions_of_a_car_with_a_seat(load: Callable[..., Study], tmp_path: P
         values.append(it.evaluate(seated, it.RideComfort(study.road), it.Norm()).value)
     found = run_study(study, tmp_path / "out").data["value"]
     assert float(found.squeeze()) == pytest.approx(np.mean(values), rel=1e-9)
+
+
+def test_conditions_are_told_and_written_as_they_were(load: Callable[..., Study]) -> None:
+    """Of quantities in a unit that is not the SI one, in tables of a list as in any other."""
+    sections = '[[conditions]]\nroad.speed = "50 km/h"\n[[conditions]]\nvehicle.sprung_mass = "0.32 t"\nshare = 3\n'
+    study = load('indices = ["J1"]\noptimise = "norm"', sections)
+    assert [row[1:] for row in condition_rows(study)] == [
+        ("25 %", "road.speed = 50\xa0km/h"),
+        ("75 %", "vehicle.sprung_mass = 0.32\xa0t"),
+    ]
+    assert all(f'"{text}"' in write_resolved(study) for text in ("50 km/h", "0.32 t"))
 
 
 def test_a_limit_holds_in_each_condition(load: Callable[..., Study]) -> None:

@@ -24,6 +24,7 @@ from inerter.figures.labels import (
     one_method,
     percent,
     scale,
+    titled,
     typeset,
     way,
 )
@@ -53,7 +54,7 @@ def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
         ax.axhline(0.0, **styles[results.attrs["baseline"]].curve() | {"linewidth": 1.0})
     _leave_room(ax, 0.18 if upright else 0.1)
     ax.set_xlim(-0.5, groups.size - 0.5)
-    ax.set_xticks(groups, [f"{index}\n{index_title(results, index)}" for index in indices(results)])
+    ax.set_xticks(groups, [titled(index_title(results, index), index, "{1}\n{0}") for index in indices(results)])
     ax.tick_params(axis="x", length=0)
     ax.grid(visible=False, axis="x")
     ax.set_ylabel(IMPROVEMENT)
@@ -79,7 +80,7 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
         ax.grid(visible=False, axis="x")
         ax.margins(y=0.12)
         ax.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-        ax.set_title(fill(f"{index}: {index_title(results, index)}", _WIDEST_TITLE))
+        ax.set_title(fill(titled(index_title(results, index), index, "{1}: {0}"), _WIDEST_TITLE))
     axes[0].set_ylabel(IMPROVEMENT)
     return axes
 

@@ -24,6 +24,8 @@ WIDE_RANGE = 1.01  # of equally good values, the highest over the lowest, from w
 NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+_UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![^\W\d_])[^\s,;:]*"
+_QUANTITY = re.compile(rf"(?<=[\d.]) (?:%|{_UNIT}(?: {_UNIT})*)")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -220,6 +222,15 @@ def measured(value: float, error: float, sign: str = "") -> str:
 def printed(value: float, unit: str, error: float = np.nan) -> str:
     """A value as it is printed, on one line with its unit."""
     return typeset(with_unit(value, unit, error)).replace(" ", _NO_BREAK_SPACE)
+
+
+def together(text: str) -> str:
+    r"""Text in which numbers stay on one line with their units.
+
+    >>> together("at most 400 N of 1 of 2").split(" ")
+    ['at', 'most', '400\\xa0N', 'of', '1', 'of', '2']
+    """
+    return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
 
 
 def percent(value: float, error: float = np.nan) -> str:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.figures.designs import WORST, frequency_responses, improvement_bars, improvement_by_method, upright_names
 from inerter.figures.fronts import front_curves, pairs
 from inerter.figures.labels import (
+    NOTICEABLE,
     WIDE_RANGE,
     by_which,
     compared,
@@ -136,7 +137,7 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
         yield StudyFigure(
             f"map-{index}",
             f"Best {title}{versus}, over {words}{by_which(results)}."
-            + (f" Heavy line: as good as {baseline}." if compared(results) else "")
+            + (f" Heavy line: as good as {baseline}." if _crosses(here) else "")
             + " Dots: the designs that were found; between them the map is interpolated."
             + _limits(here, "Black dots", "Grey")
             + (" Grey: no finite value." if _any(~np.isfinite(here["value"]) & ~infeasible(here)) else "")
@@ -172,6 +173,12 @@ def _nearest(here: xr.Dataset, what: str) -> str:
 def _cut(results: xr.Dataset) -> xr.DataArray:
     """Improvements that are too bad for a figure, but numbers."""
     return (results["improvement"] < WORST) & np.isfinite(results["improvement"])
+
+
+def _crosses(here: xr.Dataset) -> bool:
+    """Whether a layout of a map is better than the baseline at some points and worse at others."""
+    rows = (here["improvement"].sel(layout=name).values for name in compared(here))
+    return any(_any(row < -NOTICEABLE) and _any(row > NOTICEABLE) for row in rows)
 
 
 def _any(where: ArrayLike) -> bool:

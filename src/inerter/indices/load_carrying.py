@@ -31,7 +31,7 @@ class LoadCarrying:
     symbol = "J5"
     title = "dynamic load carrying"
     unit = "m/N"
-    response = "body displacement per force on the body"
+    response = "displacement per force"  # of the body, or of what a mechanism carries
 
     def __post_init__(self) -> None:
         if self.amplitude is not None:

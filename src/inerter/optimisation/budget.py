@@ -70,9 +70,9 @@ def budget(
 ) -> Budget:
     """The values of `parameter` for which `design` has a lower `index` than `baseline`.
 
-    `parameter` names elements of the struts by their label, or is "friction" or "gap" for all that there are. Where
-    the baseline has it too, it changes there alike: the crossing of two curves over a stiffness is found so. Values
-    between `bounds` (SI; by default a thousandth to a thousand times the present value) are tried on a grid in
+    `parameter` names elements of the struts, or of tyres, by their label, or is "friction" or "gap" for all that there
+    are. Where the baseline has it too, it changes there alike: the crossing of two curves over a stiffness is found so.
+    Values between `bounds` (SI; by default a thousandth to a thousand times the present value) are tried on a grid in
     logarithms, and each change of sign is found by Brent's method, on the same roads throughout. The standard error of
     a crossing is that of the difference, over the slope. An `executor` shares the roads, as that of `evaluate` does.
 
@@ -147,7 +147,7 @@ def _budget(
 
 
 def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
-    """The vehicle with another value (SI) of the elements of its struts that `parameter` names.
+    """The vehicle with another value (SI) of the elements that `parameter` names.
 
     Raises `DesignError` if there is none, or if they are of several kinds.
     """
@@ -158,14 +158,15 @@ def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
 
 def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
     """The elements that a name stands for; raises `DesignError` if there is none, or if they are of several kinds."""
-    all_elements, _ = mounted(vehicle)
-    named = [e for e in all_elements if e.label == parameter]
+    in_struts, in_tyres = mounted(vehicle)
+    all_elements = [*in_struts, *in_tyres]
+    named = [e for e in in_struts if e.label == parameter] or [e for e in in_tyres if e.label == parameter]
     kind: list[Element] = [e for e in all_elements if e.may_vanish and e.key == parameter]
     chosen = named or kind
     if not chosen:
         labels = ", ".join(dict.fromkeys(e.label for e in all_elements))
         raise DesignError(
-            f'No strut has an element named {parameter!r} (there are: {labels}; or take "friction" or "gap" '
+            f'No strut or tyre has an element named {parameter!r} (there are: {labels}; or take "friction" or "gap" '
             f"for all). To find how much friction or backlash a design bears, put in a Friction(0.0) or Gap(0.0)."
         )
     if len({(e.unit, e.value) for e in chosen if e.name is None}) > 1:

@@ -96,5 +96,7 @@ def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutco
             ends = [f"{end} in {index_title(results, o.index)}" for o in own if (end := end_of_range(o, write))]
             told = [f"{what}: {layout} is better than {study.baseline} {listed(ends)}."] if ends else []
             others = [found for found in own if not end_of_range(found, write)]
-            told += [f"{what}, {layout}, {index_title(results, o.index)}: {o.message.rstrip('.')}." for o in others]
+            for message in dict.fromkeys(found.message.rstrip(".") for found in others):
+                of = [index_title(results, o.index) for o in others if o.message.rstrip(".") == message]
+                told.append(f"{what}, {layout}, {listed(of)}: {message}.")
             yield " ".join(told)

@@ -125,4 +125,4 @@ def _bettered(results: xr.Dataset, layout: str, baseline: str) -> str:
     if not len(ours) or not len(theirs):
         return ""
     beaten = sum(bool(np.any(np.all(ours < point * (1.0 - _SAME), axis=1))) for point in theirs)
-    return f", better in all than {beaten} of the {len(theirs)} designs of {baseline}"
+    return f", better in all than {beaten or 'none'} of the {len(theirs)} designs of {baseline}"

@@ -12,7 +12,7 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from inerter.figures.labels import printed, swept_places, typeset
+from inerter.figures.labels import capital, printed, swept_places, together, typeset
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
@@ -31,7 +31,7 @@ from inerter.report.question import (
     condition_rows,
     element_rows,
     further_rows,
-    index_rows,
+    indices_asked,
     layout_rows,
     vehicle_rows,
 )
@@ -93,7 +93,7 @@ def report(
             further=further_rows(study),
             layouts=layout_rows(study),
             drawings=dict(_layout_drawings(study, figures)),
-            indices=index_rows(results),
+            indices=indices_asked(results),
             tables=tables_of(results),
             by_method=method_tables(results),
             remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
@@ -154,6 +154,8 @@ def environment(*packages: str) -> Environment:
     templates.filters |= {
         "typeset": typeset,
         "breakable": breakable,
+        "together": together,
+        "capital": capital,
         "sentence": lambda text: typeset(printed_sentence(text)).replace(" × 10", f"{_SPACE}×{_SPACE}10"),
     }
     return templates

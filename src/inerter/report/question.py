@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.fields import fields_of
-from inerter.figures.labels import capital, index_title, indices, infeasible
+from inerter.figures.labels import capital, index_title, indices, infeasible, listed, titled
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.conditions import OVER
 from inerter.files.study.places import places
@@ -24,10 +24,11 @@ from inerter.networks.elements import Free, Tied
 from inerter.signals.road import Road
 from inerter.units import format_quantity
 
+_ROUGHNESS = "m^3/cycle"
 _ALSO = {  # the same value in the unit in which it is usually told
     "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
     "rad/s": lambda value: f" ({value / (2.0 * pi):.3g} Hz)",
-    "m^3/cycle": lambda value: f" ({_road_class(value)})",
+    _ROUGHNESS: lambda value: f" ({_road_class(value)})",
 }
 
 
@@ -55,7 +56,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     rows += [(capital(name), unit if value is None else _given(study, value, unit)) for name, value, unit in told]
     rows += [(capital(s.words), _told(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
     if study.road is not None:
-        rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _told(study, "road.roughness"))]
+        rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _roughness(study))]
         rows += [] if study.line is None else [("Road measured in", study.line.source)]
         rows += list(_coherence_rows(study))
     for name in study.indices:
@@ -69,6 +70,14 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         given = [field for field in method_settings(name) if field.key in settings]
         rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
     return rows
+
+
+def _roughness(study: Study) -> str:
+    """As the file writes it, or where it was found in a profile with the digits that such a line bears."""
+    swept = any(sweep.label == "road.roughness" for sweep in study.sweeps)
+    if study.line is None or study.road is None or swept:
+        return _told(study, "road.roughness")
+    return _with_also(format_quantity(study.road.roughness, _ROUGHNESS), study.road.roughness, _ROUGHNESS)
 
 
 def _coherence_rows(study: Study) -> Iterator[tuple[str, str]]:
@@ -122,9 +131,10 @@ def layout_rows(study: Study) -> list[LayoutText]:
     return rows
 
 
-def index_rows(results: xr.Dataset) -> list[tuple[str, str]]:
-    """The indices: symbol and name."""
-    return [(index, index_title(results, index)) for index in indices(results)]
+def indices_asked(results: xr.Dataset) -> str:
+    """The indices in a sentence."""
+    names = [titled(index_title(results, index), index) for index in indices(results)]
+    return f"The {'index is' if len(names) == 1 else 'indices are'} {listed(names)}."
 
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
@@ -193,6 +203,9 @@ def _told(study: Study, place: str) -> str:
 
 def _given(study: Study, value: float, unit: str) -> str:
     """A value as the study file writes it, else with all digits that it gives it, on the line of its unit."""
-    text = as_written(study, value, unit) or format_quantity(value, unit, digits=12)
+    return _with_also(as_written(study, value, unit) or format_quantity(value, unit, digits=12), value, unit)
+
+
+def _with_also(text: str, value: float, unit: str) -> str:
     also = _ALSO[unit](value) if unit in _ALSO and text.endswith(f" {unit}") else ""
     return text.replace(" ", "\N{NO-BREAK SPACE}") + also

@@ -20,7 +20,7 @@ from inerter.methods.method import asked_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.held import Held
 from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each
-from inerter.units import PURE, format_quantity, parse_quantity, shown
+from inerter.units import PURE, are_alike, format_quantity, parse_quantity, shown
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def limits_of(study: Study, entries: Mapping[str, LimitShape]) -> tuple[tuple[St
 
 
 def _value(text: str | float, unit: str) -> float:
-    pure = isinstance(text, float) and unit == PURE
+    pure = isinstance(text, float) and are_alike(unit, PURE)
     value = float(text) if pure else parse_quantity(text, unit)  # type: ignore[arg-type]  # refused there
     if value <= 0.0:
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}".strip())

@@ -14,7 +14,7 @@ from inerter.units import parse_quantity
 
 
 def texts_of(tables: Mapping[str, Any]) -> tuple[str, ...]:
-    """The texts of a file that may be quantities: those that stand for themselves, and not in a list."""
+    """The texts of a file that may be quantities: those that stand for themselves, and not among others in a list."""
     return tuple(dict.fromkeys(_texts(tables)))
 
 
@@ -22,6 +22,9 @@ def _texts(tables: Mapping[str, Any]) -> Iterator[str]:
     for entry in tables.values():
         if isinstance(entry, Mapping):
             yield from _texts(entry)
+        elif isinstance(entry, list):
+            for one in entry:
+                yield from _texts(one) if isinstance(one, Mapping) else ()
         elif isinstance(entry, str) and any(map(str.isdigit, entry)):
             yield " ".join(entry.split())
 
@@ -54,6 +57,8 @@ def _rewritten(study: Study, entry: Any) -> Any:
     match entry:
         case dict():
             return {key: _rewritten(study, one) for key, one in entry.items()}
+        case list():
+            return [_rewritten(study, one) if isinstance(one, dict) else one for one in entry]
         case str():
             return _quantity(study, entry) or entry
         case _:

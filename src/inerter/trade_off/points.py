@@ -33,6 +33,12 @@ def gaps(found: Sequence[Found], jumps: set[tuple[bytes, bytes]], which: Sequenc
     return [(width, i) for i, width in enumerate(widths) if pair(found, i) not in jumps]
 
 
+def beats(one: Found, other: Found) -> bool:
+    """Whether one is better in a criterion by more than two points that are one differ, and worse in none."""
+    gained = other.normal - one.normal
+    return bool(np.all(gained >= -1e-12) and np.any(gained > _SAME))
+
+
 def undominated(found: Sequence[Found], which: Sequence[int]) -> list[Found]:
     """Those that no other one is better than, each once, in order of the first criterion."""
     table = np.array([one.normal for one in found])[:, list(which)]

@@ -1,6 +1,8 @@
 """Levers that are one lever but for rounding: every analysis sees one mechanism, whichever way they were computed."""
 
 import math
+from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -153,3 +155,52 @@ def test_frictions_at_one_place_are_one_however_their_levers_are_rounded():
 
     assert len(piecewise(held(0.3, 0.1 + 0.2)).nonlinear) == len(piecewise(held(0.3, 0.3)).nonlinear) == 2
     assert len(piecewise(held(0.3, 0.300001)).nonlinear) == 3
+
+
+def apart(rng, mechanism, distance):
+    """The mechanism with levers that differ by about so much of their size."""
+
+    def moved(row):
+        return {
+            name: lever
+            if lever in (-1.0, 1.0)
+            else lever * (1.0 + float(rng.choice([-1, 1]) * distance * rng.random()))
+            for name, lever in row.items()
+        }
+
+    return replace(mechanism, struts=tuple(replace(one, upper=moved(one.upper)) for one in mechanism.struts))
+
+
+NEAR = [10.0**-exponent for exponent in (8.9, 8.7, 8.5, 8.0, 7.5, 7.0, 6.0, 5.0, 4.0)]
+
+
+@pytest.mark.parametrize(("distance", "seed"), sampled(product(NEAR, range(6)), [(NEAR[2], 0), (NEAR[5], 4)]))
+def test_matrices_of_struts_that_nearly_depend_on_each_other_are_right_or_refused(distance, seed):
+    rng = np.random.default_rng([46, seed, round(-10 * math.log10(distance))])
+    mechanism = apart(rng, full_car(rng, one_road=True), distance)
+    omega = 2 * np.pi * 10 ** rng.uniform(-1, 2, 8)
+    outputs = ("body_acceleration", "roll_acceleration", "bar_force", "diagonal_force")
+    try:
+        system = assemble(mechanism, ["road", "load"], outputs)
+    except it.InerterError as error:
+        assert "depends on those of others but for" in str(error)  # noqa: PT017 - either is right
+        assert distance < 1e-6
+        return
+    G, nodal = it.frequency_response(system, omega), Nodal(mechanism, omega)
+    for i, output in enumerate(outputs):
+        for j, name in enumerate(("road", "load")):
+            expected = np.array(nodal.response(output, name)).astype(complex)
+            assert np.abs(G[:, i, j] - expected).max() <= 1e-6 * np.abs(expected).max(), (output, name)
+
+
+@pytest.mark.parametrize(("distance", "seed"), sampled(product(NEAR, range(6)), [(NEAR[5], 1), (NEAR[8], 2)]))
+def test_simulations_change_as_little_as_levers_do(distance, seed):
+    rng = np.random.default_rng([47, seed])
+    alike = full_car(rng, one_road=True)
+    first, second = (
+        it.simulate(one, road=it.step(0.01, 0.01), duration=0.5, step=1e-3, energy=False)
+        for one in (alike, apart(rng, alike, distance))
+    )
+    for output in ("body_acceleration", "roll_acceleration", "diagonal_travel", "bar_travel"):
+        changed = np.abs(first[output] - second[output]).max()
+        assert changed <= 30.0 * distance * np.abs(first[output]).max(), output

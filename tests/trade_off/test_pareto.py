@@ -107,6 +107,22 @@ def test_no_random_design_dominates_a_point(kind, pair, number):
         assert max(closed) <= 2.5 * np.median(closed)
 
 
+@pytest.mark.parametrize("number", sampled(range(120), [16]))
+def test_fronts_of_a_force_have_no_gaps_that_are_not_told(number):
+    """Many designs may have the least force of a damper: the best of them in the other criterion is the end."""
+    rng = np.random.default_rng([number, 818])
+    kind = ["S2", "S3", "S1 k", "S3 k", "four", "S2"][int(rng.integers(6))]
+    car = random_quarter_car(rng, strut(kind))
+    other = [J1, J3, J5, it.SuspensionTravel(ROAD), J1, it.ElementVelocity(ROAD, "c")][int(rng.integers(6))]
+    indices = [it.ElementForce(ROAD, "c"), other][:: -1 if rng.random() < 0.5 else 1]
+    front = it.pareto(car, indices, NORM, points=15)
+    check_undominated(front, random_designs(car, indices, 2_000))
+    across = [gap for i, gap in enumerate(gaps(front)) if (i, i + 1) not in front.jumps]
+    assert len(front.values) in (1, 15)
+    assert max(across, default=0.0) <= 2.5 * np.median(across or [0.0])
+    assert front.ideal == pytest.approx([it.optimise(car, index, NORM).value for index in indices], rel=1e-6)
+
+
 def test_each_point_is_a_design_that_can_be_taken_on():
     car = paper_quarter_car(strut("S3"))
     front = it.pareto(car, [J1, J3], NORM, points=5)

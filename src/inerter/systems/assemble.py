@@ -32,7 +32,10 @@ def assemble(
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
     inputs = None if inputs is None else check_names("inputs", inputs)
     outputs = None if outputs is None else check_names("outputs", outputs)
-    system = close(describe(mechanism, inputs, outputs), {})
+    descriptor = describe(mechanism, inputs, outputs)
+    if descriptor.lost:
+        raise LinearSystemError(f"{descriptor.lost} Indices do not need these matrices: evaluate(...) gives them.")
+    system = close(descriptor, {})
     if system.fine is not None and not np.all(np.isfinite(system.fine.errors[0])):
         raise LinearSystemError(
             "The values of this mechanism lie so far apart that no digit of its matrices is certain. Its indices do "

@@ -69,6 +69,7 @@ class Descriptor:
     graph: Graph
     filters: tuple[Filter | None, ...] = ()  # that the outputs pass through, if any do (see `filtered`)
     sums: Mapping[str, Sum] = field(default_factory=dict)  # of what each input is made, if not itself (see `arrivals`)
+    lost: str = ""  # why digits of the matrices are not certain, in words; nothing where they are
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
@@ -209,6 +210,7 @@ def _joined(
         sizes=tuple(size.astype(float) for size in sizes),
         mechanism=frame.mechanism,
         graph=frame.graph,
+        lost=frame.lost,
     )
 
 

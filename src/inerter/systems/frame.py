@@ -21,7 +21,7 @@ from inerter.networks.elements.roles import Linear
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph
 from inerter.systems.incidence import inertias, of_law, ports, stacked
-from inerter.systems.levers import BranchRows
+from inerter.systems.levers import BranchRows, is_lost, lost_in
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.vehicle.mechanism import Mechanism
 
@@ -86,6 +86,13 @@ class Frame:
     def states(self) -> int:
         """Length of x."""
         return int(self.slots.g.stop)
+
+    @property
+    def lost(self) -> str:
+        """Why elongations lose their digits, in words; nothing where they do not."""
+        shares = self.split.G
+        lost = is_lost(shares, np.hstack(self.split.rates))
+        return lost_in(shares, [branch.label for branch in self.springs]) if lost else ""
 
     @cached_property
     def free(self) -> dict[str, Free]:

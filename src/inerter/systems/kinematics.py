@@ -22,11 +22,12 @@ from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.incidence import inertia_values, inertias, ports, stacked
-from inerter.systems.levers import RANK_TOLERANCE, independent_rows
+from inerter.systems.levers import RANK_TOLERANCE, independent_rows, is_lost, lost_in
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 
 Matrix = NDArray[np.float64]
+_UNCERTAIN = 1e-12  # of a travel that rounding takes, from which on other positions are chosen
 _NUMBER = {Guard.FORCE: FRICTION, Guard.ELONGATION: GAP}  # that the kernels have for it
 
 
@@ -193,7 +194,10 @@ class Positions:
 
 
 def _places(mechanism: Mechanism, graph: Graph) -> Positions:
-    """The first independent ones among the elongations of gaps and springs and the displacements of coordinates."""
+    """The first independent ones among the elongations of gaps and springs and the displacements of coordinates.
+
+    Where springs nearly depend on each other, displacements come before them: in these they are no small differences.
+    """
     branches = graph.branches
     nodes, roads = stacked(branches, graph)
     gaps = [i for i, b in enumerate(branches) if b.element.switches_by(Guard.ELONGATION)]
@@ -201,9 +205,13 @@ def _places(mechanism: Mechanism, graph: Graph) -> Positions:
     coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     choices = np.vstack([nodes[placed], coordinates])
     choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
-    chosen = independent_rows(choices)
+    chosen, over_g = _chosen(choices, list(range(len(choices))))
+    if is_lost(over_g, choices[chosen], _UNCERTAIN):
+        springs, last = range(len(gaps), len(placed)), range(len(placed), len(choices))
+        chosen, over_g = _chosen(choices, [*range(len(gaps)), *last, *springs])
+        if is_lost(over_g, choices[chosen]):
+            raise MechanismError(lost_in(over_g, [*(branches[i].label for i in placed), *graph.nodes]))
     P, P_road = choices[chosen], choices_road[chosen]
-    over_g = clean(choices @ pseudo_inverse(P)) if chosen else np.zeros((len(choices), 0))
     over_g[chosen] = np.eye(len(chosen))
     over_z = clean(choices_road - over_g @ P_road)
     e_g, e_z = np.zeros((len(branches), len(chosen))), np.zeros(roads.shape)
@@ -211,6 +219,12 @@ def _places(mechanism: Mechanism, graph: Graph) -> Positions:
     number = {i: chosen.index(at) for at, i in enumerate(placed) if at in chosen}
     own = tuple(number.get(i, -1) for i in range(len(branches)))
     return Positions(P, P_road, (e_g, e_z), (over_g[len(placed) :], over_z[len(placed) :]), own)
+
+
+def _chosen(rows: Matrix, order: Sequence[int]) -> tuple[list[int], Matrix]:
+    """Numbers of the first independent rows in an order, and the shares of these in all rows."""
+    chosen = [order[i] for i in independent_rows(rows[order])]
+    return chosen, clean(rows @ pseudo_inverse(rows[chosen])) if chosen else np.zeros((len(rows), 0))
 
 
 def _locked_to(rates: tuple[Matrix, Matrix, Matrix], nonlinear: list[int]) -> NDArray[np.bool_]:

@@ -25,6 +25,7 @@ from inerter.systems.rationals import FractionRows, Row
 
 Matrix = NDArray[np.float64]
 RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
+_LOST = 1e-7  # of a travel that rounding takes where it is made of others that nearly depend on each other
 _SIMPLE = 8  # the largest denominator of a share that is taken for a simple one, such as 1 or 1/2
 
 
@@ -93,6 +94,27 @@ def _basis(span: BranchRows) -> _Basis | None:
     found = [row for row in inverse if row is not None]
     reach = rationals.exact(RANK_TOLERANCE * np.abs(rows).max(axis=0)[None])[0]
     return _Basis(rationals.exact(rows[chosen]), tuple(columns.tolist()), found, reach)
+
+
+def is_lost(shares: Matrix, motions: Matrix, most: float = _LOST) -> bool:
+    """Whether rounding takes more than `most` of travels that are `shares` of others, which move as `motions`.
+
+    Where travels differ by 1e-8 of their size, shares of them are as large as 1e8, and what they add up to is not.
+    """
+    if not motions.size or not len(shares):
+        return False
+    terms, size = np.abs(shares) @ np.abs(motions), np.abs(shares @ motions).max()
+    return bool(np.finfo(float).eps * terms.max() > most * size)
+
+
+def lost_in(shares: Matrix, labels: Sequence[str]) -> str:
+    """What is wrong, in words, with travels for which `is_lost` holds; `labels` are of the elements that travel."""
+    worst = int(np.argmax(np.abs(shares).max(axis=1)))
+    return (
+        f"The travel of {labels[worst]!r} depends on those of others but for a billionth to a millionth of its size, "
+        f"and what differs is lost in rounding. Write levers that are meant to be one alike, to all digits, or let "
+        f"them differ by more."
+    )
 
 
 def independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:

@@ -32,7 +32,7 @@ from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
-from inerter.trade_off.points import FrontPoint, gaps, pair, sparse, thinned, undominated
+from inerter.trade_off.points import FrontPoint, beats, gaps, pair, sparse, thinned, undominated
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -43,6 +43,7 @@ _SLACK = 1e-6  # of a normalised criterion that is better than asked for
 _WIDE, _DOUBTED = 1.6, 1.2  # of the typical gap: what is filled, and what is looked into for a jump
 _AT_END = 0.02  # of a gap, up to which a point lies at its end
 _STARTS = 3  # from the sample for each point
+_RESTARTS = 4  # from ends that points of the front have turned out to beat
 
 
 def pareto(
@@ -218,20 +219,22 @@ class _Trade:
         )
         return better if gained > _SLACK and no_worse_now else found
 
-    def front(self, count: int) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
+    def front(self, count: int, restarts: int = _RESTARTS) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
         """Points of the front, and the pairs between which it jumps."""
         ends = [self.at(point) for point in self.ends]
         table = np.array([one.values for one in ends])
         if np.all(np.ptp(table, axis=0) <= _NO_CONFLICT * self.scale[0]):
             return ends[:1], set()
-        if len(self.objectives) == 2:
-            return self.between(ends, count)
-        return self.over_triangle(ends, count), set()
+        if len(self.objectives) == 3:
+            return self.over_triangle(ends, count), set()
+        found = self.between(ends, count)
+        closer = [next((one for one in found if beats(one, end)), end) for end in ends]
+        if restarts and any(one is not end for one, end in zip(closer, ends, strict=True)):
+            return replace(self, ends=tuple(one.point for one in closer)).front(count, restarts - 1)
+        return self.filled(found, count, (0, 1))
 
-    def between(
-        self, ends: Sequence[FrontPoint], count: int, which: Sequence[int] = (0, 1)
-    ) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
-        """The front of two criteria from one end to the other."""
+    def between(self, ends: Sequence[FrontPoint], count: int, which: Sequence[int] = (0, 1)) -> list[FrontPoint]:
+        """Points of the front of two criteria, from one end to the other."""
         a, z = (one.normal for one in ends)
         aims = [a + (z - a) * share for share in np.linspace(0.0, 1.0, count)[1:-1]]
         found: list[FrontPoint] = list(ends)
@@ -243,7 +246,7 @@ class _Trade:
             again = polished(problem, problem.at(best.point, 0)) if self._quick else None
             if again is not None and again.excess <= 1e-6:
                 found.append(self.at(again.point))
-        return self.filled(undominated(found, which), count, which)
+        return undominated(found, which)
 
     def reached(self, aim: Array, found: Sequence[FrontPoint], which: Sequence[int]) -> FrontPoint:
         """What comes closest to an aim of all that was found."""
@@ -289,7 +292,8 @@ class _Trade:
         steps = int(np.ceil(0.5 * (np.sqrt(8.0 * count + 1.0) - 3.0)))
         found = list(ends)
         for i, j in combinations(range(3), 2):
-            found += self.between([ends[i], ends[j]], steps + 1, (i, j))[0]
+            along = self.between([ends[i], ends[j]], steps + 1, (i, j))
+            found += self.filled(along, steps + 1, (i, j))[0]
         found = [self.strict(one) for one in found]
         corners = np.array([one.normal for one in ends])
         for a in range(1, steps):

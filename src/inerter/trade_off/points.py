@@ -33,6 +33,12 @@ def gaps(found: Sequence[FrontPoint], jumps: set[tuple[bytes, bytes]], which: Se
     return [(width, i) for i, width in enumerate(widths) if pair(found, i) not in jumps]
 
 
+def beats(one: FrontPoint, other: FrontPoint) -> bool:
+    """Whether one is better in a criterion by more than two points that are one differ, and worse in none."""
+    gained = other.normal - one.normal
+    return bool(np.all(gained >= -1e-12) and np.any(gained > _SAME))
+
+
 def undominated(found: Sequence[FrontPoint], which: Sequence[int]) -> list[FrontPoint]:
     """Those that no other one is better than, each once, in order of the first criterion."""
     table = np.array([one.normal for one in found])[:, list(which)]

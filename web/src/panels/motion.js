@@ -120,6 +120,7 @@ function paint(canvas, scene, at) {
   for (const [i, tyre] of scene.mechanism.tyres.entries()) drawWheel(pen, across(ends[i]), WHEEL - scene.stretch * heightOf(tyre.port, pose), GROUND - scene.stretch * (pose[tyre.road] ?? 0));
   for (const strut of scene.mechanism.struts) {
     const x = across(strutPlace(scene, strut));
+    drawBogie(pen, scene, strut, pose, across);
     drawStrut(pen, scene.store, strut.network, x, levelOf(scene, strut.upper.port, pose), levelOf(scene, strut.lower.port, pose));
   }
   drawBody(pen, scene, pose, across);
@@ -189,6 +190,19 @@ function drawWheel(pen, x, y, ground) {
   pen.moveTo(x, y - 6);
   pen.lineTo(x, y - RADIUS);
   pen.stroke();
+}
+
+/** What joins a strut to wheels that are not below it. @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {any} strut @param {Pose} pose @param {(x: number) => number} across */
+function drawBogie(pen, scene, strut, pose, across) {
+  const [x, y] = [across(strutPlace(scene, strut)), levelOf(scene, strut.lower.port, pose)];
+  for (const tyre of scene.mechanism.tyres) {
+    const aside = across(placeOf(scene, tyre));
+    if (aside === x || !Object.keys(tyre.port).some((name) => name in strut.lower.port)) continue;
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.lineTo(aside, WHEEL - RADIUS - scene.stretch * heightOf(tyre.port, pose));
+    pen.stroke();
+  }
 }
 
 /** A strut as its network, stretched between its ends. @param {CanvasRenderingContext2D} pen @param {Store} store @param {any} tree @param {number} x @param {number} top @param {number} bottom */

@@ -14,6 +14,8 @@ from browser import EXAMPLES, Visitor, wait_until
 
 import inerter as it
 from inerter.app.about import examples
+from inerter.app.designs import design_of
+from inerter.app.documents import study_from
 
 FIXED = """title = "All fixed"
 [vehicle]
@@ -341,3 +343,47 @@ def test_a_drawing_of_many_elements_is_laid_across_the_page(visitors: Callable[.
         assert hidden <= 0
         page.set_viewport_size({"width": 1920, "height": 1080})
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["study"]["title"]
+
+
+@pytest.mark.campaign
+def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
+    """By the method that the page judges by: how much friction takes all of what an inerter brings."""
+    page = visitor.page
+    values = {'"k | c - b"': '"k | d - (b | f)"', '"3 kN s/m"': '"4981 N s/m"', '"100 kg"': '"328.72 kg"'}
+    study_text = FIXED.replace("[layouts]", 'd = "7353 N s/m"\nf = "10 N"\n[layouts]')
+    for before, after in values.items():
+        study_text = study_text.replace(before, after)
+    _open(visitor, study_text, tmp_path)
+    page.select_option(".answers select >> nth=0", "statistical-linearisation")
+    page.get_by_text("What it bears").click()
+    asked: list[Any] = []
+    page.on("request", lambda request: asked.append(request.post_data_json) if "panel/budget" in request.url else None)
+    page.locator(".budget").get_by_role("button", name="Find out").click()
+    page.wait_for_function(
+        "() => / is as good as S1/.test(document.querySelector('.budget [role=status]').textContent)"
+    )
+    (body,) = asked
+    study = study_from(body["study"])
+    found = it.budget(
+        design_of(study, "S3", {}).vehicle,
+        design_of(study, "S1", {}).vehicle,
+        study.index("J1"),
+        parameter="f",
+        method=it.StatisticalLinearisation(),
+    )
+    assert f"At f = {found.value:.5g} N, S3" in page.inner_text(".budget [role=status]")
+
+
+@pytest.mark.campaign
+def test_a_report_is_made_and_downloaded(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.page
+    _open(visitor, FIXED, tmp_path)
+    page.get_by_text("Save", exact=True).click()
+    page.get_by_role("button", name="Report: run the study").click()
+    job = page.locator(".job").first
+    page.wait_for_selector(".job[data-state=done]", timeout=120_000)
+    job.get_by_role("button", name="Files…").click()
+    with page.expect_download() as found:
+        job.get_by_role("button", name="report.html").click()
+    found.value.save_as(tmp_path / "report.html")
+    assert "All fixed" in (tmp_path / "report.html").read_text()

@@ -143,7 +143,7 @@ function Budget({ store, api, indices }) {
   return html`<details class="budget"><summary>What it bears</summary><form class="row" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-    const body = { study: document.study, design: designOf(document), baseline: baselineOf(document), index: form.get("index"), parameter: form.get("parameter") };
+    const body = { study: document.study, design: designOf(document), baseline: baselineOf(document), index: form.get("index"), parameter: form.get("parameter"), ...seeing(state) };
     setTold("Simulating…");
     try {
       setTold(budgetTold(await api.post("panel/budget", { ...body, client: "page.budget", sequence: Date.now() }), document.layout, baselineOf(document).layout));
@@ -156,6 +156,12 @@ function Budget({ store, api, indices }) {
     <button>Find out</button>
     <p role="status">${told}</p>
   </form></details>`;
+}
+
+/** The method by which the page judges, where it sees what a budget is about; else that of the study. @param {State} state */
+function seeing({ about, view }) {
+  const method = about?.methods?.find((/** @type {any} */ { name }) => name === view.method);
+  return !method || method.sees === "neither" ? {} : { method: view.method };
 }
 
 /** @param {any} found @param {string} layout @param {string} baseline */

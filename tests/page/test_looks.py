@@ -46,7 +46,7 @@ def _long_names() -> str:
     layout, other = (f"{start}-layout-with-everything-anybody-ever-wished-for"[:40] for start in ("the", "another"))
     return (
         f'title = "{title}"\n{HEAD}[elements]\nk = "120 kN/m"\n{long} = {{ from = "100 N s/m", to = "100 kN s/m" }}\n'
-        f'b = "300 kg"\n[layouts]\n{layout} = "k | {long}"\n{other} = "k | {long} - b"\n{TAIL}'
+        f'b = "300 kg"\n[layouts]\n{layout} = "k | {long}"\n{other} = "k | {long} - b"\n{TAIL}optimise = "norm"\n'
     )
 
 

@@ -38,7 +38,10 @@ function enter(text) {
  * @returns {Promise<import("./state/document.js").Document | {study: any} | null>} */
 async function firstDocument() {
   const linked = address.state === null ? null : await unpacked(address.state);
-  if (linked) return linked;
+  if (linked) {
+    store.dispatch({ type: "viewed", view: linked.view });
+    return linked.document;
+  }
   if (address.state !== null) store.dispatch({ type: "said", message: "The link holds no state that this page can read." });
   const { study } = await api.get("start");
   const begun = JSON.stringify(study);

@@ -143,6 +143,11 @@ function listen(store, api) {
   const off = new AbortController();
   const { signal } = off;
   addEventListener("keydown", (event) => {
+    const menu = event.key === "Escape" && /** @type {Element} */ (event.target).closest("details.menu[open], details.bounds[open]");
+    if (menu) {
+      menu.removeAttribute("open");
+      menu.querySelector("summary")?.focus();
+    }
     const key = event.key.toLowerCase();
     if (!(event.ctrlKey || event.metaKey) || !["z", "y"].includes(key)) return;
     event.preventDefault();
@@ -170,6 +175,9 @@ async function filesOf(transfer) {
 /** @param {any} entry @returns {Promise<File[]>} */
 async function filesIn(entry) {
   if (entry.isFile) return [await new Promise((resolve, reject) => entry.file(resolve, reject))];
-  const inside = await new Promise((resolve, reject) => entry.createReader().readEntries(resolve, reject));
+  const reader = entry.createReader();
+  /** @type {any[]} */
+  const inside = [];
+  for (let more = [entry]; more.length > 0; inside.push(...more)) more = await new Promise((resolve, reject) => reader.readEntries(resolve, reject)); // a hundred at a time
   return Promise.all(inside.filter((/** @type {any} */ each) => each.isFile).map((/** @type {any} */ each) => new Promise((resolve, reject) => each.file(resolve, reject))));
 }

@@ -47,14 +47,16 @@ const marked = (_, marks) => marks.map((mark) => (mark === null ? "" : shown(mar
 /** @param {Curve[]} curves @param {{xLabel: string, yLabel: string, log: boolean, logY: boolean, height: number, width: number}} how @param {() => Band[]} bands @returns {uPlot.Options} */
 function optionsOf(curves, { xLabel, yLabel, log, logY, height, width }, bands) {
   const [ink, faint] = [colour("--ink"), colour("--line")];
-  const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint, width: 1 }, font: "12px system-ui", labelFont: "12px system-ui", labelSize: 20 };
+  const rem = parseFloat(getComputedStyle(document.documentElement).fontSize);
+  const font = `${0.8 * rem}px system-ui`;
+  const axis = { stroke: ink, grid: { stroke: faint, width: 1 }, ticks: { stroke: faint, width: 1 }, font, labelFont: font, labelSize: 1.35 * rem };
   return {
     width,
     height,
     cursor: { drag: { x: true, y: false } },
     legend: { live: true },
     scales: { x: { time: false, distr: log ? 3 : 1 }, y: { distr: logY ? 3 : 1 } },
-    axes: [{ ...axis, label: xLabel, values: marked }, { ...axis, label: yLabel, size: 64, values: marked }],
+    axes: [{ ...axis, label: xLabel, values: marked }, { ...axis, label: yLabel, size: 4.3 * rem, values: marked }],
     series: [
       { label: xLabel, value: (_, v) => (v === null ? "–" : v.toPrecision(4)) },
       ...curves.map(({ label, dash, colour: number }, i) => ({

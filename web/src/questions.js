@@ -1,6 +1,7 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
-import { isRange, strutsOf, textOf } from "./state/document.js";
+import { names, parse } from "./network/algebra.js";
+import { isRange, networksIn, strutsOf, textOf } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @typedef {import("./state/store.js").State} State */
@@ -49,6 +50,9 @@ export function questions(state) {
   return ROWS.flatMap((row) => row(state, document));
 }
 
+/** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
+export const bodyOf = (state, panel) => questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
+
 /** @param {Document} document */
 const about = (document) => ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
 
@@ -86,7 +90,7 @@ export function unitsIn({ about }, document) {
   /** @param {unknown} text @param {string | null} unit */
   const add = (text, unit) => {
     const apart = takenApart(text);
-    if (apart === null) return;
+    if (apart === null || apart.unit === unit) return;
     const key = unitKey(apart.unit, unit);
     found.set(key, { key, text: `1 ${apart.unit}`.trim(), unit });
   };
@@ -102,18 +106,42 @@ export function unitsIn({ about }, document) {
   return [...found.values()];
 }
 
-/** The numbers of vehicle and road, with unit and sentence. @param {any} about @param {Document} document @returns {{place: string[], unit: string, sentence: string, example: string}[]} */
+/** A number of vehicle or road. Of one in a table of the file's own, such as a lever, the unit is that in which it is written.
+ * @typedef {{place: string[], unit: string, sentence: string, own: boolean}} NumberRow */
+
+/** Every number of vehicle and road: those that all of their kind have, then what else stands in their tables. @param {any} about @param {Document} document @returns {NumberRow[]} */
 export function numbersOf(about, { study }) {
   const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
-  const rows = [
-    ...(model?.fields ?? []).map((/** @type {any} */ field) => ({ ...field, place: ["vehicle", field.key] })),
-    ...(about?.road ?? []).map((/** @type {any} */ field) => ({ ...field, place: ["road", field.key] })),
-  ];
-  return rows.filter(({ place, unit }) => unit && valueAtPlace(study, place) !== undefined);
+  return Object.entries({ vehicle: model?.fields ?? [], road: about?.road ?? [] }).flatMap(([section, fields]) => {
+    /** @type {NumberRow[]} */
+    const known = fields
+      .filter((/** @type {any} */ { key, unit }) => unit && valueAtPlace(study, [section, key]) !== undefined)
+      .map((/** @type {any} */ { key, unit, sentence }) => ({ place: [section, key], unit, sentence, own: false }));
+    const there = new Set(known.map(({ place }) => place[1]));
+    const more = numbersIn(study[section], [section]).filter(({ place }) => place.length > 2 || !there.has(place[1]));
+    return [...known, ...more];
+  });
+}
+
+/** The numbers in a table, and in the tables in it. @param {unknown} table @param {string[]} place @returns {NumberRow[]} */
+function numbersIn(table, place) {
+  if (typeof table === "string" || typeof table === "number") {
+    const apart = takenApart(String(table));
+    return apart ? [{ place, unit: apart.unit, sentence: "", own: true }] : [];
+  }
+  if (table === null || typeof table !== "object" || Array.isArray(table)) return [];
+  return Object.entries(table).flatMap(([key, inside]) => numbersIn(inside, [...place, key]));
 }
 
 /** @param {any} table @param {string[]} place @returns {any} */
 export const valueAtPlace = (table, place) => place.reduce((inside, key) => inside?.[key], table);
+
+/** The elements of networks that stand with the vehicle, such as that of a seat. @param {import("./state/document.js").Study} study */
+export const namesOfVehicle = ({ vehicle }) =>
+  networksIn(vehicle).flatMap((text) => {
+    const tree = parse(text);
+    return tree === null ? [] : names(tree);
+  });
 
 /** Whether a vehicle's struts can have networks of their own. @param {any} about @param {Document} document @returns {string[]} */
 export function mountsOf(about, { study, layout }) {

@@ -1,28 +1,33 @@
 // What outlives a moment: the link that holds the state, the tab's own memory, files that are opened and downloaded.
 
 import { empty } from "./state/document.js";
+import { initial } from "./state/store.js";
 import { openStudy as beginWith } from "./working.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./state/document.js").Document} Document */
+/** @typedef {import("./state/store.js").View} View */
+/** @typedef {{document: Document, view: Partial<View>}} Shared */
 /** @typedef {import("./api.js").Api} Api */
 
 const KEPT = "inerter.document";
 const LINK = "state";
 
-/** The document and what is looked at, as text for a link. @param {Document} document */
-export async function packed(document) {
-  const bytes = new Blob([JSON.stringify(document)]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+/** The document and what is looked at, as text for a link. @param {Document} document @param {Partial<View>} view */
+export async function packed(document, view) {
+  const bytes = new Blob([JSON.stringify({ ...document, view })]).stream().pipeThrough(new CompressionStream("deflate-raw"));
   const buffer = new Uint8Array(await new Response(bytes).arrayBuffer());
   return btoa(Array.from(buffer, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 }
 
-/** The document that a text holds, or null. @param {string} text @returns {Promise<Document | null>} */
+/** The document that a text holds and what was looked at, or null. @param {string} text @returns {Promise<Shared | null>} */
 export async function unpacked(text) {
   try {
     const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-    return documentFrom(JSON.parse(await new Response(stream).text()));
+    const read = JSON.parse(await new Response(stream).text());
+    const document = documentFrom(read);
+    return document && { document, view: viewFrom(read.view) };
   } catch {
     return null;
   }
@@ -35,8 +40,16 @@ export function documentFrom(read) {
   return { study, layout: String(layout), strut: strut === null ? null : String(strut), values: values ?? {}, ranges: ranges ?? {}, designs: Array.isArray(designs) ? designs : [] };
 }
 
-/** A link to the document as it is; never with the token. @param {Document} document */
-export const linkTo = async (document) => `${location.origin}${location.pathname}#${LINK}=${await packed(document)}`;
+/** What was looked at, as far as it is that: of what is known the values of the same type. @param {any} read @returns {Partial<View>} */
+function viewFrom(read) {
+  const known = Object.entries(initial().view).filter(([key, value]) => typeof read?.[key] === typeof value && Array.isArray(read[key]) === Array.isArray(value));
+  return Object.fromEntries(known.map(([key]) => [key, read[key]]));
+}
+
+/** A link to the document as it is and as it is looked at; never with the token. @param {Document} document @param {View} view */
+export async function linkTo(document, { theme, playing, ...view }) {
+  return `${location.origin}${location.pathname}#${LINK}=${await packed(document, view)}`;
+}
 
 /** What the address of the page says. @param {string} hash */
 export function fromAddress(hash) {

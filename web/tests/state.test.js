@@ -3,7 +3,8 @@ import { test } from "node:test";
 import { after, empty, namesIn, textOf } from "../src/state/document.js";
 import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief } from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
-import { questions } from "../src/questions.js";
+import { limited, limitsIn } from "../src/panels/asked.js";
+import { namesOfVehicle, numbersOf, questions } from "../src/questions.js";
 
 const STUDY = {
   title: "car",
@@ -159,4 +160,62 @@ test("quantities come apart and together as they are written", () => {
   assert.equal(brief("181.75 kg"), "181.75 kg");
   assert.equal(shown(-6.4525e-5), "−6.4525·10⁻⁵");
   assert.equal(shown(null), "–");
+});
+
+test("every number of vehicle and road has a row, whatever table it stands in", () => {
+  const study = {
+    vehicle: { model: "mechanism", coordinates: { body: "19 t" }, struts: { s: { upper: { body: 1, pitch: "-9.5 m" }, network: "k | c" } } },
+    road: { speed: "25 m/s", class: "C", coherence: { wavenumber: "0.2 cycle/m" } },
+  };
+  const rows = numbersOf(ABOUT, { ...empty(), study });
+  const told = Object.fromEntries(rows.map(({ place, unit }) => [place.join("."), unit]));
+  assert.deepEqual(told, {
+    "vehicle.coordinates.body": "t",
+    "vehicle.struts.s.upper.body": "",
+    "vehicle.struts.s.upper.pitch": "m",
+    "road.speed": "m/s",
+    "road.coherence.wavenumber": "cycle/m",
+  });
+});
+
+test("an element is called otherwise in the networks of a vehicle too", () => {
+  const study = { ...STUDY, vehicle: { seat: { mass: "70 kg", network: "k | c" } } };
+  const document = after({ ...empty(), study, layout: "S1" }, { type: "elementRenamed", old: "c", name: "damper" });
+  assert.deepEqual(document.study.vehicle, { seat: { mass: "70 kg", network: "k | damper" } });
+  assert.deepEqual(namesOfVehicle(document.study), ["k", "damper"]);
+});
+
+test("what is made free gets a method that chooses it, and keeps one that is there", () => {
+  const freed = { type: "freed", name: "b", from: "1 kg", to: "2 kg", method: "norm" };
+  const document = after(empty(), { type: "opened", study: STUDY });
+  assert.equal(after(document, freed).study.study.optimise, "norm");
+  const chosen = after(document, { type: "placed", place: ["study", "optimise"], value: "other" });
+  assert.equal(after(chosen, freed).study.study.optimise, "other");
+});
+
+test("limits are put and taken away one by one, and no empty table is left", () => {
+  const draw = random(5);
+  const places = [["a", "at_most"], ["a", "at_least"], ["b", "strut", "equal"], ["b", "other", "at_most"]];
+  /** @type {any} */
+  let table;
+  const expected = new Map();
+  for (let step = 0; step < 200; step += 1) {
+    const place = places[Math.floor(draw() * places.length)];
+    const value = draw() < 0.5 ? undefined : String(step);
+    table = limited(table, place, value);
+    if (value === undefined) expected.delete(place.join("."));
+    else expected.set(place.join("."), value);
+    const found = limitsIn(table).map(({ path, sense, value: text }) => [[...path, sense].join("."), text]);
+    assert.deepEqual(new Map(found), expected);
+    assert.equal(table === undefined, expected.size === 0);
+    assert.ok(!JSON.stringify(table ?? 1).includes("{}"));
+  }
+});
+
+test("a slider of what is negative keeps the sign, and the ends of its scale", () => {
+  for (const [lower, upper] of [[-1, -100], [2, 50]]) {
+    assert.equal(positionOf(lower, lower, upper), 0);
+    assert.equal(positionOf(upper, lower, upper), STEPS);
+    for (let position = 0; position <= STEPS; position += 40) assert.equal(positionOf(valueAt(position, lower, upper), lower, upper), position);
+  }
 });

@@ -6,6 +6,8 @@ import { namesIn } from "../state/document.js";
 import { shown } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
+import { AskedPanel } from "./asked.js";
+import { otherProblems } from "./values.js";
 import { optimise } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -31,6 +33,7 @@ export function AnswersPanel({ store, api }) {
     ${sentence && value && html`<p class="quiet">The values below are those of before.</p>`}
     ${value && html`<${Indices} value=${value} layout=${document.layout} baseline=${baseline} stale=${Boolean(sentence)} />`}
     <${Limits} value=${value} />
+    <${AskedPanel} store=${store} />
     <${Optimise} store=${store} api=${api} indices=${indicesOf(state)} />
     <${Budget} store=${store} api=${api} indices=${indicesOf(state)} />
     <${OtherProblems} state=${state} />
@@ -140,7 +143,7 @@ function Budget({ store, api, indices }) {
   return html`<details class="budget"><summary>What it bears</summary><form class="row" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-    const body = { study: document.study, design: designOf(document), baseline: baselineOf(document), index: form.get("index"), parameter: form.get("parameter") };
+    const body = { study: document.study, design: designOf(document), baseline: baselineOf(document), index: form.get("index"), parameter: form.get("parameter"), ...seeing(state) };
     setTold("Simulating…");
     try {
       setTold(budgetTold(await api.post("panel/budget", { ...body, client: "page.budget", sequence: Date.now() }), document.layout, baselineOf(document).layout));
@@ -155,6 +158,12 @@ function Budget({ store, api, indices }) {
   </form></details>`;
 }
 
+/** The method by which the page judges, where it sees what a budget is about; else that of the study. @param {State} state */
+function seeing({ about, view }) {
+  const method = about?.methods?.find((/** @type {any} */ { name }) => name === view.method);
+  return !method || method.sees === "neither" ? {} : { method: view.method };
+}
+
 /** @param {any} found @param {string} layout @param {string} baseline */
 function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
   if (typeof value !== "number") return message || "There is no such value.";
@@ -164,9 +173,10 @@ function budgetTold({ parameter, value, unit, standard_error, status, message },
 
 /** What is wrong with the study at places that have no field on the page. @param {{state: State}} props */
 function OtherProblems({ state }) {
-  const fields = new Set(["elements", "vehicle", "road"]);
-  const problems = (state.answers.check?.value?.problems ?? []).filter((/** @type {any} */ { place }) => !(fields.has(place[0]) && place.length > 1));
+  const problems = otherProblems(state);
+  /** A sentence that begins with its place needs no other. @param {{place: string[], sentence: string}} problem */
+  const placed = ({ place, sentence }) => (sentence.startsWith(place.join(".")) ? "" : html`<code>${place.join(".")}</code> `);
   return problems.length === 0
     ? null
-    : html`<div class="problems" role="alert"><h3>In the study</h3><ul>${problems.map((/** @type {any} */ problem) => html`<li class="problem"><code>${problem.place.join(".")}</code> ${problem.sentence}</li>`)}</ul></div>`;
+    : html`<div class="problems" role="alert"><h3>In the study</h3><ul>${problems.map((/** @type {any} */ problem) => html`<li class="problem">${placed(problem)}${problem.sentence}</li>`)}</ul></div>`;
 }

@@ -41,8 +41,8 @@ function Table({ state, keys }) {
   const elements = [...new Set(columns.flatMap(({ told }) => Object.keys(told?.values ?? {})))];
   /** @param {any} told @param {string} index */
   const find = (told, index) => told?.results.find((/** @type {any} */ each) => each.index === index);
-  return html`<div class="scroll" tabindex="0" role="region" aria-label="Comparison"><table>
-    <thead><tr><th scope="col"></th>${columns.map(({ key, name }) => html`<th scope="col" key=${key}>${name}</th>`)}</tr></thead>
+  return html`<div class="scroll" tabindex="0" role="region" aria-label="Comparison"><table class="compared" style=${{ minWidth: `${9 * (columns.length + 1)}rem` }}>
+    <thead><tr><th scope="col"></th>${columns.map(({ key, name }) => html`<th scope="col" key=${key} title=${name}>${name}</th>`)}</tr></thead>
     <tbody>
       <tr><th scope="row">network</th>${columns.map(({ key, study, design }) => html`<td key=${key}><code>${textsOf(study.layouts?.[design.layout]).join("; ")}</code></td>`)}</tr>
       ${elements.map((name) => html`<tr key=${name}><th scope="row">${name}</th>${columns.map(({ key, told }) => html`<td class="number" key=${key}>${valueText(told?.values?.[name])}</td>`)}</tr>`)}

@@ -1,7 +1,7 @@
 // Opening, undoing, sharing and downloading.
 
 import { indicesOf } from "./answers.js";
-import { designOf, shownDesigns } from "../questions.js";
+import { bodyOf, designOf, shownDesigns } from "../questions.js";
 import { html, useState } from "../parts/html.js";
 import { download, linkTo, open } from "../remembering.js";
 import { begin, openStudy } from "../working.js";
@@ -26,10 +26,8 @@ export function Menu({ store, api }) {
   };
   const theStudy = attempt(async () => download(new Blob([(await api.post("study/write", { study })).text], { type: "application/toml" }), `${name}.toml`));
   const theDesign = attempt(async () => download(new Blob([(await api.post("study/write", fixedDesign(store))).text], { type: "application/toml" }), `${name}-${fileName(history.present.layout)}.toml`));
-  const csv = attempt(async () => {
-    const asked = JSON.parse(state.answers.indices?.key || "{}");
-    download(await api.blob("export/csv", { panel: "indices", request: asked }), `${name}.csv`);
-  });
+  /** @param {string} panel */
+  const csv = (panel) => attempt(async () => download(await api.blob("export/csv", { panel, request: bodyOf(store.get(), panel) }), panel === "indices" ? `${name}.csv` : `${name}-${panel}.csv`));
   const indices = indicesOf(state).map(({ symbol }) => symbol);
   const index = indices.includes(picked) ? picked : indices[0];
   /** @param {"svg" | "png"} format @param {string} kind @param {any[]} designs */
@@ -49,7 +47,9 @@ export function Menu({ store, api }) {
     <details class="menu"><summary>Save</summary><div class="menu-body">
       <button type="button" onClick=${theStudy}>Study file (TOML)</button>
       <button type="button" onClick=${theDesign}>This design, values fixed (TOML)</button>
-      <button type="button" onClick=${csv}>Indices (CSV)</button>
+      <button type="button" onClick=${csv("indices")}>Indices (CSV)</button>
+      <button type="button" onClick=${csv("response")}>Frequency response (CSV)</button>
+      <button type="button" onClick=${csv("history")}>On the road (CSV)</button>
       <button type="button" onClick=${network("svg")}>Network (SVG)</button>
       <button type="button" onClick=${network("png")}>Network (PNG)</button>
       ${index && html`<label>Response of <select value=${index} onChange=${(/** @type {Event} */ event) => setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>${indices.map((each) => html`<option key=${each}>${each}</option>`)}</select></label>
@@ -95,7 +95,8 @@ function Open({ store, api }) {
 function Share({ store }) {
   const [link, setLink] = useState("");
   const make = async () => {
-    const made = await linkTo(store.get().history.present);
+    const { history, view } = store.get();
+    const made = await linkTo(history.present, view);
     setLink(made);
     await navigator.clipboard?.writeText(made).then(() => store.dispatch({ type: "said", message: "The link is on the clipboard. It holds the whole state, and no token." }), () => {});
   };

@@ -2,7 +2,7 @@
 
 import { drawing } from "../network/drawing.js";
 import { kindOf } from "../kinds.js";
-import { html, useEffect, useRef } from "../parts/html.js";
+import { html, useEffect, useRef, useState } from "../parts/html.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {{time: number[], coordinates: {[name: string]: number[]}, roads: {[name: string]: number[]}}} Motions */
@@ -13,7 +13,8 @@ const BODY = 40; // [px] from the top at rest
 const WHEEL = 235;
 const GROUND = 285;
 const RADIUS = 24;
-const METRE = 130; // [px] along the car
+const METRE = 130; // [px] along the car, where there is room for it
+const OVERHANG = 60; // [px] of a body beyond its struts
 const SPEEDS = [1, 0.5, 0.25, 0.1];
 
 /** @param {{store: Store, motion: Motions, mechanism: any}} props */
@@ -21,6 +22,7 @@ export function Motion({ store, motion, mechanism }) {
   const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
   const clock = useRef({ at: 0, frames: 0 });
   const scene = useRef(/** @type {Scene | null} */ (null));
+  const [width, setWidth] = useState(0);
   const { view, history } = store.get();
   const speed = speedOf(history.present.study.road?.speed);
   scene.current = { motion, mechanism, store, travel: speed, stretch: stretchOf(motion) };
@@ -35,7 +37,10 @@ export function Motion({ store, motion, mechanism }) {
       const end = shown.motion.time[shown.motion.time.length - 1];
       if (present.playing) clock.current.at = (clock.current.at + (Math.min(now - last, 100) / 1000) * present.speed) % end;
       last = now;
-      if (canvas.current) paint(canvas.current, shown, Math.min(clock.current.at, end));
+      if (canvas.current) {
+        paint(canvas.current, shown, Math.min(clock.current.at, end));
+        setWidth(canvas.current.clientWidth);
+      }
       clock.current.frames += 1;
       if (canvas.current) canvas.current.dataset.frames = String(clock.current.frames);
       if (present.playing) frame = requestAnimationFrame(show);
@@ -53,7 +58,7 @@ export function Motion({ store, motion, mechanism }) {
       <label>at <select value=${String(view.speed)} onChange=${(/** @type {Event} */ event) => set({ speed: Number(/** @type {HTMLSelectElement} */ (event.currentTarget).value) })}>
         ${SPEEDS.map((each) => html`<option key=${each} value=${String(each)}>${each === 1 ? "the true speed" : `1/${Math.round(1 / each)} of the speed`}</option>`)}
       </select></label>
-      <span class="quiet">Motions drawn ${Math.round(scene.current.stretch / METRE)} times as large.</span>
+      <span class="quiet">Motions drawn ${Math.round(scene.current.stretch / metreOf(endsOf(scene.current), width))} times as large.</span>
     </figcaption>
   </figure>`;
 }
@@ -105,33 +110,44 @@ function paint(canvas, scene, at) {
   pen.strokeStyle = ink;
   pen.fillStyle = paper;
   const pose = poseAt(scene.motion, at);
-  /** @type {number[]} */
-  const ends = scene.mechanism.tyres.map((/** @type {any} */ tyre) => placeOf(scene, tyre));
+  const ends = endsOf(scene);
   const mean = ends.reduce((sum, x) => sum + x, 0) / Math.max(1, ends.length);
+  const metre = metreOf(ends, width);
   const middle = width / 2;
   /** @param {number} x */
-  const across = (x) => middle + (x - mean) * METRE;
-  drawRoad(pen, scene, at, width, across, ends);
+  const across = (x) => middle + (x - mean) * metre;
+  drawRoad(pen, scene, at, width, across, ends, metre);
   for (const [i, tyre] of scene.mechanism.tyres.entries()) drawWheel(pen, across(ends[i]), WHEEL - scene.stretch * heightOf(tyre.port, pose), GROUND - scene.stretch * (pose[tyre.road] ?? 0));
   for (const strut of scene.mechanism.struts) {
     const x = across(strutPlace(scene, strut));
+    drawBogie(pen, scene, strut, pose, across);
     drawStrut(pen, scene.store, strut.network, x, levelOf(scene, strut.upper.port, pose), levelOf(scene, strut.lower.port, pose));
   }
   drawBody(pen, scene, pose, across);
 }
 
-/** Where a tyre is along the car: where the strut above it is, else by the distance of its road. @param {Scene} scene @param {any} tyre */
+/** Where the tyres are along the car. @param {Scene} scene @returns {number[]} */
+const endsOf = (scene) => scene.mechanism.tyres.map((/** @type {any} */ tyre) => placeOf(scene, tyre));
+
+/** Pixels of a metre along the car, so that all of it is seen. @param {number[]} ends @param {number} width */
+function metreOf(ends, width) {
+  const long = ends.length ? Math.max(...ends) - Math.min(...ends) : 0;
+  const room = Math.max(width - 2 * (OVERHANG + RADIUS), RADIUS);
+  return long > 0 && width > 0 ? Math.min(METRE, room / long) : METRE;
+}
+
+/** Where a tyre is along the car: by its lever where the strut above it is, else by the distance of its road. @param {Scene} scene @param {any} tyre */
 function placeOf({ mechanism }, tyre) {
   const above = mechanism.struts.find((/** @type {any} */ strut) => Object.keys(strut.lower.port).some((name) => name in tyre.port));
   const road = mechanism.roads.find((/** @type {any} */ each) => each.name === tyre.road);
   const levers = above ? above.upper.x : 0;
-  return levers !== 0 ? levers : -(road?.distance ?? 0);
+  return levers !== 0 ? levers + tyre.x : -(road?.distance ?? 0);
 }
 
 /** @param {Scene} scene @param {any} strut */
 function strutPlace(scene, strut) {
   const below = scene.mechanism.tyres.find((/** @type {any} */ tyre) => Object.keys(tyre.port).some((name) => name in strut.lower.port));
-  return below ? placeOf(scene, below) : strut.upper.x;
+  return below && strut.upper.x === 0 ? placeOf(scene, below) : strut.upper.x;
 }
 
 /** Where a port is drawn: on a wheel, on the ground, or on a body. @param {Scene} scene @param {{[name: string]: number}} port @param {Pose} pose */
@@ -141,8 +157,8 @@ function levelOf(scene, port, pose) {
   return rest - scene.stretch * heightOf(port, pose);
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {number} at @param {number} width @param {(x: number) => number} across @param {number[]} ends */
-function drawRoad(pen, { motion, travel, stretch, mechanism }, at, width, across, ends) {
+/** @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {number} at @param {number} width @param {(x: number) => number} across @param {number[]} ends @param {number} metre */
+function drawRoad(pen, { motion, travel, stretch, mechanism }, at, width, across, ends, metre) {
   const first = mechanism.roads[0];
   if (!first) return;
   const heights = motion.roads[first.name];
@@ -150,7 +166,7 @@ function drawRoad(pen, { motion, travel, stretch, mechanism }, at, width, across
   const step = motion.time[1] - motion.time[0];
   pen.beginPath();
   for (let x = 0; x <= width; x += 2) {
-    const time = at + (x - across(place)) / METRE / travel;
+    const time = at + (x - across(place)) / metre / travel;
     const i = Math.min(heights.length - 1, Math.max(0, time / step));
     const [below, share] = [Math.floor(i), i - Math.floor(i)];
     const height = heights[below] + share * ((heights[below + 1] ?? heights[below]) - heights[below]);
@@ -174,6 +190,19 @@ function drawWheel(pen, x, y, ground) {
   pen.moveTo(x, y - 6);
   pen.lineTo(x, y - RADIUS);
   pen.stroke();
+}
+
+/** What joins a strut to wheels that are not below it. @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {any} strut @param {Pose} pose @param {(x: number) => number} across */
+function drawBogie(pen, scene, strut, pose, across) {
+  const [x, y] = [across(strutPlace(scene, strut)), levelOf(scene, strut.lower.port, pose)];
+  for (const tyre of scene.mechanism.tyres) {
+    const aside = across(placeOf(scene, tyre));
+    if (aside === x || !Object.keys(tyre.port).some((name) => name in strut.lower.port)) continue;
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.lineTo(aside, WHEEL - RADIUS - scene.stretch * heightOf(tyre.port, pose));
+    pen.stroke();
+  }
 }
 
 /** A strut as its network, stretched between its ends. @param {CanvasRenderingContext2D} pen @param {Store} store @param {any} tree @param {number} x @param {number} top @param {number} bottom */
@@ -200,8 +229,8 @@ function drawBody(pen, scene, pose, across) {
   mounts.sort((/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] - b[0]);
   const [first, last] = [mounts[0], mounts[mounts.length - 1]];
   const slope = last[0] === first[0] ? 0 : (last[1] - first[1]) / (last[0] - first[0]);
-  const [left, right] = [first[0] - 60, last[0] + 60];
-  const [y1, y2] = [first[1] - 60 * slope, last[1] + 60 * slope];
+  const [left, right] = [first[0] - OVERHANG, last[0] + OVERHANG];
+  const [y1, y2] = [first[1] - OVERHANG * slope, last[1] + OVERHANG * slope];
   pen.beginPath();
   pen.moveTo(left, y1);
   pen.lineTo(left, y1 - 26);

@@ -15,6 +15,8 @@ import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
 const MARGIN = 14;
 const TERMINAL = 1.6;
+const [SMALLEST, LARGEST] = [0.075, 0.113]; // [rem] a point of the drawing
+const MANY = 8; // elements from where a drawing may be laid across the page
 const FAR = 6; // [px] from where a press is a drag
 
 /** @param {{store: Store}} props */
@@ -23,7 +25,7 @@ export function NetworkPanel({ store }) {
   const document = state.history.present;
   const mounts = mountsOf(state.about, document);
   const parted = strutsOf(document.study.layouts?.[document.layout]);
-  return html`<section class="panel network" aria-labelledby="network-title">
+  return html`<section class=${`panel network ${state.view.across ? "across" : ""}`} aria-labelledby="network-title">
     <h2 id="network-title">Strut</h2>
     <${Layouts} store=${store} />
     ${mounts.length > 0 &&
@@ -90,6 +92,7 @@ function Editor({ store }) {
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
       : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path} stale=${tree === null} />`}
+    ${shownTree && (state.view.across || leaves(shownTree).length > MANY) && html`<button type="button" class="chip" aria-pressed=${state.view.across} onClick=${() => store.dispatch({ type: "viewed", view: { across: !state.view.across } })}>Across the page</button>`}
     ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
     <${Text} store=${store} text=${text} />`;
@@ -252,7 +255,7 @@ function Schematic({ editing, tree, path, stale }) {
   const target = over && plan.boxes.find((each) => same(each.path, over.path));
   const group = box && partAt(tree, path)?.kind !== "element" ? box : null;
   return html`<div class=${`drawing ${stale ? "stale" : ""}`}>
-    <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`} style=${{ width: `${Math.min(1.7, Math.max(0.9, 300 / width)) * width}px` }} role="group" aria-label=${`Network ${written(tree)}`}
+    <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`} style=${{ width: state.view.across ? `min(100%, ${LARGEST * width}rem)` : `${Math.min(LARGEST, Math.max(SMALLEST, 20 / width)) * width}rem` }} role="group" aria-label=${`Network ${written(tree)}`}
       onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, editing)}
       onDragOver=${(/** @type {DragEvent} */ event) => {
         event.preventDefault();
@@ -410,10 +413,11 @@ function Text({ store, text }) {
   return html`<div class="text">
     <label for="network-text">As text <span class="quiet">| parallel, - series, brackets group</span></label>
     <div class="underlined">
-      <input id="network-text" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off" aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
-        onInput=${(/** @type {Event} */ event) => store.dispatch({ type: "changed", change: { type: "drawn", text: /** @type {HTMLInputElement} */ (event.currentTarget).value }, gesture: "text" })}
+      <textarea id="network-text" rows="1" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off" aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
+        onInput=${(/** @type {Event} */ event) => store.dispatch({ type: "changed", change: { type: "drawn", text: /** @type {HTMLTextAreaElement} */ (event.currentTarget).value.replace(/[\r\n]+/g, " ") }, gesture: "text" })}
+        onKeyDown=${(/** @type {KeyboardEvent} */ event) => event.key === "Enter" && event.preventDefault()}
         onBlur=${() => store.dispatch({ type: "rested" })} />
-      ${wrong && html`<div class="marks" aria-hidden="true">${text.slice(0, wrong.at[0])}<u>${text.slice(...wrong.at) || " "}</u></div>`}
+      <div class="marks" aria-hidden="true">${wrong ? html`${text.slice(0, wrong.at[0])}<u>${text.slice(...wrong.at) || " "}</u>${text.slice(wrong.at[1])}` : text}${" "}</div>
     </div>
     ${wrong && html`<p id="network-problem" class="problem" role="alert">${wrong.sentence}</p>`}
     ${missing.map(

@@ -12,13 +12,7 @@ export function ResponsePanel({ store }) {
   const [picked, setPicked] = useState("");
   const index = indices.includes(picked) ? picked : indices[0];
   const { layout } = state.history.present;
-  const curves = useMemo(
-    () =>
-      (value?.curves ?? [])
-        .filter((/** @type {any} */ curve) => curve.index === index)
-        .map((/** @type {any} */ curve) => ({ label: curve.name, values: curve.gain, dash: curve.layout !== layout, colour: curve.layout !== layout ? 1 : 0 })),
-    [value, index, layout],
-  );
+  const curves = useMemo(() => curvesOf((value?.curves ?? []).filter((/** @type {any} */ curve) => curve.index === index), layout), [value, index, layout]);
   const first = value?.curves.find((/** @type {any} */ curve) => curve.index === index);
   useShown("response", state);
   return html`<div>
@@ -27,4 +21,17 @@ export function ResponsePanel({ store }) {
     ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]" yLabel=${`gain [${first.unit ?? ""}]`} log=${true} logY=${true} title=${`Frequency response of ${index}`} theme=${state.view.theme} />
       <p class="quiet">${first.title}: solid ${layout}, dashed the baseline.</p>`}
   </div>`;
+}
+
+const BASELINE = 1; // its colour
+
+/** The gains of an index; where it has several outputs, each with its name and a colour of its own. @param {any[]} found @param {string} layout */
+function curvesOf(found, layout) {
+  const outputs = [...new Set(found.map(({ label }) => label))];
+  const several = outputs.length > 1;
+  return found.map(({ name, label, layout: of, gain }) => {
+    const number = outputs.indexOf(label);
+    const dash = of !== layout;
+    return { label: several ? `${name}, ${label.replaceAll("_", " ")}` : name, values: gain, dash, colour: number > 0 ? number + BASELINE : dash && !several ? BASELINE : 0 };
+  });
 }

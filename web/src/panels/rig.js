@@ -3,7 +3,8 @@
 import { names, parse } from "../network/algebra.js";
 import { nextLayout } from "../state/document.js";
 import { open } from "../remembering.js";
-import { html, useState } from "../parts/html.js";
+import { Plot } from "../plot.js";
+import { html, useMemo, useState } from "../parts/html.js";
 import { shown } from "../state/scale.js";
 import { begin, stop } from "../working.js";
 
@@ -19,7 +20,7 @@ export function RigPanel({ store, api }) {
   return html`<div>
     <p class="quiet">Drop a measured record anywhere on the page (CSV, TDMS, MDF4, MATLAB), or</p>
     <label class="file">choose one <input type="file" accept=".csv,.tsv,.txt,.tdms,.mf4,.mdf,.mat" multiple onChange=${(/** @type {Event} */ event) => open(store, api, /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label>
-    <ul class="records">${state.records.map((record) => html`<${RecordRow} key=${record.id} record=${record} />`)}</ul>
+    <ul class="records">${state.records.map((record) => html`<${RecordRow} key=${record.id} store=${store} api=${api} record=${record} />`)}</ul>
     ${state.records.length > 0 &&
     html`<form class="row" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
       event.preventDefault();
@@ -40,11 +41,24 @@ export function RigPanel({ store, api }) {
   </div>`;
 }
 
-/** @param {{record: any}} props */
-function RecordRow({ record }) {
-  const channels = (record.channels ?? []).map((/** @type {any} */ channel) => (typeof channel === "string" ? channel : [channel.name, channel.unit && `[${channel.unit}]`].filter(Boolean).join(" ")));
-  return html`<li><b>${record.name}</b>: ${channels.join(", ")}; ${shown(record.samples)} samples, ${shown(record.duration)} s.
-    <ul>${(record.findings ?? []).map((/** @type {string} */ finding) => html`<li>${finding}</li>`)}</ul></li>`;
+/** @param {{store: Store, api: Api, record: any}} props */
+function RecordRow({ store, api, record }) {
+  const channels = record.channels ?? [];
+  const [picked, setPicked] = useState("");
+  const channel = channels.find((/** @type {any} */ { name }) => name === picked) ?? channels[0];
+  const curves = useMemo(() => (channel ? [{ label: channel.name, values: channel.values }] : []), [channel]);
+  return html`<li><div class="row"><b>${record.name}</b> ${shown(record.samples)} samples, ${shown(record.duration)} s.
+      ${channels.length > 0 && html`<label>Show <select value=${channel.name} onChange=${(/** @type {Event} */ event) => setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>${channels.map((/** @type {any} */ { name }) => html`<option key=${name}>${name}</option>`)}</select></label>`}
+      <button type="button" aria-label=${`Remove ${record.name}`} onClick=${() => forget(store, api, record.id)}>Remove</button></div>
+    <ul>${(record.findings ?? []).map((/** @type {any} */ { severity, about, sentence }) => html`<li key=${`${about} ${sentence}`} class="finding" data-severity=${severity}>${sentence}</li>`)}
+      ${(record.notes ?? []).map((/** @type {string} */ note) => html`<li key=${note} class="quiet">${note}</li>`)}</ul>
+    ${channel && html`<${Plot} x=${channel.time} curves=${curves} xLabel="time [s]" yLabel=${channel.name} title=${`${channel.name} of ${record.name} over time`} theme=${store.get().view.theme} />`}</li>`;
+}
+
+/** @param {Store} store @param {Api} api @param {string} id */
+async function forget(store, api, id) {
+  await api.remove(`records/${id}`).catch(() => null); // the server may have begun afresh, without it
+  store.dispatch({ type: "unrecorded", id });
 }
 
 /** @param {{store: Store, api: Api, job: import("../state/store.js").Job}} props */

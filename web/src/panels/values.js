@@ -1,7 +1,7 @@
 // Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, fixed or free.
 
 import { isRange, namesIn } from "../state/document.js";
-import { numbersOf, unitKey, valueAtPlace } from "../questions.js";
+import { namesOfVehicle, numbersOf, unitKey, valueAtPlace } from "../questions.js";
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { kindOf } from "../kinds.js";
@@ -12,15 +12,16 @@ import { kindOf } from "../kinds.js";
 const DECADE = 10;
 
 /** A number of the document. `unit` is null where the unit itself tells what it is; `set` gives the change to another text.
- * @typedef {{place: string[], label: string, sentence: string, unit: string | null, text: string, range: {from: string, to: string}, free: boolean, set: (text: string) => import("../state/document.js").Change}} Amount */
+ * @typedef {{place: string[], label: string, sentence: string, unit: string | null, text: string, range: {from: string, to: string}, free: boolean, own?: boolean, set: (text: string) => import("../state/document.js").Change}} Amount */
 
+const FEW = 8; // numbers of one table of a vehicle that stand below each other; more are folded away, and those in tables of tables
 const MANY = 14; // elements of a layout that stand below each other; of more some are scrolled, so that the rest of the page stays near
 
 /** @param {{store: Store}} props */
 export function ValuesPanel({ store }) {
   const state = store.get();
   const { study, layout } = state.history.present;
-  const here = new Set(namesIn(study, layout));
+  const here = new Set([...namesIn(study, layout), ...namesOfVehicle(study)]);
   const elements = Object.keys(study.elements ?? {});
   const used = elements.filter((name) => here.has(name));
   const other = elements.filter((name) => !here.has(name));
@@ -35,17 +36,30 @@ export function ValuesPanel({ store }) {
     ${["vehicle", "road"].map((section) => {
       const rows = rest.filter(({ place }) => place[0] === section);
       return rows.length > 0 && html`<h3 key=${section}>${section === "vehicle" ? `Vehicle: ${String(study.vehicle?.model ?? "").replace("-", " ")}` : "Road"}</h3>
-        ${rows.map((row) => html`<${AmountRow} key=${row.place.join(".")} store=${store} amount=${numberAmount(state, row)} />`)}`;
+        ${[...new Set(rows.map(tableOf))].map((table) => html`<${Numbers} key=${table} store=${store} table=${table} rows=${rows.filter((row) => tableOf(row) === table)} />`)}`;
     })}
   </section>`;
 }
 
-/** @param {State} state @param {{place: string[], unit: string, sentence: string}} row @returns {Amount} */
-function numberAmount(state, { place, unit, sentence }) {
+/** The table of vehicle or road in which a number stands, if it is in one. @param {import("../questions.js").NumberRow} row */
+const tableOf = ({ place }) => (place.length > 2 ? place[1] : "");
+
+/** The numbers of one table of vehicle or road. @param {{store: Store, table: string, rows: import("../questions.js").NumberRow[]}} props */
+function Numbers({ store, table, rows }) {
+  const amounts = rows.map((row) => html`<${AmountRow} key=${row.place.join(".")} store=${store} amount=${numberAmount(store.get(), row)} />`);
+  const deep = rows.some(({ place }) => place.length > 3);
+  return table === "" ? amounts : html`<details class=${`table ${deep ? "deep" : ""}`} open=${!deep && rows.length <= FEW}><summary>${`${table.replaceAll("_", " ")} (${rows.length})`}</summary>${amounts}</details>`;
+}
+
+/** @param {State} state @param {import("../questions.js").NumberRow} row @returns {Amount} */
+function numberAmount(state, { place, unit, sentence, own }) {
   const { study, ranges } = state.history.present;
-  const text = String(valueAtPlace(study, place));
-  const label = place[place.length - 1].replaceAll("_", " ");
-  return { place, label, sentence, unit, text, range: ranges[place.join(".")] ?? decade(text), free: false, set: (value) => ({ type: "placed", place, value }) };
+  const before = valueAtPlace(study, place);
+  const text = String(before);
+  const label = place.slice(place.length > 2 ? 2 : 1).join(", ").replaceAll("_", " ");
+  /** @param {string} value */
+  const written = (value) => (typeof before === "number" && value !== "" && Number.isFinite(Number(value)) ? Number(value) : value);
+  return { place, label, sentence, unit, text, own, range: ranges[place.join(".")] ?? decade(text), free: false, set: (value) => ({ type: "placed", place, value: written(value) }) };
 }
 
 /** @param {{store: Store, name: string}} props */
@@ -65,15 +79,18 @@ function ElementRow({ store, name }) {
   const text = String(valueAtPlace(study, place) ?? "");
   /** @type {Amount} */
   const amount = { place, label: name, sentence, unit: null, text, range: ranges[place.join(".")] ?? decade(text), free: false, set: (value) => ({ type: "placed", place, value }) };
-  return html`<${AmountRow} store=${store} amount=${amount} removable=${!Object.keys(study.layouts ?? {}).some((each) => namesIn(study, each).includes(name))} />`;
+  return html`<${AmountRow} store=${store} amount=${amount} removable=${![...namesOfVehicle(study), ...Object.keys(study.layouts ?? {}).flatMap((each) => namesIn(study, each))].includes(name)} />`;
 }
 
 /** The size of a text in SI, or null where it is not known. @param {State} state @param {string} text @param {string | null} unit */
 export function sizeOf(state, text, unit) {
   const apart = takenApart(text);
-  const size = apart && state.quantities[unitKey(apart.unit, unit)];
-  return size?.value === undefined || apart === null ? null : apart.number * size.value;
+  const one = apart && oneOf(state, apart.unit, unit);
+  return apart && one !== null ? apart.number * one : null;
 }
+
+/** How much one of a unit is in another, or null where it is not known. @param {State} state @param {string} written @param {string | null} unit */
+const oneOf = (state, written, unit) => (written === unit ? 1 : (state.quantities[unitKey(written, unit)]?.value ?? null));
 
 /** The geometric mean of the bounds, in the unit of the lower one. @param {State} state @param {{from: string, to: string}} range */
 function middle(state, { from, to }) {
@@ -84,24 +101,25 @@ function middle(state, { from, to }) {
 /** A size as text in the unit of another. @param {State} state @param {string} like @param {string | null} unit @param {number} size */
 function inUnitOf(state, like, unit, size) {
   const apart = takenApart(like);
-  const one = apart && state.quantities[unitKey(apart.unit, unit)]?.value;
+  const one = apart && oneOf(state, apart.unit, unit);
   return apart && one ? quantity(size / one, apart.unit) : like;
 }
 
-/** A decade to either side. @param {string} text */
+/** A decade to either side; of what is negative, also in size. @param {string} text */
 function decade(text) {
   const apart = takenApart(text);
-  if (apart === null || apart.number <= 0) return { from: text, to: text };
+  if (apart === null || apart.number === 0) return { from: text, to: text };
   return { from: quantity(apart.number / DECADE, apart.unit), to: quantity(apart.number * DECADE, apart.unit) };
 }
 
 /** @param {{store: Store, amount: Amount, removable?: boolean}} props */
 function AmountRow({ store, amount, removable = false }) {
   const state = store.get();
-  const { place, label, sentence, unit, text, range, free, set } = amount;
+  const { place, label, sentence, unit, text, range, free, own, set } = amount;
+  const [refused, setRefused] = useState("");
   const id = place.join(".");
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
-  const usable = size !== null && lower !== null && upper !== null && lower > 0 && upper > lower;
+  const usable = size !== null && lower !== null && upper !== null && lower * upper > 0 && Math.abs(upper) > Math.abs(lower);
   const problems = problemsAt(state, place);
   const gesture = `slide ${id}`;
   /** @param {Event} event */
@@ -111,12 +129,18 @@ function AmountRow({ store, amount, removable = false }) {
     if (!free && !(id in state.history.present.ranges)) store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
     store.change(set(inUnitOf(state, text, unit, valueAt(position, /** @type {number} */ (lower), /** @type {number} */ (upper)))), gesture);
   }
+  /** Another text; at a place that is known by its number alone, none without a number. @param {string} value */
+  function enter(value) {
+    const fits = !own || takenApart(value) !== null;
+    setRefused(fits ? "" : `Got "${value}"; expected a number, such as ${text}.`);
+    if (fits) store.change(set(value));
+  }
   return html`<div class=${`amount ${problems.length ? "wrong" : ""}`} data-place=${id} title=${sentence}>
     <label for=${`slider ${id}`}>${label}</label>
     <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} value=${usable ? positionOf(/** @type {number} */ (size), /** @type {number} */ (lower), /** @type {number} */ (upper)) : 0} disabled=${!usable} aria-valuetext=${text} onInput=${slide} onChange=${() => store.dispatch({ type: "rested" })} />
-    <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0} done=${(/** @type {string} */ value) => store.change(set(value))} />
+    <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0} done=${enter} />
     <${Bounds} store=${store} amount=${amount} removable=${removable} />
-    ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
+    ${[refused, ...problems.map((problem) => problem.sentence)].filter(Boolean).map((sentence) => html`<p class="problem" role="alert">${sentence}</p>`)}
   </div>`;
 }
 
@@ -125,6 +149,7 @@ function Bounds({ store, amount, removable }) {
   const { place, label, text, range, free } = amount;
   const name = place[1];
   const isElement = place[0] === "elements" && place.length === 2;
+  const judging = (store.get().about?.methods ?? []).find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
   /** @param {{from: string, to: string}} next */
   const setRange = (next) => (free ? store.change({ type: "placed", place, value: next }) : store.change({ type: "ranged", place: place.join("."), ...next }));
   return html`<details class="bounds">
@@ -133,7 +158,7 @@ function Bounds({ store, amount, removable }) {
       ${isElement &&
       html`<div class="row" role="group" aria-label=${`${label} is`}>
         <button type="button" class="chip" aria-pressed=${!free} onClick=${() => free && store.change({ type: "fixed", name, text })}>fixed</button>
-        <button type="button" class="chip" aria-pressed=${free} onClick=${() => !free && store.change({ type: "freed", name, ...range })}>free</button>
+        <button type="button" class="chip" aria-pressed=${free} onClick=${() => !free && store.change({ type: "freed", name, ...range, method: judging })}>free</button>
       </div>`}
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from} done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
       <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to} done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>
@@ -164,6 +189,14 @@ export function Entry({ id, label, text, wrong = false, done }) {
       setInside(false);
     }}
     onKeyDown=${(/** @type {KeyboardEvent} */ event) => (event.key === "Enter" ? finish() : event.key === "Escape" && setTyped(null))} />`;
+}
+
+/** The problems of the study that no field of the page tells. @param {State} state @returns {import("../api.js").Problem[]} */
+export function otherProblems(state) {
+  const { about, answers, history } = state;
+  const { study } = history.present;
+  const fields = [...Object.keys(study.elements ?? {}).map((name) => ["elements", name]), ...numbersOf(about, history.present).map(({ place }) => place)];
+  return (answers.check?.value?.problems ?? []).filter((/** @type {any} */ problem) => !fields.some((place) => place.every((key, level) => problem.place[level] === key)));
 }
 
 /** The problems of the study at a place, or below it. @param {State} state @param {string[]} place @returns {import("../api.js").Problem[]} */

@@ -19,7 +19,7 @@ import { freshName, names, parse, renamed } from "../network/algebra.js";
  *  | {type: "valued", layout: string, values: {[element: string]: string}}
  *  | {type: "valuedAll", values: Values}
  *  | {type: "ranged", place: string, from: string, to: string}
- *  | {type: "freed", name: string, from: string, to: string}
+ *  | {type: "freed", name: string, from: string, to: string, method?: string}
  *  | {type: "fixed", name: string, text: string}
  *  | {type: "drawn", text: string, added?: {[name: string]: ElementEntry}}
  *  | {type: "selected", layout: string, strut?: string | null}
@@ -48,13 +48,15 @@ const CHANGES = {
   }),
   valuedAll: (document, { values }) => ({ ...document, values: { ...document.values, ...values } }),
   ranged: (document, { place, from, to }) => ({ ...document, ranges: { ...document.ranges, [place]: { from, to } } }),
-  freed: (document, { name, from, to }) => {
+  freed: (document, { name, from, to, method }) => {
     const entry = document.study.elements?.[name];
     const text = typeof entry === "string" ? entry : null;
     const users = text === null ? [] : Object.keys(document.study.layouts ?? {});
     const values = { ...document.values };
     for (const layout of users) values[layout] = { ...values[layout], [name]: /** @type {string} */ (text) };
-    return { ...document, values, study: placed(document.study, ["elements", name], { from, to }) };
+    const { study } = document;
+    const searched = method === undefined || study.study?.optimise !== undefined ? study : placed(study, ["study", "optimise"], method); // what is free needs a method that chooses it
+    return { ...document, values, study: placed(searched, ["elements", name], { from, to }) };
   },
   fixed: (document, { name, text }) => {
     const entry = document.study.elements?.[name];
@@ -180,8 +182,23 @@ function elementRenamed(document, old, name) {
   const values = Object.fromEntries(Object.entries(document.values).map(([layout, of]) => [layout, keyRenamed(of, old, name)]));
   const settings = study.study && settingsRenamed(study.study, old, name);
   const elements = keyRenamed(study.elements ?? {}, old, name);
+  const vehicle = study.vehicle && networksRenamed(study.vehicle, old, name);
   const ranges = keyRenamed(document.ranges, `elements.${old}`, `elements.${name}`);
-  return { ...document, values, ranges, study: { ...study, elements, layouts, ...(settings && { study: settings }) } };
+  return { ...document, values, ranges, study: { ...study, elements, layouts, ...(vehicle && { vehicle }), ...(settings && { study: settings }) } };
+}
+
+const NETWORK = "network"; // the key under which a vehicle has networks of its own
+
+/** The networks in a table of a vehicle, and in the tables in it. @param {any} table @returns {string[]} */
+export function networksIn(table) {
+  if (table === null || typeof table !== "object") return [];
+  return Object.entries(table).flatMap(([key, inside]) => (key === NETWORK && typeof inside === "string" ? [inside] : networksIn(inside)));
+}
+
+/** A table of a vehicle in whose networks an element is called otherwise. @param {any} table @param {string} old @param {string} name @returns {any} */
+function networksRenamed(table, old, name) {
+  if (table === null || typeof table !== "object" || Array.isArray(table)) return table;
+  return Object.fromEntries(Object.entries(table).map(([key, inside]) => [key, key === NETWORK && typeof inside === "string" ? renamed(inside, old, name) : networksRenamed(inside, old, name)]));
 }
 
 /** @param {{[key: string]: any}} settings @param {string} old @param {string} name */

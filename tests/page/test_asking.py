@@ -1,0 +1,389 @@
+"""What a person may ask of the page: every number, other indices and limits, dropped files, the keyboard alone."""
+
+from __future__ import annotations
+
+import csv
+import json
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Visitor, wait_until
+
+import inerter as it
+from inerter.app.about import examples
+from inerter.app.designs import design_of
+from inerter.app.documents import study_from
+
+FIXED = """title = "All fixed"
+[vehicle]
+model = "quarter-car"
+sprung_mass = "181.75 kg"
+unsprung_mass = "25 kg"
+tyre_stiffness = "120 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "120 kN/m"
+c = "3 kN s/m"
+b = "100 kg"
+[layouts]
+S1 = "k | c"
+S3 = "k | c - b"
+[study]
+indices = ["J1"]
+"""
+
+
+def _open(visitor: Visitor, text: str, folder: Path) -> None:
+    study = folder / "study.toml"
+    study.write_text(text)
+    visitor.open(study)
+    visitor.page.wait_for_selector(".notice")
+    visitor.page.get_by_role("button", name="Close the message").click()
+    visitor.settled()
+
+
+def _downloaded(visitor: Visitor, name: str, folder: Path) -> Path:
+    with visitor.page.expect_download() as found:
+        visitor.page.get_by_text("Save", exact=True).click()
+        visitor.page.get_by_role("button", name=name).click()
+    visitor.page.keyboard.press("Escape")
+    found.value.save_as(folder / found.value.suggested_filename)
+    return folder / found.value.suggested_filename
+
+
+def _numbers(table: Any, *place: str) -> Iterator[str]:
+    """The places of all numbers in a table, with units or without."""
+    if isinstance(table, dict):
+        for key, inside in table.items():
+            yield from _numbers(inside, *place, key)
+    elif isinstance(table, int | float) or (isinstance(table, str) and table[:1] in "+-.0123456789"):
+        yield ".".join(place)
+
+
+_STEP = """each => {
+  each.value = String(Number(each.value) + 1);
+  each.dispatchEvent(new Event("input", { bubbles: true }));
+}"""
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", examples())
+def test_every_number_of_an_example_can_be_changed(name: str, visitor: Visitor) -> None:
+    """Each has a slider, an entry and bounds; a step of the slider, up or down, keeps sign and unit."""
+    page = visitor.page
+    written = tomllib.loads((EXAMPLES / f"{name}.toml").read_text())
+    visitor.open(EXAMPLES / f"{name}.toml")
+    page.wait_for_selector(f"text={name}.toml is open")
+    visitor.settled()
+    for table in page.locator(".values details:not(.bounds)").all():
+        table.evaluate("each => { each.open = true; }")
+    expected = [f"elements.{element}" for element in written["elements"]]
+    expected += [place for section in ("vehicle", "road") for place in _numbers(written.get(section, {}), section)]
+    assert sorted(page.eval_on_selector_all("[data-place]", "all => all.map(each => each.dataset.place)")) == sorted(
+        expected
+    )
+    for place in expected:
+        slider, entry = page.locator(f"[id='slider {place}']"), page.locator(f"[id='entry {place}']")
+        assert page.locator(f"[data-place='{place}'] details.bounds input").count() == 2, place
+        before = str(entry.get_attribute("title"))
+        if float(before.partition(" ")[0]) == 0.0:
+            continue  # has no logarithm, and can be typed
+        assert slider.is_enabled(), place
+        slider.evaluate(_STEP)
+        page.wait_for_function(
+            "([id, text]) => document.getElementById(id).title !== text", arg=[f"entry {place}", before]
+        )
+        number, _, unit = before.partition(" ")
+        after, _, same = str(entry.get_attribute("title")).partition(" ")
+        assert same == unit, (place, before, after)
+        assert 1.0 < float(after) / float(number) < 1.05, (place, before, after)
+
+
+@pytest.mark.campaign
+def test_a_lever_of_a_mechanism_is_moved(visitor: Visitor, tmp_path: Path) -> None:
+    """What has no unit, or is negative: the study that is downloaded has it, and the page has its numbers."""
+    page = visitor.page
+    visitor.open(EXAMPLES / "train.toml")
+    visitor.wait_for_text("k | c - b")
+    page.locator("details.table", has_text="struts").locator("summary").first.click()
+    for place, text in {"upper.pitch": "-9 m", "lower.bogie_rear": "0.5"}.items():
+        page.fill(f"[id='entry vehicle.struts.secondary_rear.{place}']", text)
+        page.keyboard.press("Enter")
+    page.fill("[id='entry vehicle.struts.secondary_rear.upper.body']", "a lot")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("text=expected a number, such as 1")
+    shown = visitor.values()
+    path = _downloaded(visitor, "This design, values fixed", tmp_path)
+    strut = tomllib.loads(path.read_text())["vehicle"]["struts"]["secondary_rear"]
+    assert strut["upper"] == {"body": 1, "pitch": "-9 m"}
+    assert strut["lower"] == {"bogie_rear": 0.5}
+    study = it.load_study(path)
+    (layout,) = study.layouts
+    for index, value in shown.items():
+        assert it.evaluate(study.design(layout), study.index(index), it.Norm()).value == value
+
+
+@pytest.mark.campaign
+def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) -> None:
+    """Of a study in which nothing was free, and which names no method."""
+    page = visitor.page
+    _open(visitor, FIXED, tmp_path)
+    before = visitor.values()
+    page.locator("[data-place='elements.c'] summary").click()
+    page.locator("[data-place='elements.c']").get_by_role("button", name="free").click()
+    visitor.settled()
+    assert page.locator(".problem").count() == 0
+    assert visitor.values() == before
+    page.get_by_role("button", name="Optimise").click()
+    page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
+    assert visitor.values()["J1"] < before["J1"]
+    path = _downloaded(visitor, "Study file", tmp_path)
+    assert tomllib.loads(path.read_text())["study"]["optimise"] == "norm"
+
+
+@pytest.mark.campaign
+def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.page
+    _open(
+        visitor,
+        FIXED.replace('"3 kN s/m"', '{ from = "100 N s/m", to = "100 kN s/m" }') + 'optimise = "norm"\n',
+        tmp_path,
+    )
+    page.get_by_text("Indices and limits").click()
+    page.get_by_role("group", name="Indices of the study").get_by_role("button", name="J3", exact=True).click()
+    page.wait_for_selector("td[data-index=J3]")
+    asked = page.locator(".asked")
+    for of, sense, value in (("suspension-travel", "at_most", "8 mm"), ("static-stiffness.strut", "at_least", "600 N")):
+        asked.locator("[name=of]").select_option(of)
+        asked.locator("[name=sense]").select_option(sense)
+        asked.locator("[name=value]").fill(value)
+        asked.get_by_role("button", name="Add").click()
+    page.wait_for_selector(".problems >> text=static-stiffness")
+    entry = page.get_by_label("static-stiffness strut at least", exact=True)
+    entry.fill("60 kN/m")
+    entry.press("Enter")
+    page.wait_for_function("() => document.querySelectorAll('.limits li').length === 2")
+    page.get_by_role("button", name="Optimise").click()
+    page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
+    page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
+    study = tomllib.loads(_downloaded(visitor, "Study file", tmp_path).read_text())["study"]
+    assert study["indices"] == ["J1", "J3"]
+    assert study["subject_to"] == {
+        "suspension-travel": {"at_most": "8 mm"},
+        "static-stiffness": {"strut": {"at_least": "60 kN/m"}},
+    }
+    for name in ("suspension-travel at most", "static-stiffness strut at least"):
+        page.get_by_role("button", name=f"Delete the limit: {name}").click()
+    page.wait_for_selector(".limits", state="detached")
+    assert "subject_to" not in tomllib.loads(_downloaded(visitor, "Study file", tmp_path).read_text())["study"]
+
+
+@pytest.mark.campaign
+def test_all_is_wrong_at_its_place_in_a_long_text(visitor: Visitor, tmp_path: Path) -> None:
+    """However long the text of a network is, all of it is seen, and the mark is under what is wrong."""
+    page = visitor.page
+    page.fill("#network-text", " | ".join(["(k - c)"] * 40 + ["c - - k"] + ["k"] * 10))
+    page.wait_for_selector(".marks u")
+    seen = page.evaluate(
+        """() => {
+          const text = document.getElementById("network-text");
+          const box = text.getBoundingClientRect();
+          const mark = document.querySelector(".marks u").getBoundingClientRect();
+          const beside = mark.left >= box.left && mark.right <= box.right;
+          const within = beside && mark.top >= box.top && mark.bottom <= box.bottom;
+          return { within, hidden: text.scrollHeight - text.clientHeight, lines: box.height / mark.height };
+        }"""
+    )
+    assert seen["within"]
+    assert seen["hidden"] <= 0
+    assert seen["lines"] > 5
+
+
+@pytest.mark.campaign
+def test_tables_and_link_hold_what_is_looked_at(visitor: Visitor, visitors: Any, tmp_path: Path) -> None:
+    page = visitor.page
+    page.click("#tab-history")
+    page.get_by_label("for [s]").fill("3")
+    page.keyboard.press("Enter")
+    page.select_option(".answers select >> nth=0", "statistical-linearisation")
+    visitor.settled()
+    shown = visitor.values()
+    for name, column in {"Frequency response (CSV)": "frequency", "On the road (CSV)": "time"}.items():
+        with _downloaded(visitor, name, tmp_path).open() as stream:
+            rows = list(csv.reader(stream))
+        assert any(column in head for head in rows[0]), name
+        assert len(rows) > 100, name
+    page.get_by_text("Link", exact=True).click()
+    page.wait_for_function("() => document.querySelector('#shared-link')?.value.includes('#state=')")
+    other = visitors(visitor.served, context=page.context).visit(page.input_value("#shared-link"))
+    other.page.wait_for_selector("#tab-history[aria-selected=true]")
+    assert other.page.get_by_label("for [s]").input_value() == "3"
+    assert other.page.input_value(".answers select >> nth=0") == "statistical-linearisation"
+    assert other.values() == shown
+
+
+def _drop(visitor: Visitor, path: Path) -> None:
+    """Drop a file or folder on the page, as the desktop does."""
+    session = visitor.page.context.new_cdp_session(visitor.page)
+    data = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
+    for kind in ("dragEnter", "dragOver", "drop"):
+        session.send("Input.dispatchDragEvent", {"type": kind, "x": 640, "y": 300, "data": data})
+
+
+@pytest.mark.campaign
+def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.page
+    study = tmp_path / "dropped.toml"
+    study.write_text(FIXED)
+    _drop(visitor, study)
+    page.wait_for_selector("text=dropped.toml is open")
+    assert page.input_value(".title") == "All fixed"
+
+    folder = tmp_path / "results"
+    (folder / "figures").mkdir(parents=True)
+    for number in range(150):  # more than a browser tells at once
+        (folder / f"a-{number}.svg").write_text("<svg/>")
+    (folder / "study.resolved.toml").write_text(FIXED.replace("All fixed", "From a folder"))
+    (folder / "summary.csv").write_text("layout,index\n")
+    _drop(visitor, folder)
+    page.wait_for_selector("text=study.resolved.toml is open")
+    assert page.input_value(".title") == "From a folder"
+
+    record = tmp_path / "noise.csv"
+    rows = (f"{i / 1000},{i % 7},{(i * i) % 11}" for i in range(400))
+    record.write_text("time [s],displacement [mm],force [N]\n" + "\n".join(rows) + "\n")
+    answers: list[Any] = []
+    page.on("response", lambda answer: answers.append(answer) if "/api/records" in answer.url else None)
+    _drop(visitor, record)
+    page.wait_for_selector("text=noise.csv was read.")
+    found = answers[0].json()
+    told = page.locator(".records .finding").all_inner_texts()
+    assert told == [each["sentence"] for each in found["findings"]]
+    page.wait_for_selector(".records .plot canvas")
+    assert page.locator(".records select option").all_inner_texts() == [each["name"] for each in found["channels"]]
+    page.get_by_role("button", name="Remove noise.csv").click()
+    page.wait_for_selector(".records .plot", state="detached")
+
+
+WALK = """() => {
+  const active = document.activeElement;
+  const drawn = active.matches(".element, .point");
+  const style = getComputedStyle(active.querySelector(".touch") ?? active);
+  const [kind, width] = drawn ? [style.stroke, style.strokeWidth] : [style.outlineStyle, style.outlineWidth];
+  const box = active.getBoundingClientRect();
+  active.dataset.walked = "yes";
+  return {
+    what: active === document.body ? "" : active.outerHTML.slice(0, 90),
+    seen: kind !== "none" && parseFloat(width) >= 2,
+    inside: box.bottom > 0 && box.top < innerHeight,
+  };
+}"""
+TABBABLE = """() => [
+  ...document.querySelectorAll("a[href], button, input, select, textarea, summary, [tabindex]"),
+].filter(each => each.tabIndex >= 0 && !each.disabled && each.checkVisibility() && !each.dataset.walked)
+  .map(each => each.outerHTML.slice(0, 90))"""
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("tab", ["response", "history", "compare", "tolerance", "work", "rig"])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_the_keyboard_reaches_all_and_is_nowhere_trapped(tab: str, backwards: bool, visitor: Visitor) -> None:
+    page = visitor.page
+    page.click(f"#tab-{tab}")
+    visitor.settled()
+    visitor.drawn()
+    page.evaluate("() => document.activeElement.blur()")
+    page.mouse.click(2, 400)
+    steps = []
+    for _ in range(200):
+        page.keyboard.press("Shift+Tab" if backwards else "Tab")
+        steps.append(page.evaluate(WALK))
+        if not page.evaluate(TABBABLE):
+            break
+    assert page.evaluate(TABBABLE) == []
+    assert [step["what"] for step in steps if step["what"] and not (step["seen"] and step["inside"])] == []
+
+
+@pytest.mark.campaign
+def test_escape_closes_a_menu_and_stays_at_it(visitor: Visitor) -> None:
+    page = visitor.page
+    for summary in (
+        "header details.menu:nth-of-type(1) > summary",
+        ".layouts details > summary",
+        "[data-place='elements.k'] summary",
+    ):
+        page.locator(summary).focus()
+        page.keyboard.press("Enter")
+        page.keyboard.press("Tab")
+        assert page.evaluate("() => document.activeElement.closest('.menu-body') !== null")
+        page.keyboard.press("Escape")
+        assert page.locator("details.menu[open], details.bounds[open]").count() == 0
+        assert page.evaluate("() => document.activeElement.tagName") == "SUMMARY"
+        page.keyboard.press("Tab")
+        page.keyboard.press("Shift+Tab")
+
+
+@pytest.mark.campaign
+def test_a_drawing_of_many_elements_is_laid_across_the_page(visitors: Callable[..., Visitor], served: Any) -> None:
+    """All of it is then seen at once, where the window is wide."""
+    visitor = visitors(served).visit()
+    page = visitor.page
+    page.fill("#network-text", " | ".join(["k - (c | b)"] * 13))
+    page.get_by_role("button", name="Across the page").click()
+    wait_until(lambda: page.locator(".network.across").count() == 1)
+    for _ in range(2):
+        hidden = page.evaluate(
+            "() => { const each = document.querySelector('.drawing'); return each.scrollWidth - each.clientWidth; }"
+        )
+        assert hidden <= 0
+        page.set_viewport_size({"width": 1920, "height": 1080})
+    assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["study"]["title"]
+
+
+@pytest.mark.campaign
+def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
+    """By the method that the page judges by: how much friction takes all of what an inerter brings."""
+    page = visitor.page
+    values = {'"k | c - b"': '"k | d - (b | f)"', '"3 kN s/m"': '"4981 N s/m"', '"100 kg"': '"328.72 kg"'}
+    study_text = FIXED.replace("[layouts]", 'd = "7353 N s/m"\nf = "10 N"\n[layouts]')
+    for before, after in values.items():
+        study_text = study_text.replace(before, after)
+    _open(visitor, study_text, tmp_path)
+    page.select_option(".answers select >> nth=0", "statistical-linearisation")
+    page.get_by_text("What it bears").click()
+    asked: list[Any] = []
+    page.on("request", lambda request: asked.append(request.post_data_json) if "panel/budget" in request.url else None)
+    page.locator(".budget").get_by_role("button", name="Find out").click()
+    page.wait_for_function(
+        "() => / is as good as S1/.test(document.querySelector('.budget [role=status]').textContent)"
+    )
+    (body,) = asked
+    study = study_from(body["study"])
+    found = it.budget(
+        design_of(study, "S3", {}).vehicle,
+        design_of(study, "S1", {}).vehicle,
+        study.index("J1"),
+        parameter="f",
+        method=it.StatisticalLinearisation(),
+    )
+    assert f"At f = {found.value:.5g} N, S3" in page.inner_text(".budget [role=status]")
+
+
+@pytest.mark.campaign
+def test_a_report_is_made_and_downloaded(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.page
+    _open(visitor, FIXED, tmp_path)
+    page.get_by_text("Save", exact=True).click()
+    page.get_by_role("button", name="Report: run the study").click()
+    job = page.locator(".job").first
+    page.wait_for_selector(".job[data-state=done]", timeout=120_000)
+    job.get_by_role("button", name="Files…").click()
+    with page.expect_download() as found:
+        job.get_by_role("button", name="report.html").click()
+    found.value.save_as(tmp_path / "report.html")
+    assert "All fixed" in (tmp_path / "report.html").read_text()

@@ -284,6 +284,26 @@ def test_a_reason_for_no_budget_is_told_once_for_all_indices(study, reasons):
     assert [told.count(title) for title in ("ride comfort", "dynamic tyre load", "dynamic load carrying")] == [1, 1, 1]
 
 
+@pytest.mark.parametrize(
+    ("at_most", "crossings", "told"),
+    [
+        (True, [20.0], "up to 20 kg"),
+        (True, [20.0, 70.0], "up to 20 kg"),
+        (True, [5.0, 20.0], "from 5 kg to 20 kg"),
+        (True, [5.0, 20.0, 70.0], "from 5 kg to 20 kg"),
+        (False, [20.0], "from 20 kg on"),
+        (False, [5.0, 20.0], "from 20 kg on"),
+        (False, [20.0, 70.0], "from 20 kg to 70 kg"),
+    ],
+)
+def test_a_budget_is_told_with_both_ends_of_the_range_that_it_is_the_end_of(study, at_most, crossings, told):
+    found = BudgetOutcome("S3", "J1", "b", "kg", "norm", at_most, 20.0, 0.0, (20.0, 20.0), crossings, "ok", "")
+    assert (
+        f"S3 is better than S1 {told} in ride comfort."
+        in answers(designs(), replace(study, budgets=("b",)), [found])[3]
+    )
+
+
 @pytest.mark.parametrize("rows", [1, 12, 13, 40])
 def test_long_tables_of_facts_may_go_on_on_the_next_sheet(study, tmp_path, rows):
     elements = {f"k{i}": it.Spring(1e3 + i) for i in range(rows)}

@@ -55,10 +55,14 @@ def _answer(found: BudgetOutcome, write: Writer) -> str:
 
 
 def end_of_range(found: BudgetOutcome, write: Writer) -> str:
-    """The end of the range; empty if there is none."""
+    """The end of the range, and its other end where the design is not better all the way; empty if there is none."""
     if found.value is None:
         return ""
     end = write(found.value, found.unit, found.standard_error or 0.0)
+    beyond = [c for c in found.crossings if (c < found.value if found.at_most else c > found.value)]
+    if beyond:
+        other = write(max(beyond) if found.at_most else min(beyond), found.unit, float("nan"))
+        return f"from {other} to {end}" if found.at_most else f"from {end} to {other}"
     return f"up to {end}" if found.at_most else f"from {end} on"
 
 

@@ -228,7 +228,7 @@ def together(text: str) -> str:
     r"""Text in which numbers stay on one line with their units.
 
     >>> together("at most 400 N of 1 of 2").split(" ")
-    ['at', 'most', '400\\xa0N', 'of', '1', 'of', '2']
+    ['at', 'most', '400\xa0N', 'of', '1', 'of', '2']
     """
     return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
 

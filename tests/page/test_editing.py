@@ -48,6 +48,19 @@ def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, 
 
 
 @pytest.mark.campaign
+def test_what_is_pressed_is_about_the_newest_however_late_the_screen_is(visitor: Any) -> None:
+    page = visitor.page
+    visitor.settled()
+    row = page.locator("[data-place='elements.k'] details.bounds")
+    row.locator("summary").click()
+    page.evaluate("() => { window.requestAnimationFrame = () => 0; }")  # a frame that does not come
+    row.get_by_role("button", name="free").click()
+    with page.expect_request("**/api/panel/optimise") as asked:
+        page.get_by_role("button", name="Optimise").click()
+    assert set(asked.value.post_data_json["study"]["elements"]["k"]) == {"from", "to"}
+
+
+@pytest.mark.campaign
 def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     before = visitor.text

@@ -186,9 +186,9 @@ def test_a_long_sweep_is_stopped_and_survives_a_reload(visitor: Visitor) -> None
     page.click("#tab-work")
     page.wait_for_selector(".job[data-state=running]")
     page.locator(".job").get_by_role("button", name="Stop").click()
-    page.wait_for_selector(".job[data-state=stopped]")
-    page.locator(".job").get_by_role("button", name="Forget").click()
-    page.wait_for_selector(".job", state="detached")
+    stopped = page.locator(".job[data-state=stopped]")
+    stopped.get_by_role("button", name="Forget").click()
+    stopped.wait_for(state="detached")
 
 
 @pytest.mark.campaign

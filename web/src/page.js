@@ -31,7 +31,15 @@ const TABS = [
 /** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
 export function Page({ store, api, enter }) {
   const [, setState] = useState(store.get());
-  useEffect(() => store.subscribe(inFrames(() => setState(store.get()))), [store]);
+  useEffect(() => {
+    const { soon, now } = inFrames(() => setState(store.get()));
+    for (const act of ACTS) addEventListener(act, now, { capture: true });
+    const leave = store.subscribe(soon);
+    return () => {
+      leave();
+      for (const act of ACTS) removeEventListener(act, now, { capture: true });
+    };
+  }, [store]);
   useEffect(() => listen(store, api), [store, api]);
   const state = store.get();
   const { study } = state.history.present;
@@ -56,17 +64,22 @@ export function Page({ store, api, enter }) {
         </main>`}`;
 }
 
-/** At most one call a frame, so that sixty steps of a slider draw what a screen can show. @param {() => void} told */
+const ACTS = ["keydown", "click", "change", "submit"];
+
+/** At most one call a frame, so that sixty steps of a slider draw what a screen can show. What a key or a button does is about what is
+ * drawn: a call that is due comes before it, `now`, however late the frame is. @param {() => void} told */
 function inFrames(told) {
   let due = false;
-  return () => {
-    if (due) return;
-    due = true;
-    requestAnimationFrame(() => {
-      due = false;
-      told();
-    });
+  const now = () => {
+    if (!due) return;
+    due = false;
+    told();
   };
+  const soon = () => {
+    if (!due) requestAnimationFrame(now);
+    due = true;
+  };
+  return { soon, now };
 }
 
 /** @param {Store} store @param {Api} api */

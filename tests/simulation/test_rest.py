@@ -175,7 +175,7 @@ def test_springs_at_rest_are_exact(decades: int) -> None:
     assert strained > 50
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), range(4)))
+@pytest.mark.parametrize("seed", sampled(range(12), [*range(4), 5]))
 def test_a_turned_rig_moves_the_same(seed: int) -> None:
     """Through the whole motion, from a table that sets off with a velocity."""
     network, rng = device(300 + seed)

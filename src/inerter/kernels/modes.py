@@ -93,8 +93,16 @@ def balance_of(mechanics: Mechanics, state: Ints, rates: Rates, locks: Locks, ba
     spring_rate = product(inner(bases.sprung, block(sides, na, nv, na, n)), rates.positions)
     add(spring_rate, 0, nv, inner(bases.sprung, block(sides, na, nv, n, n + nr)), 1.0)
     on_w = block(sides, na, nv, 0, sides.shape[1])
-    velocity, road_velocity = inner(bases.inertial, locks.on_a), inner(bases.inertial, locks.on_z)
+    velocity, road_velocity = across(bases.inertial, locks.on_a), across(bases.inertial, locks.on_z)
     return Balance(sides, on_w, spring_rate, velocity, road_velocity)
+
+
+@part(typed=True, apart=True)
+def across(forces: Matrix, locks: Matrix) -> Matrix:
+    """Velocities across locks, without their rounding: at rest nothing else tells it from a motion."""
+    found = inner(forces, locks)
+    drop_rounding(found, inner(sizes_of(forces), sizes_of(locks)))
+    return found
 
 
 @part(typed=True, apart=True)

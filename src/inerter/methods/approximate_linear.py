@@ -314,7 +314,7 @@ def _inertia_felt(mechanism: Mechanism, name: str) -> float:
     """Inertia that resists a force where it acts [kg]."""
     if mechanism.ground_moves and name == GROUND_ACCELERATION:
         return 1.0  # an acceleration is a force for each kg
-    inertia = {coordinate.name: coordinate.inertia for coordinate in mechanism.coordinates}
+    inertia = {coordinate.name: coordinate.element.coefficient for coordinate in mechanism.coordinates}
     (port,) = (force.port for force in mechanism.forces if force.name == name)
     return 1.0 / sum(lever**2 / inertia[coordinate] for coordinate, lever in port.items() if lever)
 

@@ -179,7 +179,7 @@ def _best(
     held = held_at(problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value))
     estimate = over_linear.first if over_linear else _confirmed(estimate_of(design, index, method), best.value)
     if not best.excess <= kept:
-        estimate = replace(estimate, status=infeasible(held, parameters, _units(vehicle)))
+        estimate = replace(estimate, status=infeasible(held, parameters, vehicle.mechanism().units()))
     return Optimum(
         estimate=estimate,
         parameters=parameters,
@@ -334,12 +334,6 @@ def _active_bounds(free: dict[str, Free], parameters: dict[str, float]) -> dict[
         elif place > 1.0 - _AT_BOUND:
             active[name] = "upper"
     return active
-
-
-def _units(vehicle: Vehicle) -> dict[str, str]:
-    """The unit of each free value."""
-    elements = [element for mount in vehicle.mechanism().mounts() for element in mount.network.elements()]
-    return {str(element.value.name): element.unit for element in elements if isinstance(element.value, Free)}
 
 
 def _confirmed(estimate: Estimate, searched: float) -> Estimate:

@@ -34,8 +34,9 @@ class Design:
 
     def told(self, study: Study) -> dict[str, Any]:
         """What an answer says of it."""
+        units = study.free_units
         values = {
-            name: {"value": value, "unit": study.elements[name].unit, "text": f"{value!r} {study.elements[name].unit}"}
+            name: {"value": value, "unit": units[name], "text": f"{value!r} {units[name]}"}
             for name, value in self.values.items()
         }
         return {"name": self.name, "layout": self.layout, "values": values}
@@ -48,12 +49,13 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
     `UnitError` for a text that is no quantity of the element.
     """
     vehicle = study.design(layout)
+    units = study.free_units
     for key in values:
-        if key not in study.elements:
-            known = ", ".join(study.elements)
+        if key not in study.elements and key not in units:
+            known = ", ".join(dict.fromkeys([*study.elements, *units]))
             raise DesignError(f"Got a value of {shown(key)}, which is not in [elements], where there are {known}.")
     chosen = {
-        key: _number(key, values[key], study.elements[key].unit) if key in values else _middle(free)
+        key: _number(key, values[key], units[key]) if key in values else _middle(free)
         for key, free in vehicle.free_values().items()
     }
     return Design(name or layout, layout, vehicle.with_values(chosen), chosen)

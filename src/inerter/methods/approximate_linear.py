@@ -22,7 +22,8 @@ from inerter.methods.counterpart import Counterpart, counterpart, has_play, with
 from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
-from inerter.methods.method import Estimate, Objective, Sees
+from inerter.methods.method import Estimate, Sees
+from inerter.methods.objective import Objective
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Differentiable, Estimate, Method, Objective, Sees, check_request
+from inerter.methods.method import Estimate, Method, Sees, check_request
 from inerter.methods.norm import Norm
+from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.optimisation.constrained import KEPT, KEPT_COSTLY, Limited, searches, trust_region_within

@@ -23,12 +23,21 @@ export function shownDesigns(document) {
   return design.layout === baseline.layout ? [design] : [design, baseline];
 }
 
-/** What stands in the comparison: a layout of the study, or a design that was kept. @param {Document} document @param {string} key */
-export function comparedDesign(document, key) {
-  const kept = document.designs.find(({ name }) => `kept ${name}` === key);
-  if (kept) return { key, name: kept.name, study: kept.study, design: { ...designOf({ ...document, ...kept }), name: kept.name }, values: kept.values };
-  const layout = key.replace(/^layout /, "");
-  return { key, name: layout, study: document.study, design: designOf({ ...document, layout }), values: document.values };
+/** What can stand in the comparison: the layouts of the study, and the designs that were kept.
+ * @typedef {{key: string, name: string, kept: boolean, study: import("./state/document.js").Study, design: {layout: string, values: {[element: string]: string}, name: string}}} Choice */
+
+/** @param {Document} document @returns {Choice[]} */
+export function choicesOf(document) {
+  const layouts = Object.keys(document.study.layouts ?? {}).map((layout) => ({ key: `layout ${layout}`, name: layout, kept: false, study: document.study, design: designOf({ ...document, layout }) }));
+  const designs = document.designs.map((design) => ({ key: `kept ${design.name}`, name: design.name, kept: true, study: design.study, design: { ...designOf({ ...document, ...design }), name: design.name } }));
+  return [...layouts, ...designs];
+}
+
+/** What stands in the comparison, first what the others are compared with. @param {State} state @returns {Choice[]} */
+export function comparedOf({ view, history }) {
+  const choices = choicesOf(history.present);
+  const chosen = view.compared.flatMap((key) => choices.filter((choice) => choice.key === key));
+  return [...chosen.filter(({ key }) => key === view.against), ...chosen.filter(({ key }) => key !== view.against)];
 }
 
 /** @type {((state: State, document: Document) => Question[])[]} */
@@ -39,7 +48,7 @@ const ROWS = [
   (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", body: about(document) }] : []),
   (state, document) => (state.view.tab === "history" ? [historyOf(state, document)] : []),
   (state, document) => (state.view.tab === "history" ? [{ panel: "mechanism", path: "panel/mechanism", body: { study: document.study, design: designOf(document) } }] : []),
-  (state, document) => (state.view.tab === "compare" ? comparisons(state, document) : []),
+  (state) => (state.view.tab === "compare" ? comparison(state) : []),
   (state, document) => unitsOf(state, document),
 ];
 
@@ -62,12 +71,12 @@ function historyOf({ view }, document) {
   return { panel: "history", path: "panel/history", body };
 }
 
-/** @param {State} state @param {Document} document @returns {Question[]} */
-function comparisons({ view }, document) {
-  return view.compared.map((key, i) => {
-    const { study, design } = comparedDesign(document, key);
-    return { panel: `compare.${i}`, path: "panel/indices", body: { study, designs: [design], methods: [view.method] } };
-  });
+/** @param {State} state @returns {Question[]} */
+function comparison(state) {
+  const compared = comparedOf(state);
+  if (compared.length < 2) return [];
+  const designs = compared.map(({ kept, study, design }) => (kept ? { ...design, study } : design));
+  return [{ panel: "compare", path: "panel/compare", body: { study: state.history.present.study, designs, methods: [state.view.method] } }];
 }
 
 /** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Question[]} */

@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { after, empty, namesIn, textOf } from "../src/state/document.js";
-import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief } from "../src/state/scale.js";
+import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated } from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited, limitsIn } from "../src/panels/asked.js";
-import { namesOfVehicle, numbersOf, questions } from "../src/questions.js";
+import { comparedOf, namesOfVehicle, numbersOf, questions } from "../src/questions.js";
 
 const STUDY = {
   title: "car",
@@ -218,4 +218,26 @@ test("a slider of what is negative keeps the sign, and the ends of its scale", (
     assert.equal(positionOf(upper, lower, upper), STEPS);
     for (let position = 0; position <= STEPS; position += 40) assert.equal(positionOf(valueAt(position, lower, upper), lower, upper), position);
   }
+});
+
+test("a value has as many places as its error tells", () => {
+  const written = [[2.50911, 0.00047], [503.88, 0.0883], [16.0237, 0.0137], [-0.29, 0.0071], [6.6506e-5, 2.1e-9], [1.2e7, 3e5], [0, 0.02], [4, 30]];
+  const expected = ["2.5091 ± 0.0005", "503.88 ± 0.09", "16.024 ± 0.014", "−0.290 ± 0.007", "6.6506·10⁻⁵ ± 0.0002·10⁻⁵", "1.20·10⁷ ± 0.03·10⁷", "0.00 ± 0.02", "4 ± 30"];
+  assert.deepEqual(written.map(([value, error]) => estimated(value, error).join(" ± ")), expected);
+});
+
+test("what is compared stands first beside what it is compared with, and goes with its layout", () => {
+  const store = createStore();
+  store.change({ type: "opened", study: STUDY });
+  store.change({ type: "designKept", name: "mine" });
+  const compared = ["layout S1", "layout S2", "kept mine", "layout S9"];
+  store.dispatch({ type: "viewed", view: { tab: "compare", compared } });
+  const keys = () => comparedOf(store.get()).map(({ key }) => key);
+  assert.deepEqual(keys(), ["layout S1", "layout S2", "kept mine"]);
+  store.dispatch({ type: "viewed", view: { against: "kept mine" } });
+  assert.deepEqual(keys(), ["kept mine", "layout S1", "layout S2"]);
+  const { designs } = questions(store.get()).find(({ panel }) => panel === "compare")?.body;
+  assert.deepEqual(designs.map((/** @type {any} */ { study }) => study !== undefined), [true, false, false]);
+  store.change({ type: "designRemoved", name: "mine" });
+  assert.deepEqual(keys(), ["layout S1", "layout S2"]);
 });

@@ -41,7 +41,7 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
     names = body.get("outputs") or main_outputs(mechanism)
     shaded = _shaded(run)
     return {
-        **design.told(study),
+        **design.told(),
         "signals": [_drawn(run, name) for name in names],
         "motion": _motion(run, mechanism),
         "shaded": shaded,

@@ -3,7 +3,7 @@
 import { kindOf } from "../kinds.js";
 import { baselineOf, designOf } from "../questions.js";
 import { namesIn } from "../state/document.js";
-import { shown } from "../state/scale.js";
+import { estimated, shown } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { AskedPanel } from "./asked.js";
@@ -65,29 +65,31 @@ function Indices({ value, layout, baseline, stale }) {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
         <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span> <${Notes} result=${result} /></th>
-        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}</td>
-        ${!alone && html`<td class="number">${reference ? number(reference) : "–"}</td><td class=${`number ${better(result.improvement_percent)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}</td>`}
+        <td class="number" data-index=${result.index} data-value=${result.value}><${Measured} result=${result} /></td>
+        ${!alone && html`<td class="number">${reference ? html`<${Measured} result=${reference} />` : "–"}</td><td class=${`number ${better(result)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
       </tr>`;
     })}</tbody>
   </table></div>`;
 }
 
-/** A value with its standard error. @param {{value: any, standard_error?: any}} result */
-export function number({ value, standard_error }) {
-  const text = typeof value === "string" ? value.replace("inf", "∞") : shown(value);
-  return typeof standard_error === "number" && standard_error > 0 ? `${text} ± ${shown(standard_error, 2)}` : text;
+/** A value, and below it its standard error. @param {{result: {value: any, standard_error?: any}}} props */
+export function Measured({ result: { value, standard_error: error } }) {
+  if (typeof value === "string") return html`${value.replace("inf", "∞")}`;
+  if (typeof error !== "number" || !(error > 0)) return html`${shown(value)}`;
+  const [number, scatter] = estimated(value, error);
+  return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 
 /** @param {number | null | undefined} value @param {number | null} [error] */
 export function percent(value, error) {
   if (value === null || value === undefined) return "–";
+  if (error) return `${estimated(value, error).join(" ± ")} %`;
   const size = Math.abs(value);
-  const text = `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
-  return error ? `${text} ± ${shown(error, 2)}` : text;
+  return `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
 }
 
-/** @param {number | null | undefined} value */
-const better = (value) => (typeof value !== "number" || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
+/** @param {{improvement_percent?: number | null, tie?: boolean | null}} result */
+const better = ({ improvement_percent: value, tie }) => (typeof value !== "number" || tie || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
 
 /** @param {{result: any}} props */
 function Notes({ result }) {

@@ -1,5 +1,6 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
+import { judging } from "./methods.js";
 import { names, parse } from "./network/algebra.js";
 import { isRange, networksIn, strutsOf, textOf } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
@@ -44,7 +45,7 @@ export function comparedOf({ view, history }) {
 const ROWS = [
   (_, document) => [{ panel: "network", path: "network/parse", body: { text: textOf(document), elements: document.study.elements ?? {} } }],
   (_, { study }) => [{ panel: "check", path: "study/check", body: { study } }],
-  (state, document) => [{ panel: "indices", path: "panel/indices", body: { ...about(document), methods: [state.view.method] } }],
+  (state, document) => [{ panel: "indices", path: "panel/indices", body: { ...about(document), methods: methodNames(state) } }],
   (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", body: about(document) }] : []),
   (state, document) => (state.view.tab === "history" ? [historyOf(state, document)] : []),
   (state, document) => (state.view.tab === "history" ? [{ panel: "mechanism", path: "panel/mechanism", body: { study: document.study, design: designOf(document) } }] : []),
@@ -62,6 +63,9 @@ export function questions(state) {
 /** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
 export const bodyOf = (state, panel) => questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
 
+/** The method by which the page judges; none where the server has told of none, and then those of the study. @param {State} state */
+const methodNames = (state) => [judging(state)?.name ?? []].flat();
+
 /** @param {Document} document */
 const about = (document) => ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
 
@@ -76,7 +80,7 @@ function comparison(state) {
   const compared = comparedOf(state);
   if (compared.length < 2) return [];
   const designs = compared.map(({ kept, study, design }) => (kept ? { ...design, study } : design));
-  return [{ panel: "compare", path: "panel/compare", body: { study: state.history.present.study, designs, methods: [state.view.method] } }];
+  return [{ panel: "compare", path: "panel/compare", body: { study: state.history.present.study, designs, methods: methodNames(state) } }];
 }
 
 /** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Question[]} */

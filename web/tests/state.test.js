@@ -4,6 +4,7 @@ import { after, empty, namesIn, textOf } from "../src/state/document.js";
 import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated } from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited, limitsIn } from "../src/panels/asked.js";
+import { judging, quickMethod } from "../src/methods.js";
 import { comparedOf, namesOfVehicle, numbersOf, questions } from "../src/questions.js";
 
 const STUDY = {
@@ -240,4 +241,12 @@ test("what is compared stands first beside what it is compared with, and goes wi
   assert.deepEqual(designs.map((/** @type {any} */ { study }) => study !== undefined), [true, false, false]);
   store.change({ type: "designRemoved", name: "mine" });
   assert.deepEqual(keys(), ["layout S1", "layout S2"]);
+});
+
+test("methods are told apart by their rows, whatever they are called", () => {
+  const row = (/** @type {string} */ name, /** @type {any} */ sees, searches = true) => ({ name, sees, searches, averages: false });
+  const state = { ...initial(), about: { ...ABOUT, methods: [row("first", "both"), row("looks on", "neither", false), row("quick", "neither")] } };
+  const judged = (/** @type {string} */ method) => judging({ ...state, view: { ...state.view, method } })?.name;
+  assert.deepEqual([quickMethod(state)?.name, judged(""), judged("first"), judged("of another version")], ["quick", "quick", "first", "quick"]);
+  assert.equal(quickMethod(initial()), undefined);
 });

@@ -1,6 +1,7 @@
 // The indices of the strut beside the baseline, and what may be done about them at once.
 
 import { kindOf } from "../kinds.js";
+import { isQuick, judging, methodsOf, quickMethod } from "../methods.js";
 import { baselineOf, designOf } from "../questions.js";
 import { namesIn } from "../state/document.js";
 import { estimated, shown } from "../state/scale.js";
@@ -19,14 +20,13 @@ export function AnswersPanel({ store, api }) {
   const { value, sentence, waiting } = state.answers.indices ?? {};
   const document = state.history.present;
   const baseline = baselineOf(document).layout;
-  const methods = state.about?.methods ?? [];
   const problems = state.answers.check?.value?.problems ?? [];
   useShown("indices", state);
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${waiting === true}>
     <h2 id="answers-title">Answers</h2>
     <div class="row">
-      <label>Judged <select value=${state.view.method} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
-        ${methods.map((/** @type {any} */ method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
+      <label>Judged <select value=${judging(state)?.name} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
+        ${methodsOf(state).map((method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
       </select></label>
     </div>
     ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
@@ -40,7 +40,7 @@ export function AnswersPanel({ store, api }) {
   </section>`;
 }
 
-/** @param {{name: string, words?: string, sees: string}} method */
+/** @param {import("../methods.js").Method} method */
 export function methodTitle({ name, sees }) {
   const words = { neither: "without friction and gaps", friction: "with friction", both: "with friction and gaps" }[sees] ?? "";
   return `${words || name} (${name.replaceAll("-", " ")})`;
@@ -116,15 +116,15 @@ function Optimise({ store, api, indices }) {
   const { study, layout } = state.history.present;
   const [index, setIndex] = useState("");
   const [told, setTold] = useState("");
-  const searching = (state.about?.methods ?? []).filter((/** @type {any} */ method) => method.searches);
   const chosen = indices.some(({ symbol }) => symbol === index) ? index : indices[0]?.symbol;
-  const method = searching.some((/** @type {any} */ { name }) => name === state.view.method) ? state.view.method : "norm";
-  if (!chosen) return null;
+  const here = judging(state);
+  const method = here?.searches ? here : quickMethod(state);
+  if (!chosen || !method) return null;
   return html`<form class="row optimise" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const all = /** @type {SubmitEvent} */ (event).submitter?.getAttribute("value") === "all";
     setTold("Searching…");
-    setTold(await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method }));
+    setTold(await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method: method.name }));
   }}>
     <label>Best values for <select name="index" value=${chosen} onChange=${(/** @type {Event} */ event) => setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
       ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
@@ -161,9 +161,9 @@ function Budget({ store, api, indices }) {
 }
 
 /** The method by which the page judges, where it sees what a budget is about; else that of the study. @param {State} state */
-function seeing({ about, view }) {
-  const method = about?.methods?.find((/** @type {any} */ { name }) => name === view.method);
-  return !method || method.sees === "neither" ? {} : { method: view.method };
+function seeing(state) {
+  const method = judging(state);
+  return !method || isQuick(method) ? {} : { method: method.name };
 }
 
 /** @param {any} found @param {string} layout @param {string} baseline */

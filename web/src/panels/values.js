@@ -5,6 +5,7 @@ import { namesOfVehicle, numbersOf, unitKey, valueAtPlace } from "../questions.j
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { kindOf } from "../kinds.js";
+import { quickMethod } from "../methods.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../state/store.js").State} State */
@@ -149,7 +150,7 @@ function Bounds({ store, amount, removable }) {
   const { place, label, text, range, free } = amount;
   const name = place[1];
   const isElement = place[0] === "elements" && place.length === 2;
-  const judging = (store.get().about?.methods ?? []).find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
+  const judging = quickMethod(store.get())?.name;
   /** @param {{from: string, to: string}} next */
   const setRange = (next) => (free ? store.change({ type: "placed", place, value: next }) : store.change({ type: "ranged", place: place.join("."), ...next }));
   return html`<details class="bounds">

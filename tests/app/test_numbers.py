@@ -21,7 +21,10 @@ from inerter.app.answers import answered, first
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
 from inerter.app.fixed import fixed
+from inerter.figures.simulation import draw_simulation
 from inerter.files.common.toml import as_toml
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.running import run_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.results import dataset
 from inerter.report.study_data import as_text
@@ -328,6 +331,25 @@ def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_pa
 def test_pictures(client: TestClient, kind: str) -> None:
     body = {"kind": kind, "study": DOCUMENT, "designs": [{"layout": "S1"}, {"layout": "S3"}]}
     assert client.post("/api/figure", json=body).content.startswith(b"<?xml")
+
+
+@pytest.mark.parametrize("seed", [0, pytest.param(5, marks=pytest.mark.campaign)])
+def test_a_picture_of_the_motion_is_that_of_a_simulation_file(client: TestClient, tmp_path: Path, seed: int) -> None:
+    """The file that says the same, drawn by the command line's functions; friction sticks in it."""
+    document = {**changed(elements={"c": "3 kN s/m", "b": "60 kg", "f": "200 N"}), "study": {"indices": ["J1"]}}
+    asked = {"signal": {"kind": "multisine", "seed": seed}, "simulation": {"layout": "S3", "duration": "2 s"}}
+    asked["simulation"]["step"] = "0.5 ms"
+    file = tmp_path / "motion.toml"
+    file.write_text(as_toml({**{key: each for key, each in document.items() if key != "study"}, **asked}))
+    found = run_simulation(load_simulation(file), tmp_path / "results")
+    draw_simulation(found, tmp_path / "drawn")
+    assert found.run.intervals("f", "stick")
+    body = {"study": document, "kind": "history", "designs": [{"layout": "S3"}], "duration": 2.0, "seed": seed}
+    for form in ("svg", "png"):
+        answer = client.post("/api/figure", json={**body, "format": form})
+        assert answer.content == (tmp_path / "drawn" / f"simulation.{form}").read_bytes()
+    several = client.post("/api/figure", json={**body, "designs": [{"layout": "S1"}, {"layout": "S3"}]})
+    assert (several.status_code, "single design" in several.json()["sentence"]) == (400, True)
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)

@@ -129,6 +129,9 @@ class FigureRequest(OfDesigns):
 
     kind: Name
     format: Name = "svg"
+    duration: Annotated[Number, Field(gt=0.0, description="[s] of the motion")] | None = None
+    step: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
+    seed: Annotated[int, Field(ge=0)] = 0
 
 
 class ExportRequest(Body):

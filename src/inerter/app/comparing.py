@@ -14,7 +14,7 @@ from inerter.app.kinds import Tell
 from inerter.app.valued import limits_at, valued
 from inerter.errors import DesignError
 from inerter.files.study.cases import FAILURES
-from inerter.files.study.places import element_at, place_of, places, with_numbers
+from inerter.files.study.places import element_at, place_of, places
 from inerter.files.study.study import Study, elements_used
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Estimate
@@ -124,10 +124,9 @@ def _put(study: Study, document: object) -> Study:
 
 def _numbers(design: Design) -> dict[str, str]:
     """What a design is made of: the numbers of its elements and of its vehicle, by what they are."""
-    here = with_numbers(design.study, [(place_of(name), value) for name, value in design.values.items()])
-    used = {name for name, layouts in elements_used(here).items() if design.layout in layouts}
+    used = {name for name, layouts in elements_used(design.fixed).items() if design.layout in layouts}
     found = {}
-    for label, number in places(here).items():
+    for label, number in places(design.fixed).items():
         place = place_of(label)
         if isinstance(number.value, int | float) and (place.section == _VEHICLE or element_at(place) in used):
             found[number.words] = format_quantity(number.value, number.unit, digits=_DIGITS)

@@ -9,6 +9,7 @@ from math import isfinite, sqrt
 from typing import Any
 
 from inerter.errors import DesignError
+from inerter.files.study.places import place_of, with_numbers
 from inerter.files.study.study import Study
 from inerter.methods.asking import Asked
 from inerter.networks.elements import Free
@@ -33,6 +34,11 @@ class Design:
     def mechanism(self) -> Mechanism:
         """What analysis takes."""
         return self.vehicle.mechanism()
+
+    @cached_property
+    def fixed(self) -> Study:
+        """Its study with these values in the place of what was free."""
+        return with_numbers(self.study, [(place_of(name), value) for name, value in self.values.items()])
 
     def asked(self, index: str) -> Asked:
         """What is asked of it for an index of its study."""

@@ -75,6 +75,9 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         done[0] = count
         tell(count, total, f"{last.layout} {last.index}" if last else "")
 
+    def preparing(count: int, total: int) -> None:
+        tell(0, 0, f"preparing {count} of {total}")
+
     def compiling(title: str, number: int, total: int) -> None:
         with suppress(Stopped):  # other threads tell this too; the next design will stop
             tell(0, 0, f"compiling kernels {number} of {total}: {title}")
@@ -86,6 +89,7 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         jobs=max((os.cpu_count() or 2) - 1, 1),
         progress=told,
         compiling=compiling,
+        preparing=preparing,
         finish=show,
     )
     return json.loads("".join(as_text(result)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -198,6 +198,11 @@ class Study:
         elements = {name: e.unit for name, e in self.elements.items() if name in used and isinstance(e.value, Free)}
         own = fields_of(VEHICLES[self.model]) if self.model in VEHICLES else ()
         return elements | {f.key: f.unit for f in own if isinstance(self.vehicle[f.key], Free)}
+
+    def with_values(self, values: Mapping[str, float]) -> Study:
+        """The study with these numbers in the place of free values, by their names."""
+        sections = ((name, "elements" if name in self.elements else "vehicle") for name in values)
+        return with_numbers(self, [(Place(section, name), values[name]) for name, section in sections])
 
     def resolved(self) -> dict[str, Any]:
         """The study as a study file says it: plain tables, every default filled in, every quantity in SI units.

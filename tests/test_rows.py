@@ -22,7 +22,7 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved
 from inerter.indices.registry import amplitude_of, index_choices, index_settings
-from inerter.methods.method import Differentiable
+from inerter.methods.objective import Differentiable
 from inerter.methods.registry import averages, with_gradients
 from inerter.report.question import vehicle_rows
 from inerter.rows import Rows, made_of_rows

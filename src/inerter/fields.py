@@ -25,6 +25,7 @@ class Field:
     key: str = ""  # in files, if that is not the name
     words: str = ""  # to go before "of ...", if that is not the name
     default: float | None = None  # in `unit`
+    may_be_free: bool = False  # whether an optimiser may choose it
 
     @property
     def in_words(self) -> str:
@@ -44,19 +45,23 @@ class TextChoice:
     needed: bool = False  # whether it must be given
 
 
-def quantity(unit: str, sentence: str, example: str, *, key: str = "", words: str = "") -> Mapping[str, Any]:
+def quantity(
+    unit: str, sentence: str, example: str, *, key: str = "", words: str = "", may_be_free: bool = False
+) -> Mapping[str, Any]:
     """The metadata of a dataclass field that is a positive quantity, in `unit`.
 
     `example` is a value with its unit, for messages. In files it has the name of the field or this `key`, and in
-    sentences these `words` stand for it.
+    sentences these `words` stand for it. One that `may_be_free` is the mass of a coordinate or the value of an element
+    of the mechanism as it stands, so that an optimiser may choose it.
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
     ...     mass: float = dataclasses.field(metadata=quantity("kg", "With its tyre.", "25 kg"))
     >>> fields_of(Wheel)
-    (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words='', default=None),)
+    (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words='', default=None,
+    may_be_free=False),)
     """
-    return {_QUANTITY: Field("", unit, sentence, example, key, words)}
+    return {_QUANTITY: Field("", unit, sentence, example, key, words, may_be_free=may_be_free)}
 
 
 def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:

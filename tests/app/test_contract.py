@@ -20,6 +20,7 @@ from inerter.app.documents import problems
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.app.requests import ENDPOINTS
+from inerter.methods.registry import METHODS
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.networks.parser import network, parsed
 from inerter.units import parse_quantity
@@ -304,3 +305,10 @@ def takes(document: dict[str, Any], place: str, value: float, unit: str, **_: An
     """Whether a sweep of this place is accepted."""
     sweep = {place: {"from": f"{0.9 * value!r} {unit}", "to": f"{1.1 * value!r} {unit}", "points": 2}}
     return problems({**document, "study": {**document["study"], "sweep": sweep}}) == []
+
+
+def test_the_page_knows_no_method_by_its_name() -> None:
+    sources = list((EXAMPLES.parent / "web" / "src").rglob("*.js"))
+    assert sources
+    named = [(path.name, name) for path in sources for name in METHODS if f'"{name}"' in path.read_text()]
+    assert named == []

@@ -21,7 +21,10 @@ from inerter.app.answers import answered, first
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
 from inerter.app.fixed import fixed
+from inerter.figures.simulation import draw_simulation
 from inerter.files.common.toml import as_toml
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.running import run_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.results import dataset
 from inerter.report.study_data import as_text
@@ -185,7 +188,7 @@ def test_a_history_is_that_of_python(client: TestClient) -> None:
     assert covered == pytest.approx(0.5, rel=1e-9)
 
 
-def test_budgets_and_comparisons_are_those_of_python(client: TestClient) -> None:
+def test_budgets_are_those_of_python(client: TestClient) -> None:
     designs = [
         {"layout": "S1", "values": {"c": 1500.0}},
         {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}, "name": "mine"},
@@ -206,17 +209,56 @@ def test_budgets_and_comparisons_are_those_of_python(client: TestClient) -> None
     )  # type: ignore[attr-defined]
     found = it.budget(second, first, study.index("J1"), parameter="f", method=it.StatisticalLinearisation())
     assert (told["value"], told["status"]) == (None if np.isnan(found.value) else found.value, found.status.kind.value)
-    body = {
-        "kind": "compare",
-        "study": DOCUMENT,
-        "designs": designs,
-        "indices": ["J1"],
-        "methods": ["norm"],
-        "wait": 30,
-    }
-    (row,) = client.post("/api/work", json=body).json()["result"]["comparisons"]
-    two = it.compare(second, first, study.index("J1"), it.Norm())
-    assert (row["name"], row["improvement_percent"]) == ("mine", -two.percent)
+
+
+def _car(document: dict[str, Any], design: dict[str, Any]) -> Any:
+    """The vehicle of a design that has a value for all that is free."""
+    values = {name: float(value) for name, value in design["values"].items()}
+    return study_from(design.get("study", document)).design(design["layout"]).with_values(values)
+
+
+COMPARED: list[dict[str, Any]] = [
+    {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}, "name": "mine"},
+    {"layout": "S1", "values": {"c": 1500.0}},
+    {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}, "name": "the same"},
+    {"layout": "S1", "values": {"c": 1500.0}, "name": "softer", "study": changed(elements={"k": "15 kN/m"})},
+]
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.parametrize("method", ["norm", "expected-value"])
+def test_comparisons_are_those_of_python(client: TestClient, count: int, method: str) -> None:
+    """Each beside the first on the same roads, also one of another study; a tie is told as one."""
+    document = changed(study={"evaluate": ["norm", "expected-value"], "realisations": 4}, elements={"f": "100 N"})
+    body = {"study": document, "designs": COMPARED[:count], "indices": ["J1"], "methods": [method]}
+    answer = client.post("/api/panel/compare", json=body)
+    assert answer.status_code == 200, answer.text
+    told = answer.json()["designs"]
+    assert [design["name"] for design in told] == ["mine", "S1", "the same", "softer"][:count]
+    cars = [_car(document, design) for design in COMPARED[:count]]
+    asked = study_from(document)
+    ways = asked.index("J1"), asked.method(method)
+    for car, design in zip(cars, told, strict=True):
+        two, (result,) = it.compare(car, cars[0], *ways), design["results"]
+        assert result["value"] == it.evaluate(car, *ways).value
+        assert result["improvement_percent"] == pytest.approx(-two.percent, rel=1e-12, abs=1e-12)
+        assert result["improvement_error_percent"] == (None if method == "norm" else two.percent_error)
+        assert result["tie"] == (design["name"] in ("mine", "the same"))
+    values = [design["results"][0]["value"] for design in told]
+    assert [design["results"][0]["best"] for design in told] == [value == min(values) for value in values]
+    work = client.post("/api/work", json={"kind": "compare", **body, "wait": 30}).json()
+    assert (work["state"], work["result"]["designs"]) == ("done", told)
+
+
+def test_a_design_of_another_study_is_judged_on_the_road_of_this_one(client: TestClient) -> None:
+    other = {**COMPARED[3], "study": changed(road={"speed": "50 m/s"}, vehicle={"unsprung_mass": "70 kg"})}
+    body = {"study": DOCUMENT, "designs": [COMPARED[1], other], "indices": ["J3"]}
+    told = client.post("/api/panel/compare", json=body).json()["designs"][1]["results"][0]
+    heavy = it.evaluate(_car(DOCUMENT, other), study_from(DOCUMENT).index("J3"), it.Norm())
+    assert told["value"] == heavy.value
+    refused = client.post("/api/panel/response", json=body)
+    assert refused.status_code == 400
+    assert "a design of another study" in refused.json()["sentence"]
 
 
 def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient) -> None:
@@ -289,6 +331,25 @@ def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_pa
 def test_pictures(client: TestClient, kind: str) -> None:
     body = {"kind": kind, "study": DOCUMENT, "designs": [{"layout": "S1"}, {"layout": "S3"}]}
     assert client.post("/api/figure", json=body).content.startswith(b"<?xml")
+
+
+@pytest.mark.parametrize("seed", [0, pytest.param(5, marks=pytest.mark.campaign)])
+def test_a_picture_of_the_motion_is_that_of_a_simulation_file(client: TestClient, tmp_path: Path, seed: int) -> None:
+    """The file that says the same, drawn by the command line's functions; friction sticks in it."""
+    document = {**changed(elements={"c": "3 kN s/m", "b": "60 kg", "f": "200 N"}), "study": {"indices": ["J1"]}}
+    asked = {"signal": {"kind": "multisine", "seed": seed}, "simulation": {"layout": "S3", "duration": "2 s"}}
+    asked["simulation"]["step"] = "0.5 ms"
+    file = tmp_path / "motion.toml"
+    file.write_text(as_toml({**{key: each for key, each in document.items() if key != "study"}, **asked}))
+    found = run_simulation(load_simulation(file), tmp_path / "results")
+    draw_simulation(found, tmp_path / "drawn")
+    assert found.run.intervals("f", "stick")
+    body = {"study": document, "kind": "history", "designs": [{"layout": "S3"}], "duration": 2.0, "seed": seed}
+    for form in ("svg", "png"):
+        answer = client.post("/api/figure", json={**body, "format": form})
+        assert answer.content == (tmp_path / "drawn" / f"simulation.{form}").read_bytes()
+    several = client.post("/api/figure", json={**body, "designs": [{"layout": "S1"}, {"layout": "S3"}]})
+    assert (several.status_code, "single design" in several.json()["sentence"]) == (400, True)
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)

@@ -14,6 +14,8 @@ from starlette.testclient import TestClient
 
 from inerter.app import jobs
 from inerter.app.kinds import KINDS, WorkKind
+from inerter.app.working import events_of
+from inerter.files.study import checking
 
 LONG = changed(study={"sweep": {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 100_000}}, "indices": ["J1"]})
 
@@ -29,6 +31,11 @@ def events(client: TestClient, number: str, last: str = "0") -> list[tuple[int, 
         fields = dict(line.split(": ", 1) for line in block.split("\n"))
         found.append((int(fields["id"]), fields["event"], json.loads(fields["data"])))
     return found
+
+
+def _so_far(server: Any, number: str) -> list[str]:
+    """What work that goes on has told."""
+    return [event["told"] for event in events_of(server.root / "work" / number)[0] if event["event"] == "progress"]
 
 
 def until(client: TestClient, number: str, *states: str) -> Any:
@@ -59,6 +66,26 @@ def test_a_long_sweep_stops_at_its_next_check(client: TestClient) -> None:
     assert after.json()["state"] == "done"  # the queue goes on
     assert client.delete(f"/api/work/{number}").json()["state"] == "forgotten"
     assert client.get(f"/api/work/{number}").status_code == 404
+
+
+def test_a_sweep_that_is_being_prepared_tells_how_far_it_is_and_stops(
+    client: TestClient, server: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each layout is assembled at many of its points, however long that takes: here 20 s."""
+    check = checking._check_design
+    monkeypatch.setattr(checking, "_check_design", lambda *design: (time.sleep(0.05), check(*design)))
+    number = begin(client, kind="run", study=LONG)
+    deadline = time.monotonic() + 15.0
+    while len(told := _so_far(server, number)) < 4:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    assert told[0] == "preparing 0 of 400"
+    assert len({*told}) == len(told)
+    client.delete(f"/api/work/{number}")
+    asked = time.monotonic()
+    assert until(client, number, "stopped")["done"] == 0
+    assert time.monotonic() - asked < 2.0
+    assert client.get(f"/api/work/{number}/files").json()["files"] == []
 
 
 def test_a_page_that_is_loaded_again_sees_all(client: TestClient) -> None:

@@ -31,7 +31,7 @@ from inerter import (
     simulate,
 )
 from inerter.errors import PerformanceIndexError
-from inerter.methods.method import Differentiable
+from inerter.methods.objective import Differentiable
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = INDICES = RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying()

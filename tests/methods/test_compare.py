@@ -126,6 +126,24 @@ def test_a_design_against_itself():
     found = it.compare(series(10.0), series(10.0), J3, ExpectedValue(realisations=3))
     assert found.difference.value == 0.0
     assert found.difference.standard_error == 0.0
+    assert found.is_tie
+    assert "neither is known to be better" in str(found)
+
+
+def test_a_tie_is_what_chance_or_rounding_may_have_made(pools):
+    """Without a difference some nineteen of twenty comparisons are ties; without scatter, those within the accuracy."""
+    one, other = pools[0][:, :, 1]
+    even = other + (one.mean() - other.mean())  # of the same mean
+    ties = []
+    for begin in range(0, one.size, ROADS):
+        parts = [
+            Estimate(s[begin : begin + ROADS].mean(), "N", samples=tuple(s[begin : begin + ROADS])) for s in (one, even)
+        ]
+        ties.append(Comparison(parts[0], parts[1], difference_of(*parts)).is_tie)
+    assert 0.90 <= np.mean(ties) <= 0.99
+    for share, tie in ((1e-12, True), (1e-6, False), (-1e-6, False), (math.nan, False)):
+        parts = [Estimate(value, "N") for value in (600.0, 600.0 * (1.0 + share))]
+        assert Comparison(parts[0], parts[1], difference_of(*parts)).is_tie == tie
 
 
 def test_a_linear_design_does_not_scatter_but_is_compared_road_by_road():

@@ -30,7 +30,7 @@ from inerter import (
     TyreLoad,
 )
 from inerter.errors import DesignError, PerformanceIndexError
-from inerter.methods.method import Differentiable
+from inerter.methods.objective import Differentiable
 from inerter.methods.realisations import realisation_seeds
 
 ROAD = Road(roughness=5e-7, speed=25.0)

@@ -32,7 +32,7 @@ from inerter import (
     free,
 )
 from inerter.kernels import cache, gain, h2, harmonic
-from inerter.methods.method import Differentiable
+from inerter.methods.objective import Differentiable
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())

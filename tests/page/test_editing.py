@@ -47,6 +47,33 @@ def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, 
     page.wait_for_function("text => document.getElementById('entry elements.c').title === text", arg=before)
 
 
+def test_a_number_of_the_vehicle_is_freed_searched_and_saved(visitor: Any, tmp_path: Path) -> None:
+    page = visitor.page
+    visitor.settled()
+    before = visitor.values()["J3"]
+    row = page.locator("[data-place='vehicle.tyre_stiffness'] details.bounds")
+    row.locator("summary").click()
+    row.get_by_role("button", name="free").click()
+    assert page.locator("[data-place='road.speed'] details.bounds button").count() == 0  # which no optimiser chooses
+    page.get_by_role("button", name="Optimise").click()
+    page.wait_for_function(
+        "() => document.querySelector(\"[id='entry vehicle.tyre_stiffness']\").title.startsWith('12000.0 ')"
+    )
+    found = visitor.values()
+    assert found["J3"] < before
+    with page.expect_download() as download:
+        page.get_by_text("Save", exact=True).click()
+        page.get_by_role("button", name="This design, values fixed").click()
+    path = tmp_path / "design.toml"
+    download.value.save_as(path)
+    saved = it.load_study(path)
+    assert (
+        saved.vehicle["tyre_stiffness"] == 12000.0
+    )  # the lower of the bounds that a slider begins with, a decade below
+    layout = next(iter(saved.layouts))
+    assert found["J3"] == _value(path, layout, "J3")
+
+
 @pytest.mark.campaign
 def test_what_is_pressed_is_about_the_newest_however_late_the_screen_is(visitor: Any) -> None:
     page = visitor.page

@@ -75,7 +75,7 @@ def test_free_values_of_car_and_seat_are_apart_and_found_together() -> None:
 
 def test_bad_seats_are_refused_in_one_sentence() -> None:
     car = CARS["quarter car"]
-    with pytest.raises(MechanismError, match="The mass on a seat must be a positive number of kg, got 0"):
+    with pytest.raises(MechanismError, match="The mass of the occupant must be a positive number of kg, got 0"):
         it.Seat(car, 0, CUSHION)
     with pytest.raises(MechanismError, match="strut 'seat' is at 'pitch', which is not a coordinate"):
         it.Seat(car, 60.0, CUSHION, {"sprung": 1.0, "pitch": 0.3})

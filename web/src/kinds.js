@@ -1,6 +1,6 @@
 // What kind of element a name stands for.
 
-import { unitKey } from "./questions.js";
+import { fieldsOfVehicle, unitKey } from "./questions.js";
 import { isRange } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
@@ -17,3 +17,9 @@ export function kindOf(state, name) {
   return size ? rows.find((/** @type {any} */ { key, unit }) => key === /** @type {any} */ (size).key || (!("key" in size) && unit === written.unit)) : null;
 }
 
+
+/** The unit of a free value: of an element by its kind, else of a number of the vehicle. @param {State} state @param {string} name @returns {string} */
+export function unitOf(state, name) {
+  const rows = /** @type {any[]} */ (fieldsOfVehicle(state.about, state.history.present));
+  return kindOf(state, name)?.unit ?? rows.find(({ key }) => key === name)?.unit ?? "";
+}

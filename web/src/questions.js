@@ -1,5 +1,6 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
+import { judging } from "./methods.js";
 import { names, parse } from "./network/algebra.js";
 import { isRange, networksIn, strutsOf, textOf } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
@@ -23,23 +24,32 @@ export function shownDesigns(document) {
   return design.layout === baseline.layout ? [design] : [design, baseline];
 }
 
-/** What stands in the comparison: a layout of the study, or a design that was kept. @param {Document} document @param {string} key */
-export function comparedDesign(document, key) {
-  const kept = document.designs.find(({ name }) => `kept ${name}` === key);
-  if (kept) return { key, name: kept.name, study: kept.study, design: { ...designOf({ ...document, ...kept }), name: kept.name }, values: kept.values };
-  const layout = key.replace(/^layout /, "");
-  return { key, name: layout, study: document.study, design: designOf({ ...document, layout }), values: document.values };
+/** What can stand in the comparison: the layouts of the study, and the designs that were kept.
+ * @typedef {{key: string, name: string, kept: boolean, study: import("./state/document.js").Study, design: {layout: string, values: {[element: string]: string}, name: string}}} Choice */
+
+/** @param {Document} document @returns {Choice[]} */
+export function choicesOf(document) {
+  const layouts = Object.keys(document.study.layouts ?? {}).map((layout) => ({ key: `layout ${layout}`, name: layout, kept: false, study: document.study, design: designOf({ ...document, layout }) }));
+  const designs = document.designs.map((design) => ({ key: `kept ${design.name}`, name: design.name, kept: true, study: design.study, design: { ...designOf({ ...document, ...design }), name: design.name } }));
+  return [...layouts, ...designs];
+}
+
+/** What stands in the comparison, first what the others are compared with. @param {State} state @returns {Choice[]} */
+export function comparedOf({ view, history }) {
+  const choices = choicesOf(history.present);
+  const chosen = view.compared.flatMap((key) => choices.filter((choice) => choice.key === key));
+  return [...chosen.filter(({ key }) => key === view.against), ...chosen.filter(({ key }) => key !== view.against)];
 }
 
 /** @type {((state: State, document: Document) => Question[])[]} */
 const ROWS = [
   (_, document) => [{ panel: "network", path: "network/parse", body: { text: textOf(document), elements: document.study.elements ?? {} } }],
   (_, { study }) => [{ panel: "check", path: "study/check", body: { study } }],
-  (state, document) => [{ panel: "indices", path: "panel/indices", body: { ...about(document), methods: [state.view.method] } }],
+  (state, document) => [{ panel: "indices", path: "panel/indices", body: { ...about(document), methods: methodNames(state) } }],
   (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", body: about(document) }] : []),
   (state, document) => (state.view.tab === "history" ? [historyOf(state, document)] : []),
   (state, document) => (state.view.tab === "history" ? [{ panel: "mechanism", path: "panel/mechanism", body: { study: document.study, design: designOf(document) } }] : []),
-  (state, document) => (state.view.tab === "compare" ? comparisons(state, document) : []),
+  (state) => (state.view.tab === "compare" ? comparison(state) : []),
   (state, document) => unitsOf(state, document),
 ];
 
@@ -53,6 +63,9 @@ export function questions(state) {
 /** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
 export const bodyOf = (state, panel) => questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
 
+/** The method by which the page judges; none where the server has told of none, and then those of the study. @param {State} state */
+const methodNames = (state) => [judging(state)?.name ?? []].flat();
+
 /** @param {Document} document */
 const about = (document) => ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
 
@@ -62,12 +75,12 @@ function historyOf({ view }, document) {
   return { panel: "history", path: "panel/history", body };
 }
 
-/** @param {State} state @param {Document} document @returns {Question[]} */
-function comparisons({ view }, document) {
-  return view.compared.map((key, i) => {
-    const { study, design } = comparedDesign(document, key);
-    return { panel: `compare.${i}`, path: "panel/indices", body: { study, designs: [design], methods: [view.method] } };
-  });
+/** @param {State} state @returns {Question[]} */
+function comparison(state) {
+  const compared = comparedOf(state);
+  if (compared.length < 2) return [];
+  const designs = compared.map(({ kept, study, design }) => (kept ? { ...design, study } : design));
+  return [{ panel: "compare", path: "panel/compare", body: { study: state.history.present.study, designs, methods: methodNames(state) } }];
 }
 
 /** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Question[]} */
@@ -94,11 +107,15 @@ export function unitsIn({ about }, document) {
     const key = unitKey(apart.unit, unit);
     found.set(key, { key, text: `1 ${apart.unit}`.trim(), unit });
   };
-  for (const { place, unit } of numbersOf(about, document)) add(valueAtPlace(document.study, place), unit);
+  for (const { place, unit } of numbersOf(about, document)) {
+    const entry = valueAtPlace(document.study, place);
+    for (const text of isRange(entry) ? [entry.from, entry.to] : [entry]) add(text, unit);
+  }
   for (const entry of Object.values(document.study.elements ?? {})) {
     for (const text of isRange(entry) ? [entry.from, entry.to] : typeof entry === "string" ? [entry] : Object.values(entry ?? {})) add(text, null);
   }
-  for (const of of Object.values(document.values)) for (const text of Object.values(of)) add(text, null);
+  const own = new Map(fieldsOfVehicle(about, document).map(({ key, unit }) => [key, unit]));
+  for (const of of Object.values(document.values)) for (const [name, text] of Object.entries(of)) add(text, document.study.elements?.[name] === undefined ? (own.get(name) ?? null) : null);
   for (const [place, range] of Object.entries(document.ranges)) {
     const unit = numbersOf(about, document).find((number) => number.place.join(".") === place)?.unit ?? null;
     for (const text of Object.values(range)) add(text, unit);
@@ -107,16 +124,19 @@ export function unitsIn({ about }, document) {
 }
 
 /** A number of vehicle or road. Of one in a table of the file's own, such as a lever, the unit is that in which it is written.
- * @typedef {{place: string[], unit: string, sentence: string, own: boolean}} NumberRow */
+ * @typedef {{place: string[], unit: string, sentence: string, own: boolean, mayBeFree: boolean}} NumberRow */
+
+/** The quantities of the vehicle's kind. @param {any} about @param {Document} document @returns {{key: string, unit: string, sentence: string, may_be_free: boolean}[]} */
+export const fieldsOfVehicle = (about, { study }) => about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model)?.fields ?? [];
 
 /** Every number of vehicle and road: those that all of their kind have, then what else stands in their tables. @param {any} about @param {Document} document @returns {NumberRow[]} */
-export function numbersOf(about, { study }) {
-  const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
-  return Object.entries({ vehicle: model?.fields ?? [], road: about?.road ?? [] }).flatMap(([section, fields]) => {
+export function numbersOf(about, document) {
+  const { study } = document;
+  return Object.entries({ vehicle: fieldsOfVehicle(about, document), road: about?.road ?? [] }).flatMap(([section, fields]) => {
     /** @type {NumberRow[]} */
     const known = fields
       .filter((/** @type {any} */ { key, unit }) => unit && valueAtPlace(study, [section, key]) !== undefined)
-      .map((/** @type {any} */ { key, unit, sentence }) => ({ place: [section, key], unit, sentence, own: false }));
+      .map((/** @type {any} */ { key, unit, sentence, may_be_free }) => ({ place: [section, key], unit, sentence, own: false, mayBeFree: may_be_free }));
     const there = new Set(known.map(({ place }) => place[1]));
     const more = numbersIn(study[section], [section]).filter(({ place }) => place.length > 2 || !there.has(place[1]));
     return [...known, ...more];
@@ -127,9 +147,9 @@ export function numbersOf(about, { study }) {
 function numbersIn(table, place) {
   if (typeof table === "string" || typeof table === "number") {
     const apart = takenApart(String(table));
-    return apart ? [{ place, unit: apart.unit, sentence: "", own: true }] : [];
+    return apart ? [{ place, unit: apart.unit, sentence: "", own: true, mayBeFree: false }] : [];
   }
-  if (table === null || typeof table !== "object" || Array.isArray(table)) return [];
+  if (table === null || typeof table !== "object" || Array.isArray(table) || isRange(table)) return [];
   return Object.entries(table).flatMap(([key, inside]) => numbersIn(inside, [...place, key]));
 }
 

@@ -1,7 +1,8 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
 import { Lost } from "./api.js";
-import { kindOf } from "./kinds.js";
+import { unitOf } from "./kinds.js";
+import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { isRange } from "./state/document.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
@@ -15,7 +16,7 @@ export async function optimise(store, api, asked) {
   const { study, layouts, index, method } = asked;
   const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
-    if (!sees(store.get(), method, "neither") || !(await isSmall(api, study, layouts[0]))) {
+    if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
       await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")}: best ${index}`, ...body });
       store.dispatch({ type: "viewed", view: { tab: "work" } });
       return "Under way: see Work.";
@@ -26,9 +27,6 @@ export async function optimise(store, api, asked) {
     return /** @type {Error} */ (error).message;
   }
 }
-
-/** @param {import("./state/store.js").State} state @param {string} method @param {string} what */
-const sees = (state, method, what) => state.about.methods.find((/** @type {any} */ { name }) => name === method)?.sees === what;
 
 /** The values of optima become the present values of their layouts, in one step. @param {Store} store @param {any[]} designs @param {string | null} gesture */
 export function takeOptima(store, designs, gesture = null) {
@@ -56,8 +54,8 @@ export async function openStudy(store, api, study) {
 export async function beginAtBest(store, api, gesture = null) {
   const { study } = store.get().history.present;
   const index = study.study?.indices?.[0];
-  const free = Object.values(study.elements ?? {}).some(isRange);
-  const method = store.get().about.methods.find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
+  const free = [study.elements, study.vehicle].some((table) => Object.values(table ?? {}).some(isRange));
+  const method = quickMethod(store.get())?.name;
   if (!index || !free || !method) return;
   try {
     if (await isSmall(api, study, Object.keys(study.layouts ?? {})[0])) {
@@ -77,7 +75,7 @@ async function isSmall(api, study, layout) {
 }
 
 /** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
-const textsOf = (state, parameters) => Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${kindOf(state, name)?.unit ?? ""}`]));
+const textsOf = (state, parameters) => Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));
 
 /** @param {Store} store @param {Api} api @param {{kind: string, title: string, [key: string]: any}} body */
 export async function begin(store, api, body) {

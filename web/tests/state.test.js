@@ -1,10 +1,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { after, empty, namesIn, textOf } from "../src/state/document.js";
-import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief } from "../src/state/scale.js";
+import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated } from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited, limitsIn } from "../src/panels/asked.js";
-import { namesOfVehicle, numbersOf, questions } from "../src/questions.js";
+import { judging, quickMethod } from "../src/methods.js";
+import { comparedOf, namesOfVehicle, numbersOf, questions } from "../src/questions.js";
 
 const STUDY = {
   title: "car",
@@ -24,8 +25,8 @@ const CHANGES = [
   { type: "valued", layout: "S1", values: { c: "3 kN s/m" } },
   { type: "valuedAll", values: { S1: { c: "3 kN s/m" }, S2: { c: "7 kN s/m" } } },
   { type: "ranged", place: "elements.k", from: "1 kN/m", to: "1 MN/m" },
-  { type: "freed", name: "b", from: "1 kg", to: "2000 kg" },
-  { type: "fixed", name: "c", text: "4 kN s/m" },
+  { type: "freed", place: ["elements", "b"], from: "1 kg", to: "2000 kg" },
+  { type: "fixed", place: ["elements", "c"], text: "4 kN s/m" },
   { type: "drawn", text: "k | c | b" },
   { type: "drawn", text: "k | ", added: { f: "10 N" } },
   { type: "selected", layout: "S1" },
@@ -114,9 +115,9 @@ test("a name is changed wherever the study has it", () => {
 });
 
 test("what is freed begins at its value in every layout, and what is fixed keeps its bounds for later", () => {
-  const freed = after(open(), { type: "freed", name: "b", from: "1 kg", to: "2000 kg" });
+  const freed = after(open(), { type: "freed", place: ["elements", "b"], from: "1 kg", to: "2000 kg" });
   assert.equal(freed.values.S2.b, "300 kg");
-  const fixed = after(freed, { type: "fixed", name: "b", text: "400 kg" });
+  const fixed = after(freed, { type: "fixed", place: ["elements", "b"], text: "400 kg" });
   assert.equal(fixed.study.elements.b, "400 kg");
   assert.deepEqual(fixed.ranges["elements.b"], { from: "1 kg", to: "2000 kg" });
   assert.deepEqual(namesIn(fixed.study, "S2"), ["k", "c", "b"]);
@@ -186,7 +187,7 @@ test("an element is called otherwise in the networks of a vehicle too", () => {
 });
 
 test("what is made free gets a method that chooses it, and keeps one that is there", () => {
-  const freed = { type: "freed", name: "b", from: "1 kg", to: "2 kg", method: "norm" };
+  const freed = { type: "freed", place: ["elements", "b"], from: "1 kg", to: "2 kg", method: "norm" };
   const document = after(empty(), { type: "opened", study: STUDY });
   assert.equal(after(document, freed).study.study.optimise, "norm");
   const chosen = after(document, { type: "placed", place: ["study", "optimise"], value: "other" });
@@ -218,4 +219,34 @@ test("a slider of what is negative keeps the sign, and the ends of its scale", (
     assert.equal(positionOf(upper, lower, upper), STEPS);
     for (let position = 0; position <= STEPS; position += 40) assert.equal(positionOf(valueAt(position, lower, upper), lower, upper), position);
   }
+});
+
+test("a value has as many places as its error tells", () => {
+  const written = [[2.50911, 0.00047], [503.88, 0.0883], [16.0237, 0.0137], [-0.29, 0.0071], [6.6506e-5, 2.1e-9], [1.2e7, 3e5], [0, 0.02], [4, 30]];
+  const expected = ["2.5091 ± 0.0005", "503.88 ± 0.09", "16.024 ± 0.014", "−0.290 ± 0.007", "6.6506·10⁻⁵ ± 0.0002·10⁻⁵", "1.20·10⁷ ± 0.03·10⁷", "0.00 ± 0.02", "4 ± 30"];
+  assert.deepEqual(written.map(([value, error]) => estimated(value, error).join(" ± ")), expected);
+});
+
+test("what is compared stands first beside what it is compared with, and goes with its layout", () => {
+  const store = createStore();
+  store.change({ type: "opened", study: STUDY });
+  store.change({ type: "designKept", name: "mine" });
+  const compared = ["layout S1", "layout S2", "kept mine", "layout S9"];
+  store.dispatch({ type: "viewed", view: { tab: "compare", compared } });
+  const keys = () => comparedOf(store.get()).map(({ key }) => key);
+  assert.deepEqual(keys(), ["layout S1", "layout S2", "kept mine"]);
+  store.dispatch({ type: "viewed", view: { against: "kept mine" } });
+  assert.deepEqual(keys(), ["kept mine", "layout S1", "layout S2"]);
+  const { designs } = questions(store.get()).find(({ panel }) => panel === "compare")?.body;
+  assert.deepEqual(designs.map((/** @type {any} */ { study }) => study !== undefined), [true, false, false]);
+  store.change({ type: "designRemoved", name: "mine" });
+  assert.deepEqual(keys(), ["layout S1", "layout S2"]);
+});
+
+test("methods are told apart by their rows, whatever they are called", () => {
+  const row = (/** @type {string} */ name, /** @type {any} */ sees, searches = true) => ({ name, sees, searches, averages: false });
+  const state = { ...initial(), about: { ...ABOUT, methods: [row("first", "both"), row("looks on", "neither", false), row("quick", "neither")] } };
+  const judged = (/** @type {string} */ method) => judging({ ...state, view: { ...state.view, method } })?.name;
+  assert.deepEqual([quickMethod(state)?.name, judged(""), judged("first"), judged("of another version")], ["quick", "quick", "first", "quick"]);
+  assert.equal(quickMethod(initial()), undefined);
 });

@@ -13,19 +13,16 @@ from inerter.app.designs import Design, baseline_of, design_of, designs_of
 from inerter.app.documents import study_from
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
-from inerter.app.valued import limits_at, valued
 from inerter.app.warm import is_compiled
 from inerter.app.wire import encoded
 from inerter.errors import DesignError, StudyError
 from inerter.fields import fields_of
 from inerter.files.common.shape import ROAD
-from inerter.files.study.cases import FAILURES, Case, Outcome, run_case
+from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
-from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Estimate
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
@@ -72,82 +69,6 @@ def answered(key: str, body: Body) -> Answer:
         return answer(study_from(body["study"]), body)
 
 
-def indices(study: Study, body: Body) -> Answer:
-    designs = designs_of(study, body)
-    baseline = baseline_of(study, body, designs)
-    indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
-    known = {(index, method): _estimate(study, baseline, index, method) for index in indices for method in methods}
-    return {
-        "designs": [
-            {
-                **design.told(study),
-                "results": [
-                    _result(study, design, baseline, known[index, method], index, method)
-                    for index in indices
-                    for method in methods
-                ],
-                "limits": limits_at(study, design, methods[0]),
-            }
-            for design in designs
-        ],
-        "baseline": None if baseline is None else baseline.told(study),
-    }
-
-
-def _estimate(study: Study, design: Design | None, index: str, method: str) -> Estimate | None:
-    """The value of an index; where it cannot be had, nan with a status that says why."""
-    if design is None:
-        return None
-    return valued(design.vehicle, study.asked(index, design.layout), study.method(method))
-
-
-def _result(
-    study: Study, design: Design, baseline: Design | None, known: Estimate | None, index: str, method: str
-) -> Answer:
-    same = known is not None and baseline is not None and design.vehicle == baseline.vehicle
-    found = known if same else _estimate(study, design, index, method)
-    assert found is not None
-    better = (
-        None if baseline is None or known is None else _better(study, design, baseline, (found, known), (index, method))
-    )
-    asked = study.index(index)
-    return {
-        "index": index,
-        "title": asked.title,
-        "unit": study.unit(index),
-        "method": method,
-        "value": found.value,
-        "standard_error": found.standard_error,
-        "status": found.status.kind.value,
-        "message": found.status.message,
-        "notes": list(found.notes),
-        "realisations": found.realisations,
-        "improvement_percent": None if better is None else better[0],
-        "improvement_error_percent": None if better is None else better[1],
-    }
-
-
-def _better(
-    study: Study, design: Design, baseline: Design, found: tuple[Estimate, Estimate], asked: tuple[str, str]
-) -> tuple[float, float | None] | None:
-    """Per cent below the baseline, and the standard error where there is scatter."""
-    value, base = (estimate.value for estimate in found)
-    if not np.isfinite(base):
-        return None
-    percent = 100.0 * (1.0 - value / base)
-    if found[0].standard_error is None:
-        return percent, None
-    index, method = asked
-    try:
-        known = found[1]
-        two: Comparison = compare(
-            design.vehicle, baseline.vehicle, study.asked(index, design.layout), study.method(method), known=known
-        )
-    except FAILURES:
-        return percent, None
-    return percent, two.percent_error
-
-
 def response(study: Study, body: Body) -> Answer:
     """The frequency responses of all designs over the same frequencies, made as those of a study's results are."""
     designs, indices = designs_of(study, body), tuple(body.get("indices") or study.indices)
@@ -182,7 +103,7 @@ def mechanism(study: Study, body: Body) -> Answer:
 
     known = outputs(mechanism, full_graph(mechanism))
     return {
-        **design.told(study),
+        **design.told(),
         "coordinates": [{"name": c.name, "inertia": c.inertia, "angle": c.angle} for c in mechanism.coordinates],
         "struts": [
             {"name": s.name, "upper": end(s.upper), "lower": end(s.lower), "network": tree_of(s.network)}
@@ -241,7 +162,7 @@ def _told(study: Study, outcome: Outcome) -> Answer:
 
 def texts_of(study: Study, values: Mapping[str, float]) -> dict[str, str]:
     """Values of elements as texts that read back as the same."""
-    return {name: f"{value!r} {study.elements[name].unit}" for name, value in values.items()}
+    return {name: f"{value!r} {study.free_units[name]}" for name, value in values.items()}
 
 
 def budget(study: Study, body: Body) -> Answer:
@@ -288,7 +209,7 @@ def scatter(study: Study, body: Body) -> Answer:
     )
     counts, edges = np.histogram(found.values[np.isfinite(found.values)], bins=40)
     return {
-        **design.told(study),
+        **design.told(),
         "index": name,
         "unit": study.unit(name),
         "method": method,

@@ -30,6 +30,12 @@ class Given(Body):
     name: Text = ""
 
 
+class Compared(Given):
+    """A design that is compared: one of the study of the request, or of another one."""
+
+    study: Annotated[Document | None, Field(description="That it is of, if it is another one.")] = None
+
+
 class ReadStudy(Body):
     """A study file as text, or a document whose problems are asked for."""
 
@@ -77,7 +83,7 @@ class OfDesigns(Body):
     """What all requests about designs have."""
 
     study: Document
-    designs: Annotated[list[Given], Field(max_length=100)] = []
+    designs: Annotated[list[Compared], Field(max_length=100)] = []
     layouts: Annotated[list[Name], Field(max_length=1000)] = []
     values: Annotated[dict[str, Values], Field(description="By layout, where `designs` are not given.")] = {}
     baseline: Given | None = None
@@ -123,6 +129,9 @@ class FigureRequest(OfDesigns):
 
     kind: Name
     format: Name = "svg"
+    duration: Annotated[Number, Field(gt=0.0, description="[s] of the motion")] | None = None
+    step: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
+    seed: Annotated[int, Field(ge=0)] = 0
 
 
 class ExportRequest(Body):

@@ -39,13 +39,13 @@ def _places(study: Study) -> list[dict[str, Any]]:
 
 
 def _layouts(study: Study) -> dict[str, Any]:
-    used = elements_used(study)
+    used, units = elements_used(study), study.free_units
     return {
         name: {
             "mounts": layout.struts,
             "elements": [element for element, layouts in used.items() if name in layouts],
             "free": {
-                element: {"lower": value.lower, "upper": value.upper, "unit": study.elements[element].unit}
+                element: {"lower": value.lower, "upper": value.upper, "unit": units[element]}
                 for element, value in study.design(name).free_values().items()
             },
         }

@@ -10,6 +10,7 @@ from typing import Any
 
 from inerter.errors import DesignError
 from inerter.files.study.study import Study
+from inerter.methods.asking import Asked
 from inerter.networks.elements import Free
 from inerter.units import parse_quantity, shown
 from inerter.vehicle.mechanism import Mechanism
@@ -22,6 +23,7 @@ Values = Mapping[str, "str | float"]
 class Design:
     """A layout with numbers only."""
 
+    study: Study = field(compare=False, repr=False)  # that it is of, and that says what is asked of it
     name: str = field(compare=False)
     layout: str = field(compare=False)
     vehicle: Vehicle
@@ -32,10 +34,20 @@ class Design:
         """What analysis takes."""
         return self.vehicle.mechanism()
 
-    def told(self, study: Study) -> dict[str, Any]:
+    @cached_property
+    def fixed(self) -> Study:
+        """Its study with these values in the place of what was free."""
+        return self.study.with_values(self.values)
+
+    def asked(self, index: str) -> Asked:
+        """What is asked of it for an index of its study."""
+        return self.study.asked(index, self.layout)
+
+    def told(self) -> dict[str, Any]:
         """What an answer says of it."""
+        units = self.study.free_units
         values = {
-            name: {"value": value, "unit": study.elements[name].unit, "text": f"{value!r} {study.elements[name].unit}"}
+            name: {"value": value, "unit": units[name], "text": f"{value!r} {units[name]}"}
             for name, value in self.values.items()
         }
         return {"name": self.name, "layout": self.layout, "values": values}
@@ -48,20 +60,28 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
     `UnitError` for a text that is no quantity of the element.
     """
     vehicle = study.design(layout)
+    units = study.free_units
     for key in values:
-        if key not in study.elements:
-            known = ", ".join(study.elements)
+        if key not in study.elements and key not in units:
+            known = ", ".join(dict.fromkeys([*study.elements, *units]))
             raise DesignError(f"Got a value of {shown(key)}, which is not in [elements], where there are {known}.")
     chosen = {
-        key: _number(key, values[key], study.elements[key].unit) if key in values else _middle(free)
+        key: _number(key, values[key], units[key]) if key in values else _middle(free)
         for key, free in vehicle.free_values().items()
     }
-    return Design(name or layout, layout, vehicle.with_values(chosen), chosen)
+    return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen)
 
 
 def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
-    """The `designs` of a request, or its `layouts` (all, if they are left out) with the `values` of each."""
+    """The `designs` of a request, or its `layouts` (all, if they are left out) with the `values` of each.
+
+    Raises `DesignError` for a design of another study.
+    """
     if body.get("designs"):
+        if other := [d.get("name") or d["layout"] for d in body["designs"] if d.get("study")]:
+            raise DesignError(
+                f"Got {shown(other[0])}, a design of another study; such are only compared (panel compare)."
+            )
         return [design_of(study, d["layout"], d.get("values") or {}, d.get("name") or "") for d in body["designs"]]
     values = body.get("values") or {}
     return [design_of(study, layout, values.get(layout) or {}) for layout in body.get("layouts") or study.layouts]

@@ -9,6 +9,7 @@ from itertools import count
 from typing import Any
 
 from inerter.app.designs import Design
+from inerter.errors import DesignError
 from inerter.files.study.study import Study
 
 # keys of [study] that ask for more than the value of a design
@@ -19,9 +20,12 @@ def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) 
     """The document with the layouts of these designs alone, their free values fixed to the last digit.
 
     An element that has several values becomes several elements, each with the name of its layout.
+
+    Raises `DesignError` if the designs have several values for a number of the vehicle.
     """
     names, elements = _renamed(study, designs)
     made = deepcopy(dict(document))
+    made["vehicle"] |= _vehicle(study, designs)
     free = {name for design in designs for name in design.values}
     kept = {name: entry for name, entry in made["elements"].items() if name not in free}
     made["elements"] = {**kept, **elements}
@@ -34,6 +38,17 @@ def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) 
     base = next((key for key, design in zip(keys, designs, strict=True) if design.layout == study.baseline), keys[0])
     made["study"] = {"indices": list(study.indices), **settings, "baseline": base}
     return made
+
+
+def _vehicle(study: Study, designs: Sequence[Design]) -> dict[str, str]:
+    """The free numbers of the vehicle, fixed."""
+    found = {}
+    for name in (name for name in study.free_units if name not in study.elements):
+        values = {design.values[name] for design in designs}
+        if len(values) > 1:
+            raise DesignError(f"These designs have several values of {name}, and a study has one. Take one at a time.")
+        found[name] = f"{values.pop()!r} {study.free_units[name]}"
+    return found
 
 
 def _keys(designs: Sequence[Design]) -> list[str]:
@@ -51,7 +66,7 @@ def _renamed(study: Study, designs: Sequence[Design]) -> tuple[dict[tuple[str, s
     keys = _keys(designs)
     names: dict[tuple[str, str], str] = {}
     elements: dict[str, str] = {}
-    for name in dict.fromkeys(name for design in designs for name in design.values):
+    for name in dict.fromkeys(n for design in designs for n in design.values if n in study.elements):
         values = {key: d.values[name] for key, d in zip(keys, designs, strict=True) if name in d.values}
         several = len(set(values.values())) > 1
         for key, value in values.items():

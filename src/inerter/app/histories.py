@@ -10,9 +10,9 @@ import numpy as np
 from inerter.app.designs import Design
 from inerter.errors import StudyError
 from inerter.figures.curves import thinned
+from inerter.files.common.signals import SignalRequest
+from inerter.files.simulation.request import SimulationRequest
 from inerter.files.study.study import Study
-from inerter.signals.harmonics import random_road
-from inerter.simulation.simulate import simulate
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import main_outputs
 from inerter.vehicle.mechanism import Mechanism
@@ -26,7 +26,31 @@ _DURATION, _STEP = 10.0, 5e-4  # [s]
 def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
     """The motion of a design over a random road of the study.
 
-    Raises `StudyError` for a time that is too long to be looked at; what `simulate` raises.
+    Raises what `simulated` raises, and `simulate`.
+    """
+    asked = simulated(study, design, body)
+    run, mechanism = asked.run(), design.mechanism
+    names = body.get("outputs") or main_outputs(mechanism)
+    shaded = _shaded(run)
+    return {
+        **design.told(),
+        "signals": [_drawn(run, name) for name in names],
+        "motion": _motion(run, mechanism),
+        "shaded": shaded,
+        "events": len(run.events),
+        "rms": {name: run.rms(name) for name in names},
+        "peaks": {name: float(np.abs(run[name]).max()) for name in names},
+        "duration": asked.duration,
+        "step": asked.step,
+        "status": run.status.kind.value,
+        "message": run.status.message,
+    }
+
+
+def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:
+    """The simulation of a design over a random road of the study, as a simulation file asks for it.
+
+    Raises `StudyError` for a time that is too long to be looked at, and where there is no road.
     """
     duration, step = float(body.get("duration") or _DURATION), float(body.get("step") or _STEP)
     if duration > _LONGEST:
@@ -35,24 +59,21 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
         )
     if study.road is None:
         raise StudyError("The motion is one over a road, and this study has none. Add [road].")
-    road = random_road(study.road, seed=int(body.get("seed") or 0))
-    run = simulate(design.vehicle, road=road, duration=duration, step=step, initial="rest")
-    mechanism = design.mechanism
-    names = body.get("outputs") or main_outputs(mechanism)
-    shaded = _shaded(run)
-    return {
-        **design.told(study),
-        "signals": [_drawn(run, name) for name in names],
-        "motion": _motion(run, mechanism),
-        "shaded": shaded,
-        "events": len(run.events),
-        "rms": {name: run.rms(name) for name in names},
-        "peaks": {name: float(np.abs(run[name]).max()) for name in names},
-        "duration": duration,
-        "step": step,
-        "status": run.status.kind.value,
-        "message": run.status.message,
-    }
+    return SimulationRequest(
+        title=study.title,
+        path=study.path,
+        model=study.model,
+        vehicle=study.vehicle,
+        speed=study.road.speed,
+        roughness=study.road.roughness,
+        elements=design.fixed.elements,
+        layouts=study.layouts,
+        signal=SignalRequest("multisine", "road", {"seed": int(body.get("seed") or 0)}),
+        layout=design.layout,
+        duration=duration,
+        step=step,
+        coherence=study.coherence,
+    )
 
 
 def _drawn(run: Trajectory, name: str) -> dict[str, Any]:

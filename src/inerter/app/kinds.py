@@ -39,7 +39,7 @@ KINDS = {
             ("layouts", "indices", "method", "points"),
             "inerter.app.fronts:front",
         ),
-        WorkKind("compare", "Two to four designs beside each other", ("designs", *_DESIGNS), f"{_STUDIED}:compared"),
+        WorkKind("compare", "Two to four designs side by side", ("designs", *_DESIGNS), f"{_STUDIED}:compare"),
         WorkKind(
             "identify",
             "What a measured device is made of",

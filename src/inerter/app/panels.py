@@ -22,7 +22,8 @@ class Panel:
 PANELS = {
     panel.key: panel
     for panel in (
-        Panel("indices", "Indices beside the baseline", "inerter.app.answers:indices"),
+        Panel("indices", "Indices beside the baseline", "inerter.app.comparing:indices"),
+        Panel("compare", "Two to four designs side by side", "inerter.app.comparing:side_by_side"),
         Panel("response", "Frequency response", "inerter.app.answers:response"),
         Panel("mechanism", "The vehicle as it is joined", "inerter.app.answers:mechanism"),
         Panel("optimise", "The best values", "inerter.app.answers:optimum"),

@@ -10,16 +10,21 @@ from typing import Any
 from inerter.app.designs import Design, designs_of
 from inerter.app.documents import study_from
 from inerter.app.fixed import fixed
-from inerter.errors import StudyError
+from inerter.app.histories import simulated
+from inerter.errors import DesignError, StudyError
 from inerter.figures.networks import draw_networks
+from inerter.figures.simulation import NAME as SIMULATION
+from inerter.figures.simulation import draw_simulation
 from inerter.figures.study import draw_study
+from inerter.files.simulation.running import SimulationResult
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
 from inerter.networks.elements import Network
 
 FORMATS = ("svg", "png")
-NETWORKS = "networks"
+NETWORKS, HISTORY = "networks", "history"
+_KINDS = {SIMULATION: HISTORY}  # what the page calls figures that are called otherwise
 
 
 def picture(body: Mapping[str, Any]) -> bytes:
@@ -32,16 +37,27 @@ def picture(body: Mapping[str, Any]) -> bytes:
         raise StudyError(f"A picture is one of {', '.join(FORMATS)}, got {form!r}.")
     study = study_from(body["study"])
     designs = designs_of(study, body)
-    with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as name:
+        folder = Path(name)
         if kind == NETWORKS:
-            draw_networks(_networks(designs), Path(folder), NETWORKS)
+            draw_networks(_networks(designs), folder, NETWORKS)
+        elif kind == HISTORY:
+            draw_simulation(_motion(study, designs, body), folder)
         else:
-            draw_study(dataset_of(body["study"], study, designs), Path(folder))
-        drawn = {path.stem: path for path in sorted(Path(folder).glob(f"*.{form}"))}
+            draw_study(dataset_of(body["study"], study, designs), folder)
+        drawn = {_KINDS.get(path.stem, path.stem): path for path in sorted(folder.glob(f"*.{form}"))}
         if kind not in drawn:
-            known = ", ".join((NETWORKS, *(name for name in drawn if name != NETWORKS)))
+            known = ", ".join(dict.fromkeys((NETWORKS, HISTORY, *drawn)))
             raise StudyError(f"There are pictures of {known}, got {kind!r}.")
         return drawn[kind].read_bytes()
+
+
+def _motion(study: Study, designs: Sequence[Design], body: Mapping[str, Any]) -> SimulationResult:
+    """The motion of a single design on the road, as the page shows it."""
+    if len(designs) != 1:
+        raise DesignError(f"A picture of the motion is one of a single design, got {len(designs)}.")
+    asked = simulated(study, designs[0], body)
+    return SimulationResult(asked, asked.run())
 
 
 def _networks(designs: Sequence[Design]) -> dict[str, Network]:

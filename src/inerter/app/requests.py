@@ -178,6 +178,7 @@ async def _forget_record(server: Server, request: Request) -> dict[str, Any]:
 
 
 async def _figure(server: Server, request: Request, body: bodies.FigureRequest) -> Response:
+    await server.warming.wait()
     found = await server.aside("inerter.app.pictures:picture", body.model_dump())
     return Response(found, media_type=media_type(f".{body.format}"))
 

@@ -11,17 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from inerter.app.answers import optimum
-from inerter.app.designs import designs_of
+from inerter.app.comparing import compared
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Stopped, Tell
-from inerter.errors import DesignError, StudyError
+from inerter.errors import StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.cases import Outcome
 from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
-from inerter.methods.compare import compare
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 
@@ -76,6 +75,9 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         done[0] = count
         tell(count, total, f"{last.layout} {last.index}" if last else "")
 
+    def preparing(count: int, total: int) -> None:
+        tell(0, 0, f"preparing {count} of {total}")
+
     def compiling(title: str, number: int, total: int) -> None:
         with suppress(Stopped):  # other threads tell this too; the next design will stop
             tell(0, 0, f"compiling kernels {number} of {total}: {title}")
@@ -87,37 +89,11 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         jobs=max((os.cpu_count() or 2) - 1, 1),
         progress=told,
         compiling=compiling,
+        preparing=preparing,
         finish=show,
     )
     return json.loads("".join(as_text(result)))
 
 
-def compared(body: Body, folder: Path, tell: Tell) -> Any:
-    study = study_from(body["study"])
-    designs = designs_of(study, body)
-    if not 2 <= len(designs) <= 4:
-        raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
-    first, *others = designs
-    indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
-    asked = [(design, index, method) for design in others for index in indices for method in methods]
-    rows: list[dict[str, Any]] = []
-    for design, index, method in asked:
-        tell(len(rows), len(asked), f"{design.name} {index}")
-        found = compare(design.vehicle, first.vehicle, study.asked(index, design.layout), study.method(method))
-        rows.append(
-            {
-                "name": design.name,
-                "index": index,
-                "method": method,
-                "unit": found.first.unit,
-                "value": found.first.value,
-                "first_value": found.second.value,
-                "difference": found.difference.value,
-                "standard_error": found.difference.standard_error,
-                "improvement_percent": -found.percent,
-                "improvement_error_percent": found.percent_error,
-                "status": found.status.kind.value,
-                "message": found.status.message,
-            }
-        )
-    return {"designs": [design.told(study) for design in designs], "comparisons": rows}
+def compare(body: Body, folder: Path, tell: Tell) -> Any:
+    return compared(study_from(body["study"]), body, tell)

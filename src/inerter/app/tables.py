@@ -42,6 +42,7 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
         "standard_error",
         "improvement_percent",
         "improvement_error_percent",
+        "tie",
         "status",
     )
     names = list(dict.fromkeys(chain.from_iterable(design["values"] for design in answer["designs"])))
@@ -71,6 +72,7 @@ def _history(answer: Mapping[str, Any]) -> Rows:
 
 _TABLES: dict[str, Callable[[Mapping[str, Any]], Rows]] = {
     "indices": _indices,
+    "compare": _indices,
     "response": _response,
     "history": _history,
 }

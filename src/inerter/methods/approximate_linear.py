@@ -22,7 +22,8 @@ from inerter.methods.counterpart import Counterpart, counterpart, has_play, with
 from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
-from inerter.methods.method import Estimate, Objective, Sees
+from inerter.methods.method import Estimate, Sees
+from inerter.methods.objective import Objective
 from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
@@ -314,7 +315,7 @@ def _inertia_felt(mechanism: Mechanism, name: str) -> float:
     """Inertia that resists a force where it acts [kg]."""
     if mechanism.ground_moves and name == GROUND_ACCELERATION:
         return 1.0  # an acceleration is a force for each kg
-    inertia = {coordinate.name: coordinate.inertia for coordinate in mechanism.coordinates}
+    inertia = {coordinate.name: coordinate.element.coefficient for coordinate in mechanism.coordinates}
     (port,) = (force.port for force in mechanism.forces if force.name == name)
     return 1.0 / sum(lever**2 / inertia[coordinate] for coordinate, lever in port.items() if lever)
 

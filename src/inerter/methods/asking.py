@@ -25,7 +25,8 @@ from inerter.vehicle.vehicle import Vehicle
 if TYPE_CHECKING:
     from typing_extensions import TypeIs
 
-    from inerter.methods.method import Estimate, Method, Objective
+    from inerter.methods.method import Estimate, Method
+    from inerter.methods.objective import Objective
 
 Array = NDArray[np.float64]
 

@@ -8,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from inerter.methods.method import Differentiable, Objective
+from inerter.methods.objective import Differentiable, Objective
 
 Array = NDArray[np.float64]
 _MOST_OF_EACH, _MOST_SUMS = 4, 24  # peaks of each part that a sum combines, and combinations that it tells
@@ -90,7 +89,7 @@ def _possible(values: Array) -> NDArray[np.bool_]:
 def combined(parts: Sequence[ObjectivePart], *, worst: bool) -> Objective:
     """The sum of the parts or the largest of them; with gradients if all of them have some."""
     values = CombinedValues(tuple(parts), worst)
-    known = all(hasattr(part.objective, "value_and_gradient") for part in parts)
+    known = all(isinstance(part.objective, Differentiable) for part in parts)
     found: Differentiable | CombinedValues = Combined(values) if known else values
     return found
 

@@ -14,11 +14,13 @@ from inerter.errors import Status
 from inerter.methods.asking import Asked, is_composed
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
+from inerter.methods.ties import ACCURACY
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
 _FEWEST = 4  # samples for a regression
 Controls = tuple[NDArray[np.float64], NDArray[np.float64]]
+Known = tuple[Estimate | None, Estimate | None]
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,13 @@ class Comparison:
         return 100.0 * self.difference.standard_error / abs(self.second.value)
 
     @property
+    def is_tie(self) -> bool:
+        """Whether either may be the better: nothing lies between them but chance, or the accuracy of their values."""
+        low, high = self.difference.interval
+        accuracy = 2.0 * ACCURACY * min(abs(self.first.value), abs(self.second.value))
+        return low - accuracy <= 0.0 <= high + accuracy
+
+    @property
     def status(self) -> Status:
         """How far both can be trusted: the first status that is not ok."""
         return self.first.status if not self.first.status.ok else self.second.status
@@ -63,6 +72,10 @@ class Comparison:
         if not np.isfinite(self.percent):
             return (
                 f"{self.first.value:.4g} and {self.second.value:.4g} {self.first.unit}: their difference is no number"
+            )
+        if self.is_tie:
+            return (
+                f"neither is known to be better: they differ by {abs(self.percent):.2g} % ± {self.percent_error:.1g} %"
             )
         word = "better" if self.difference.value < 0.0 else "worse"
         return f"the first is {abs(self.percent):.2g} % ± {self.percent_error:.1g} % {word} than the second"
@@ -74,7 +87,7 @@ def compare(
     index: Asked,
     method: Method,
     *,
-    known: Estimate | None = None,
+    known: Known = (None, None),
     executor: Executor | None = None,
 ) -> Comparison:
     """Two designs by one index and one method, with the standard error of their difference.
@@ -82,8 +95,8 @@ def compare(
     A method that averages drives both over the same roads, as many and as long for both, and the difference is averaged
     road by road: what the roads do to both alike cancels. What friction does to first order, which is quickly
     computed, is averaged over many more roads by `ExpectedValue`, and only the rest over these (a control variate).
-    Standard errors of numbers without samples add up as independent ones. `known` is the estimate of the second by
-    this very method, if it is there already. An `executor` shares the roads, as that of `evaluate` does.
+    Standard errors of numbers without samples add up as independent ones. `known` are the estimates of the two
+    by this very method, as far as they are there already. An `executor` shares the roads, as that of `evaluate` does.
 
     Raises what `evaluate` raises.
 
@@ -102,8 +115,9 @@ def compare(
         return _compared(first, second, index, method, known)
 
 
-def _compared(first: Vehicle, second: Vehicle, index: Asked, method: Method, known: Estimate | None) -> Comparison:
-    one, other = evaluate(first, index, method), known or evaluate(second, index, method)
+def _compared(first: Vehicle, second: Vehicle, index: Asked, method: Method, known: Known) -> Comparison:
+    designs = first, second
+    one, other = (found or evaluate(design, index, method) for found, design in zip(known, designs, strict=True))
     most, longest = max(one.realisations, other.realisations), max(one.period or 0, other.period or 0) or None
     if most > 0 and isinstance(method, Averaging):
         method = method.fixed(most, longest)

@@ -17,7 +17,8 @@ from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_composed, objective_of
 from inerter.methods.combined import ObjectivePart, combined
-from inerter.methods.method import Estimate, Method, Objective, asked_of
+from inerter.methods.method import Estimate, Method, asked_of
+from inerter.methods.objective import Objective
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
 from inerter.vehicle.changed import changed

@@ -200,7 +200,7 @@ def _typical_damping(mechanism: Mechanism) -> float:
     """Root of the largest stiffness times the largest inertia: the impedance at a natural frequency."""
     elements = [element for mount in mechanism.mounts() for element in mount.network.elements()]
     springs = [e.gain * _size(e.value) for e in elements if e.linear is Linear.STIFFNESS]
-    inertias = [coordinate.inertia for coordinate in mechanism.coordinates]
+    inertias = [_size(coordinate.inertia) for coordinate in mechanism.coordinates]
     dampers = [e.gain * _size(e.value) for e in elements if e.linear is Linear.DAMPING]
     if springs and inertias:
         return math.sqrt(max(springs) * max(inertias))

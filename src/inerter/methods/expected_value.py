@@ -16,7 +16,8 @@ from inerter.errors import InerterError, LinearSystemError, MechanismError, Perf
 from inerter.indices.question import Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
-from inerter.methods.method import Estimate, Objective, Sees
+from inerter.methods.method import Estimate, Sees
+from inerter.methods.objective import Objective
 from inerter.methods.on_roads import mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds, worst

@@ -16,6 +16,7 @@ from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, without_tied_values
+from inerter.methods.objective import Objective
 from inerter.norms.hinf import GainPeak
 from inerter.systems.arrivals import inputs_of
 from inerter.systems.graph import full_graph
@@ -43,34 +44,6 @@ class Estimate:
     notes: tuple[str, ...] = ()  # what the method left out
     samples: tuple[float, ...] = field(default=(), repr=False)  # the value on each random input
     period: int | None = None  # of each random input [s]
-
-
-class Objective(Protocol):
-    """An index of a design as a function of its free values, for an optimiser. Points are (values,) or (n, values).
-
-    One that knows no more than its values is costly: searches make do with few of them.
-    """
-
-    def values(self, points: Array) -> Array:
-        """The index at each row of `points`."""
-        ...
-
-
-@runtime_checkable
-class Differentiable(Objective, Protocol):
-    """An index with gradients: smooth, or the largest of smooth functions."""
-
-    def value_and_gradient(self, point: Array) -> tuple[float, Array]:
-        """The index and its gradient at one point, where it is smooth."""
-        ...
-
-    def active(self, point: Array) -> Array | None:
-        """Where the index is the largest of many smooth functions: those that matter here; None if it is smooth."""
-        ...
-
-    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """Those smooth functions and their gradients (components,), (components, values)."""
-        ...
 
 
 @runtime_checkable

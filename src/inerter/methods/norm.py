@@ -13,7 +13,8 @@ from inerter.errors import DesignError
 from inerter.indices.question import Index, Question
 from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem
-from inerter.methods.method import Differentiable, Estimate, Sees
+from inerter.methods.method import Estimate, Sees
+from inerter.methods.objective import Differentiable
 from inerter.systems.descriptor import close
 from inerter.vehicle.vehicle import Vehicle
 

@@ -16,8 +16,9 @@ from inerter.methods.describing_function import HarmonicBalance, harmonic_balanc
 from inerter.methods.equivalent import check_gaps, check_outputs, has_friction
 from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.method import Differentiable, Estimate, Sees
+from inerter.methods.method import Estimate, Sees
 from inerter.methods.norm import Norm
+from inerter.methods.objective import Differentiable
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

@@ -118,7 +118,7 @@ def _budget(
         if logarithm not in known:
             value = float(np.exp(logarithm))
             other = baseline if same else with_element(baseline, parameter, value)
-            known[logarithm] = compare(with_element(design, parameter, value), other, index, fixed, known=same)
+            known[logarithm] = compare(with_element(design, parameter, value), other, index, fixed, known=(None, same))
         return known[logarithm].difference.value
 
     grid = np.linspace(np.log(lower), np.log(upper), _POINTS).tolist()

@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.methods.method import Differentiable, Objective
+from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.levels import LogRows, lowest_level
 from inerter.optimisation.limits import Bound, Sense
 from inerter.optimisation.local import LocalOptimum

@@ -13,7 +13,8 @@ from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
 from inerter.indices.question import Combination, Index, OfIndex, Question
 from inerter.methods.asking import Asked, is_composed, objective_of
-from inerter.methods.method import Differentiable, Method, Objective, check_request
+from inerter.methods.method import Method, check_request
+from inerter.methods.objective import Differentiable, Objective
 from inerter.units import format_quantity
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle

@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.methods.method import Differentiable, Objective
+from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.levels import LogRows, below, lowest_level
 
 Array = NDArray[np.float64]

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Differentiable, Estimate, Method, Objective, Sees, check_request
+from inerter.methods.method import Estimate, Method, Sees, check_request
 from inerter.methods.norm import Norm
+from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.optimisation.constrained import KEPT, KEPT_COSTLY, Limited, searches, trust_region_within
@@ -179,7 +180,7 @@ def _best(
     held = held_at(problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value))
     estimate = over_linear.first if over_linear else _confirmed(estimate_of(design, index, method), best.value)
     if not best.excess <= kept:
-        estimate = replace(estimate, status=infeasible(held, parameters, _units(vehicle)))
+        estimate = replace(estimate, status=infeasible(held, parameters, vehicle.mechanism().units()))
     return Optimum(
         estimate=estimate,
         parameters=parameters,
@@ -334,12 +335,6 @@ def _active_bounds(free: dict[str, Free], parameters: dict[str, float]) -> dict[
         elif place > 1.0 - _AT_BOUND:
             active[name] = "upper"
     return active
-
-
-def _units(vehicle: Vehicle) -> dict[str, str]:
-    """The unit of each free value."""
-    elements = [element for mount in vehicle.mechanism().mounts() for element in mount.network.elements()]
-    return {str(element.value.name): element.unit for element in elements if isinstance(element.value, Free)}
 
 
 def _confirmed(estimate: Estimate, searched: float) -> Estimate:

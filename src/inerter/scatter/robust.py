@@ -17,7 +17,8 @@ from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, objective_of
-from inerter.methods.method import Differentiable, Estimate, Method, Objective, asked_of
+from inerter.methods.method import Estimate, Method, asked_of
+from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of

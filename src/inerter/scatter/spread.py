@@ -94,7 +94,7 @@ def _value(vehicle: Vehicle, name: str) -> float:
     if name in vehicle.free_values():
         return np.nan
     if name in quantities(vehicle):
-        return float(quantities(vehicle)[name])
+        return _number(name, quantities(vehicle)[name])
     chosen = labelled(vehicle, name)
     if chosen:
         value = chosen[0].value
@@ -105,9 +105,15 @@ def _value(vehicle: Vehicle, name: str) -> float:
             raise DesignError(f"{name!r} stands for {several}, which cannot scatter as one. Give them different names.")
         return value
     if name in masses(vehicle):
-        return masses(vehicle)[name]
+        return _number(name, masses(vehicle)[name])
     changed(vehicle, {name: 1.0})  # which says what there is
     raise AssertionError("unreachable")
+
+
+def _number(name: str, value: float | Free) -> float:
+    if isinstance(value, Free):
+        raise DesignError(f"{name!r} is free by the name of {value.name!r}; name that.")
+    return value
 
 
 def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:

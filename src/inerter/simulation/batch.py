@@ -18,7 +18,16 @@ from inerter.errors import SimulationError, Status
 from inerter.kernels.prepare import prepare_on
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
-from inerter.simulation.inputs import DrivenMany, InputTable, assign, check_driven, check_holds, tabulate, whole_steps
+from inerter.simulation.inputs import (
+    DrivenMany,
+    InputTable,
+    assign,
+    check_driven,
+    check_holds,
+    starting_from,
+    tabulate,
+    whole_steps,
+)
 from inerter.simulation.start import ending_of, initial_state
 from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
@@ -90,7 +99,7 @@ def simulate_many(
     if not is_number(settled):
         raise SimulationError(f"The time from which on values count is a number of seconds, got {settled!r}.")
     check_driven("simulate_many", driven)
-    speed, initial = driven.get("speed"), driven.pop("initial", "rest")
+    speed, initial = driven.get("speed"), starting_from(driven)
     groups, count = groups_of(driven)
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0

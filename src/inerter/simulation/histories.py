@@ -12,7 +12,7 @@ from inerter.errors import SimulationError, WorkError
 from inerter.kernels.prepare import prepare_on
 from inerter.simulation import event_driven
 from inerter.simulation.batch import groups_of, listed
-from inerter.simulation.inputs import DrivenMany, check_driven
+from inerter.simulation.inputs import DrivenMany, check_driven, starting_from
 from inerter.simulation.simulate import simulate
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import piecewise
@@ -53,7 +53,7 @@ def simulate_to_files(
             find(known, name, SimulationError)
     place = _empty(folder)
     files = [[place / f"design-{i:05d}-signal-{j:03d}.nc" for j in range(count)] for i in range(len(cars))]
-    shared = {"speed": driven.get("speed"), "initial": driven.get("initial", "rest")}
+    shared = {"speed": driven.get("speed"), "initial": starting_from(driven)}
     same = {"duration": duration, "step": step, "every": every, **shared}
     items = [
         (car, {name: group[j] for name, group in groups.items()}, str(files[i][j]))

@@ -83,6 +83,11 @@ def check_driven(caller: str, driven: Mapping[str, object]) -> None:
         raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (what drives a run: {known}).")
 
 
+def starting_from(driven: Driven | DrivenMany) -> Initial:
+    """The state to start from: at rest, if nothing is said."""
+    return driven.get("initial", "rest")
+
+
 def assign(
     mechanism: Mechanism,
     road: object = None,

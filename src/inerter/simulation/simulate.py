@@ -8,9 +8,18 @@ from typing import Any, Literal, Unpack
 from inerter.checks import is_number
 from inerter.errors import SimulationError
 from inerter.simulation import event_driven, stepped
-from inerter.simulation.inputs import MEMORY_LIMIT, Driven, assign, check_driven, check_holds, tabulate, whole_steps
+from inerter.simulation.inputs import (
+    MEMORY_LIMIT,
+    Driven,
+    assign,
+    check_driven,
+    check_holds,
+    starting_from,
+    tabulate,
+    whole_steps,
+)
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.start import Initial, ending_of, initial_state
+from inerter.simulation.start import ending_of, initial_state
 from inerter.simulation.steady import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
@@ -53,8 +62,8 @@ def simulate(
     vehicles do. An integration that cannot go on ends in the trajectory's `status`.
     """
     check_driven("simulate", driven)
-    moved: dict[str, Any] = {**driven}
-    initial: Initial = moved.pop("initial", "rest")
+    initial = starting_from(driven)
+    moved: dict[str, Any] = {name: given for name, given in driven.items() if name != "initial"}
     system = piecewise(vehicle)
     signals, delays = assign(system.mechanism, **moved)
     periodic = isinstance(initial, str) and initial == "periodic"

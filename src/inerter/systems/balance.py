@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from inerter.errors import LinearSystemError
-from inerter.networks.elements import Element, Inerter
+from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
 from inerter.systems.frame import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import Branch
+from inerter.vehicle.mechanism import GROUND_ACCELERATION
 
 
 def balance(frame: Frame) -> tuple[Long, Long]:
@@ -28,18 +29,31 @@ def balance(frame: Frame) -> tuple[Long, Long]:
         term = np.multiply.outer(factor * on.astype(np.longdouble), np.concatenate(to))
         terms[place] += term
         sizes[place] += np.abs(term)
-    for j, row in enumerate(frame.force_rows):
+    for j, (name, row) in enumerate(zip(frame.inputs[frame.roads :], frame.force_rows, strict=True)):
         column = e + frame.states + frame.roads + j
-        force = _on_forces(frame, row)
-        terms[0, :, column], sizes[0, :, column] = -force, np.abs(force)
+        for place, factor, part in _pushed(frame, name, row):
+            force = factor * _on_forces(frame, part).astype(np.longdouble)
+            terms[place, :, column] -= force
+            sizes[place, :, column] += np.abs(force)
     return terms, sizes
+
+
+def _pushed(frame: Frame, name: str, row: Matrix) -> Iterator[tuple[int, float, Matrix]]:
+    """A force by the slices in which it stands: that of moving ground is on each mass as large as it is."""
+    if name != GROUND_ACCELERATION or not frame.mechanism.ground_moves:
+        yield 0, 1.0, row
+        return
+    for coordinate, on in zip(frame.mechanism.coordinates, np.eye(row.size), strict=False):
+        if not coordinate.angle:
+            place, factor = frame.slice_of(coordinate.element)
+            yield place, -factor, on
 
 
 def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, RowBlocks]]:
     """Each mass and element: how it acts on the rows of the balance, and what its value multiplies."""
     at = frame.slots
     masses = [
-        Branch(Inerter(coordinate.inertia), coordinate.name, row, np.zeros(0))
+        Branch(coordinate.element, coordinate.name, row, np.zeros(0))
         for coordinate, row in zip(frame.mechanism.coordinates, np.eye(len(frame.graph.nodes)), strict=False)
     ]
     for branch in (*masses, *frame.graph.branches):

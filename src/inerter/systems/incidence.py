@@ -36,7 +36,7 @@ def inertias(mechanism: Mechanism, graph: Graph) -> tuple[Matrix, Matrix]:
 def inertia_values(mechanism: Mechanism, graph: Graph) -> Matrix:
     """The values of `inertias`, none of which is free."""
     inerters = (branch.element.coefficient for branch in of_law(graph, Linear.MASS))
-    return np.array([*(coordinate.inertia for coordinate in mechanism.coordinates), *inerters])
+    return np.array([*(coordinate.element.coefficient for coordinate in mechanism.coordinates), *inerters])
 
 
 def ports(mechanism: Mechanism, graph: Graph) -> Matrix:

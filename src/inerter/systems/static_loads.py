@@ -9,6 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
+from inerter.networks.elements import Free, middle
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.graph import full_graph
 from inerter.units import STANDARD_GRAVITY
@@ -20,13 +21,14 @@ _BALANCED = 1e-9  # of the sizes that are added up
 
 
 def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
-    """The static load of each tyre [N], pressing on the road, by the tyre's name; values may be free.
+    """The static load of each tyre [N], pressing on the road, by the tyre's name; values but masses may be free.
 
     Virtual work over the motions that strain no spring: no stiffness enters. Where more tyres carry the vehicle than
     balance decides, as four wheels do, its springs are taken to be trimmed so that the loads are as even as balance
     allows. Every coordinate that is no angle is taken as vertical.
 
-    Raises `MechanismError` if a weight rests on nothing or on the ground beside the tyres, or a tyre would hang.
+    Raises `MechanismError` if a mass is free, if a weight rests on nothing or on the ground beside the tyres, or if a
+    tyre would hang.
 
     >>> from inerter import Damper, QuarterCar, Spring
     >>> static_tyre_loads(QuarterCar(300.0, 40.0, 2e5, Spring(2e4) | Damper(1.5e3)))
@@ -36,6 +38,9 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
     mechanism = vehicle.mechanism()
     if not mechanism.tyres:
         return {}
+    for coordinate in mechanism.coordinates:
+        if isinstance(coordinate.inertia, Free) and not coordinate.angle:
+            raise MechanismError(f"The static tyre loads are not known: the mass of {coordinate.name!r} is free.")
     moved, touched, weight = _free_ways(mechanism)
     upright = np.concatenate([weight > 0.0, np.ones(touched.shape[0])])
     if not _reached(np.concatenate([moved[: weight.size], touched]), upright):
@@ -63,7 +68,7 @@ def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
     ]
     rows = np.array([[*b.nodes, *b.roads[len(mechanism.roads) :]] for b in carrying])
     ways = scipy.linalg.null_space(rows.reshape(len(carrying), -1), rcond=_BALANCED)
-    weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * c.inertia for c in mechanism.coordinates])
+    weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * middle(c.inertia) for c in mechanism.coordinates])
     return ways[: len(graph.nodes)], ways[len(graph.nodes) :], weight
 
 

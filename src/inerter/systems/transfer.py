@@ -38,6 +38,7 @@ def transfer_functions(
     """From road velocities and forces named `inputs` to the outputs named `wanted`, at `values` of the free values."""
     known = outputs(mechanism, graph)
     asked = [known[name] for name in wanted]
+    mechanism = mechanism.with_masses(values)
     nodal = _Nodal(mechanism, graph, values, asked)
     rows = [_OutputRow.of(output, nodal) for output in asked]
     loads = [nodal.load(name) for name in inputs]
@@ -100,7 +101,7 @@ class _Nodal:
         levers = (x for row in rows for x in self._meant(*row))
         self.lever_unit = lcm(*{x.denominator for x in levers})
         numbers = [_coefficient(b.element, values) for b in graph.branches]
-        masses = [coordinate.inertia for coordinate in mechanism.coordinates]
+        masses = [float(coordinate.element.coefficient) for coordinate in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [

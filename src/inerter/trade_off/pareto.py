@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, InerterError, PerformanceIndexError, Status, StatusKind
 from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.combined import ObjectivePart, combined
-from inerter.methods.method import Differentiable, Method, check_request
+from inerter.methods.method import Method, check_request
+from inerter.methods.objective import Differentiable
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.optimisation.constrained import Limited, polished, searches, trust_region_within

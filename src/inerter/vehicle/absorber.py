@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from inerter.fields import mount as mounted
 from inerter.fields import quantity
-from inerter.networks.elements import Damper, Network, Spring
+from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.vehicle.mechanism import GROUND, Coordinate, Force, Measures, Mechanism, Strut
 from inerter.vehicle.vehicle import VehicleModel
 
@@ -25,12 +25,16 @@ class Absorber(VehicleModel):
     `mount` or `ground` is no network.
     """
 
-    primary_mass: float = field(metadata=quantity("kg", "What is to be kept quiet.", "1000 kg"))
-    primary_stiffness: float = field(metadata=quantity("N/m", "Of its support.", "40 kN/m"))
-    mass: float = field(metadata=quantity("kg", "Of the absorber.", "50 kg"))
+    primary_mass: float | Free = field(
+        metadata=quantity("kg", "What is to be kept quiet.", "1000 kg", may_be_free=True)
+    )
+    primary_stiffness: float | Free = field(metadata=quantity("N/m", "Of its support.", "40 kN/m", may_be_free=True))
+    mass: float | Free = field(metadata=quantity("kg", "Of the absorber.", "50 kg", may_be_free=True))
     mount: Network = field(metadata=mounted("Between primary mass and absorber."))
     ground: Network | None = field(default=None, metadata=mounted("Between absorber and ground."))
-    primary_damping: float = field(default=0.0, metadata=quantity("N s/m", "Of its support.", "100 N s/m"))
+    primary_damping: float | Free = field(
+        default=0.0, metadata=quantity("N s/m", "Of its support.", "100 N s/m", may_be_free=True)
+    )
     key: ClassVar[str] = "absorber"
     moved: ClassVar[str] = "primary_force"
     forces: ClassVar[Mapping[str, str]] = {"primary_force": "N"}
@@ -38,7 +42,7 @@ class Absorber(VehicleModel):
     def mechanism(self) -> Mechanism:
         """The same absorber as a `Mechanism`."""
         support: Network = Spring(self.primary_stiffness)
-        if self.primary_damping > 0.0:
+        if self.primary_damping != 0.0:
             support = support | Damper(self.primary_damping)
         primary, absorber = {"primary": 1.0}, {"absorber": 1.0}
         struts = [Strut("support", support, upper=primary, lower=GROUND)]

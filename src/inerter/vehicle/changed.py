@@ -40,20 +40,20 @@ def opened(vehicle: Vehicle) -> Vehicle:
     return vehicle if isinstance(vehicle, VehicleModel | Mechanism) else vehicle.mechanism()
 
 
-def quantities(vehicle: Vehicle) -> dict[str, float]:
+def quantities(vehicle: Vehicle) -> dict[str, float | Free]:
     """The quantities of a vehicle by name, and of what stands on it."""
     below = quantities(vehicle.vehicle) if isinstance(vehicle, Stage) else {}
     return below | _own_quantities(vehicle)
 
 
-def masses(vehicle: Vehicle) -> dict[str, float]:
+def masses(vehicle: Vehicle) -> dict[str, float | Free]:
     """The inertias of the coordinates of a `Mechanism`, which may carry something, by their names."""
     if isinstance(vehicle, Stage):
         return masses(vehicle.vehicle)
     return {c.name: c.inertia for c in vehicle.coordinates} if isinstance(vehicle, Mechanism) else {}
 
 
-def _own_quantities(vehicle: Vehicle) -> dict[str, float]:
+def _own_quantities(vehicle: Vehicle) -> dict[str, float | Free]:
     if not isinstance(vehicle, VehicleModel | Stage):
         return {}
     return {field.name: getattr(vehicle, field.name) for field in fields_of(type(vehicle))}

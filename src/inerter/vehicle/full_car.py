@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from inerter.fields import mount, quantity
-from inerter.networks.elements import Network, Spring
+from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import Coordinate, Force, Measures, Mechanism, Port, RoadInput, Strut, Tyre, Weighted
 from inerter.vehicle.vehicle import VehicleModel
 
@@ -27,13 +27,25 @@ class FullCar(VehicleModel):
     Raises `MechanismError` unless masses, stiffnesses and lengths are positive.
     """
 
-    sprung_mass: float = field(metadata=quantity("kg", "The body.", "1400 kg"))
-    pitch_inertia: float = field(metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "2400 kg m^2"))
-    roll_inertia: float = field(metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "520 kg m^2"))
-    unsprung_mass_front: float = field(metadata=quantity("kg", "One front wheel and hub.", "45 kg"))
-    unsprung_mass_rear: float = field(metadata=quantity("kg", "One rear wheel and hub.", "40 kg"))
-    tyre_stiffness_front: float = field(metadata=quantity("N/m", "Of one front tyre.", "220 kN/m"))
-    tyre_stiffness_rear: float = field(metadata=quantity("N/m", "Of one rear tyre.", "220 kN/m"))
+    sprung_mass: float | Free = field(metadata=quantity("kg", "The body.", "1400 kg", may_be_free=True))
+    pitch_inertia: float | Free = field(
+        metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "2400 kg m^2", may_be_free=True)
+    )
+    roll_inertia: float | Free = field(
+        metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "520 kg m^2", may_be_free=True)
+    )
+    unsprung_mass_front: float | Free = field(
+        metadata=quantity("kg", "One front wheel and hub.", "45 kg", may_be_free=True)
+    )
+    unsprung_mass_rear: float | Free = field(
+        metadata=quantity("kg", "One rear wheel and hub.", "40 kg", may_be_free=True)
+    )
+    tyre_stiffness_front: float | Free = field(
+        metadata=quantity("N/m", "Of one front tyre.", "220 kN/m", may_be_free=True)
+    )
+    tyre_stiffness_rear: float | Free = field(
+        metadata=quantity("N/m", "Of one rear tyre.", "220 kN/m", may_be_free=True)
+    )
     distance_front: float = field(metadata=quantity("m", "From the centre of mass to the front axle.", "1.2 m"))
     distance_rear: float = field(metadata=quantity("m", "From the centre of mass to the rear axle.", "1.5 m"))
     track_front: float = field(metadata=quantity("m", "From the left front wheel and strut to the right.", "1.52 m"))

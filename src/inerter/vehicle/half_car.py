@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from inerter.fields import mount, quantity
-from inerter.networks.elements import Network, Spring
+from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import (
     Coordinate,
     Force,
@@ -31,12 +31,20 @@ class HalfCar(VehicleModel):
     Raises `MechanismError` unless masses, stiffnesses and distances are positive.
     """
 
-    sprung_mass: float = field(metadata=quantity("kg", "Half of the body.", "363.5 kg"))
-    pitch_inertia: float = field(metadata=quantity("kg m^2", "Of that half, about its centre of mass.", "200 kg m^2"))
-    unsprung_mass_front: float = field(metadata=quantity("kg", "Front wheel and hub.", "25 kg"))
-    unsprung_mass_rear: float = field(metadata=quantity("kg", "Rear wheel and hub.", "20 kg"))
-    tyre_stiffness_front: float = field(metadata=quantity("N/m", "Of the front tyre.", "120 kN/m"))
-    tyre_stiffness_rear: float = field(metadata=quantity("N/m", "Of the rear tyre.", "100 kN/m"))
+    sprung_mass: float | Free = field(metadata=quantity("kg", "Half of the body.", "363.5 kg", may_be_free=True))
+    pitch_inertia: float | Free = field(
+        metadata=quantity("kg m^2", "Of that half, about its centre of mass.", "200 kg m^2", may_be_free=True)
+    )
+    unsprung_mass_front: float | Free = field(
+        metadata=quantity("kg", "Front wheel and hub.", "25 kg", may_be_free=True)
+    )
+    unsprung_mass_rear: float | Free = field(metadata=quantity("kg", "Rear wheel and hub.", "20 kg", may_be_free=True))
+    tyre_stiffness_front: float | Free = field(
+        metadata=quantity("N/m", "Of the front tyre.", "120 kN/m", may_be_free=True)
+    )
+    tyre_stiffness_rear: float | Free = field(
+        metadata=quantity("N/m", "Of the rear tyre.", "100 kN/m", may_be_free=True)
+    )
     distance_front: float = field(metadata=quantity("m", "From the centre of mass to the front axle.", "0.775 m"))
     distance_rear: float = field(metadata=quantity("m", "From the centre of mass to the rear axle.", "1.265 m"))
     front: Network = field(metadata=mount("Between body and front wheel."))

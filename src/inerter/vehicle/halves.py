@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 
-from inerter.networks.elements import Free
+from inerter.networks.elements import Free, middle
 from inerter.vehicle.mechanism import Coordinate, Mechanism, Point, Port, Strut, Tyre
 
 
@@ -65,7 +65,9 @@ def _folded(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
 
     struts = [replace(s, upper=folded(s.upper), lower=folded(s.lower)) for s in mechanism.struts]
     still = tuple(strut for strut in struts if strut.upper == strut.lower)
-    coordinates = (replace(c, inertia=2.0 * c.inertia) if c.name in doubled else c for c in mechanism.coordinates)
+    coordinates = (
+        replace(c, inertia=2.0 * middle(c.inertia)) if c.name in doubled else c for c in mechanism.coordinates
+    )
     gone = (Point(c.name, follows[c.name], c.angle) for c in mechanism.coordinates if c.name in follows)
     return replace(
         mechanism,
@@ -80,7 +82,9 @@ def _folded(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
 
 
 def _is_its_image(mechanism: Mechanism) -> bool:
-    """Whether masses and mounts are the same in the mirror."""
+    """Whether masses and mounts are the same in the mirror, and no mass is free: that of two would be another."""
+    if any(isinstance(c.inertia, Free) for c in mechanism.coordinates):
+        return False
     images: dict[str, tuple[str, float]] = {}
     for a, b in mechanism.mirror:
         images |= {a: (b, 1.0), b: (a, 1.0)} if a != b else {a: (a, -1.0)}
@@ -90,7 +94,7 @@ def _is_its_image(mechanism: Mechanism) -> bool:
     return Counter(_mounted(mechanism, {})) == Counter(_mounted(mechanism, images))
 
 
-def _law(coordinate: Coordinate) -> tuple[float, bool]:
+def _law(coordinate: Coordinate) -> tuple[float | Free, bool]:
     return coordinate.inertia, coordinate.angle
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from inerter.checks import check_positive, is_number
 from inerter.errors import DesignError, MechanismError
-from inerter.networks.elements import NAME, Free, Network, Tied, check_network
+from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
 from inerter.networks.transform import name_free_values, with_values
 
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
@@ -24,11 +24,24 @@ TRACKS = ("", "left", "right")
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A degree of freedom with its mass [kg], or its moment of inertia [kg m^2] if it is an angle [rad]."""
+    """A degree of freedom with its mass [kg], or its moment of inertia [kg m^2] if it is an angle [rad].
+
+    Either may be free.
+    """
 
     name: str
-    inertia: float
+    inertia: float | Free
     angle: bool = False
+
+    @property
+    def element(self) -> Element:
+        """Its inertia as an inerter to a place that has no acceleration."""
+        return Inerter(self.inertia, self.name)
+
+    @property
+    def unit(self) -> str:
+        """Of its inertia."""
+        return "kg m^2" if self.angle else "kg"
 
 
 @dataclass(frozen=True)
@@ -132,7 +145,11 @@ class Mechanism:
         _check_numbers(self)
         _check_ports(self)
         _check_attached(self)
-        named = name_free_values({mount.name: mount.network for mount in self.mounts()})
+        masses = {c.name: c.element for c in self.coordinates if isinstance(c.inertia, Free)}
+        named = name_free_values({**{mount.name: mount.network for mount in self.mounts()}, **masses})
+        if masses:
+            coordinates = (_with_inertia(c, named[c.name]) if c.name in masses else c for c in self.coordinates)
+            object.__setattr__(self, "coordinates", tuple(coordinates))
         object.__setattr__(self, "struts", tuple(replace(s, network=named[s.name]) for s in self.struts))
         object.__setattr__(self, "tyres", tuple(replace(t, network=named[t.name]) for t in self.tyres))
 
@@ -168,9 +185,16 @@ class Mechanism:
         yield from self.tyres
 
     def free_values(self) -> dict[str, Free]:
-        """The free values by name, in the order in which they appear."""
+        """The free values by name: those of networks in the order in which they appear, then masses."""
         elements = (element for mount in self.mounts() for element in mount.network.elements())
-        return {str(e.value.name): e.value for e in elements if isinstance(e.value, Free)}
+        values = [*(element.value for element in elements), *(c.inertia for c in self.coordinates)]
+        return {str(value.name): value for value in values if isinstance(value, Free)}
+
+    def units(self) -> dict[str, str]:
+        """The unit of each free value."""
+        elements = (element for mount in self.mounts() for element in mount.network.elements())
+        values = [*((e.value, e.unit) for e in elements), *((c.inertia, c.unit) for c in self.coordinates)]
+        return {str(value.name): unit for value, unit in reversed(values) if isinstance(value, Free)}
 
     def with_values(self, values: Mapping[str, float]) -> Mechanism:
         """The same mechanism with the named free values fixed.
@@ -179,10 +203,23 @@ class Mechanism:
         """
         check_known(values, self.free_values())
         return replace(
-            self,
+            self.with_masses(values),
             struts=tuple(replace(s, network=with_values(s.network, values)) for s in self.struts),
             tyres=tuple(replace(t, network=with_values(t.network, values)) for t in self.tyres),
         )
+
+    def with_masses(self, values: Mapping[str, float]) -> Mechanism:
+        """The same mechanism with those free masses fixed that are named; other names are passed over."""
+        if not any(isinstance(c.inertia, Free) for c in self.coordinates):
+            return self
+        coordinates = tuple(_with_inertia(c, with_values(c.element, values)) for c in self.coordinates)
+        return replace(self, coordinates=coordinates)
+
+
+def _with_inertia(coordinate: Coordinate, element: Network) -> Coordinate:
+    assert isinstance(element, Inerter)
+    assert not isinstance(element.value, Tied)
+    return replace(coordinate, inertia=element.value)
 
 
 _KINDS: dict[str, type] = {
@@ -214,9 +251,17 @@ def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
 
 
 def _with_ground(forces: Iterable[Force], coordinates: Iterable[Coordinate]) -> tuple[Force, ...]:
-    """The forces, that of the ground on the masses as they are now."""
-    masses = {c.name: -c.inertia for c in coordinates if not c.angle}
+    """The forces, that of the ground on the masses as they are now; one that is free is in the middle of its bounds."""
+    masses = {c.name: -middle(c.inertia) for c in coordinates if not c.angle}
     return tuple(replace(f, port=masses) if f.name == GROUND_ACCELERATION else f for f in forces)
+
+
+def check_quantity(what: str, value: object, unit: str) -> None:
+    """Raises `MechanismError` unless `value` is positive, or free between positive bounds."""
+    if not isinstance(value, Free):
+        check_positive(MechanismError, what, value, unit)
+    elif value.lower == 0.0:
+        raise MechanismError(f"{what} must be positive, and its lower bound is 0 {unit}. Give a small positive bound.")
 
 
 def _check_measures(measures: object) -> None:
@@ -257,9 +302,7 @@ def _check_numbers(mechanism: Mechanism) -> None:
         raise MechanismError("A mechanism needs at least one coordinate with a mass, or a strut that a road moves.")
     for coordinate in mechanism.coordinates:
         what = "Moment of inertia" if coordinate.angle else "Mass"
-        check_positive(
-            MechanismError, f"{what} of {coordinate.name!r}", coordinate.inertia, "kg m^2" if coordinate.angle else "kg"
-        )
+        check_quantity(f"{what} of {coordinate.name!r}", coordinate.inertia, coordinate.unit)
     for road in mechanism.roads:
         if not is_number(road.distance) or road.distance < 0.0:
             raise MechanismError(
@@ -305,7 +348,8 @@ def check_values(mechanism: Mechanism) -> None:
             if not isinstance(element.value, Free | Tied):
                 _check_size("value", element.label, element.value, element.unit)
     for coordinate in mechanism.coordinates:
-        _check_size("inertia", coordinate.name, coordinate.inertia, "kg m^2" if coordinate.angle else "kg")
+        if not isinstance(coordinate.inertia, Free):
+            _check_size("inertia", coordinate.name, coordinate.inertia, coordinate.unit)
 
 
 def _check_size(what: str, of: str, value: float, unit: str) -> None:

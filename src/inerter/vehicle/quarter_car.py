@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from inerter.fields import mount, quantity
-from inerter.networks.elements import Network, Spring
+from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import (
     Coordinate,
     Force,
@@ -31,9 +31,13 @@ class QuarterCar(VehicleModel):
     Raises `MechanismError` unless masses and tyre stiffness are positive, `NetworkError` if `strut` is no network.
     """
 
-    sprung_mass: float = field(metadata=quantity("kg", "A quarter of the body.", "181.75 kg"))
-    unsprung_mass: float = field(metadata=quantity("kg", "Wheel, hub and their share of the suspension.", "25 kg"))
-    tyre_stiffness: float = field(metadata=quantity("N/m", "Of the tyre, vertically.", "120 kN/m"))
+    sprung_mass: float | Free = field(metadata=quantity("kg", "A quarter of the body.", "181.75 kg", may_be_free=True))
+    unsprung_mass: float | Free = field(
+        metadata=quantity("kg", "Wheel, hub and their share of the suspension.", "25 kg", may_be_free=True)
+    )
+    tyre_stiffness: float | Free = field(
+        metadata=quantity("N/m", "Of the tyre, vertically.", "120 kN/m", may_be_free=True)
+    )
     strut: Network = field(metadata=mount("Between body and wheel."))
     key: ClassVar[str] = "quarter-car"
     forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N"}

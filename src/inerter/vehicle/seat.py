@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-from inerter.checks import check_positive
-from inerter.errors import MechanismError
 from inerter.fields import mount, quantity
 from inerter.networks.elements import Network, check_network
 from inerter.networks.transform import name_free_values
 from inerter.vehicle.mechanism import Coordinate, Mechanism, Port, Strut, Weighted
-from inerter.vehicle.vehicle import Stage, Vehicle, check_vehicle
+from inerter.vehicle.vehicle import Stage, Vehicle, check_vehicle, name_free_quantities
 
 
 @dataclass(frozen=True)
@@ -28,7 +26,9 @@ class Seat(Stage):
     """
 
     vehicle: Vehicle
-    mass: float = field(metadata=quantity("kg", "The occupant, with what moves along of the seat.", "60 kg"))
+    mass: float = field(
+        metadata=quantity("kg", "The occupant, with what moves along of the seat.", "60 kg", may_be_free=True)
+    )
     network: Network = field(metadata=mount("Between floor and occupant."))
     place: Port = field(default_factory=lambda: {"sprung": 1.0})
     coordinate: ClassVar[str] = "occupant"
@@ -36,7 +36,7 @@ class Seat(Stage):
 
     def __post_init__(self) -> None:
         check_vehicle(self.vehicle)
-        check_positive(MechanismError, "The mass on a seat", self.mass, "kg")
+        name_free_quantities(self, "the occupant")
         below = {part.name: part.network for part in self.vehicle.mechanism().mounts()}
         named = name_free_values({**below, self.strut: check_network(self.network)})
         object.__setattr__(self, "network", named[self.strut])

@@ -12,7 +12,7 @@ from inerter.errors import DesignError, MechanismError
 from inerter.fields import fields_of, mounts_of, needed_mounts_of
 from inerter.networks.elements import Free, Network, check_network
 from inerter.networks.transform import name_free_values, with_values
-from inerter.vehicle.mechanism import Mechanism, check_known
+from inerter.vehicle.mechanism import Mechanism, check_known, check_quantity
 
 
 class Vehicle(Protocol):
@@ -44,8 +44,8 @@ class VehicleModel:
     A kind is a frozen dataclass whose fields say what they are, by `quantity` and `mount`, and which makes a
     `mechanism` of them.
 
-    Raises `MechanismError` unless all quantities are positive (or zero, if that is their default), `NetworkError` if
-    what is mounted is no network.
+    Raises `MechanismError` unless all quantities are positive (or zero, if that is their default) or, where they may
+    be, free; `NetworkError` if what is mounted is no network.
     """
 
     key: ClassVar[str]
@@ -53,13 +53,11 @@ class VehicleModel:
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
 
     def __post_init__(self) -> None:
-        for field in fields_of(type(self)):
-            value = getattr(self, field.name)
-            if field.default != 0.0 or not is_number(value) or value != 0.0:
-                what = f"The {field.in_words} of the {self.key.replace('-', ' ')}"
-                check_positive(MechanismError, what, value, field.unit)
+        name_free_quantities(self, f"the {self.key.replace('-', ' ')}")
         for name, network in name_free_values(self.networks()).items():
             object.__setattr__(self, name, network)
+        if any(isinstance(getattr(self, field.name), Free) for field in fields_of(type(self))):
+            self.mechanism()  # which says what goes by the same name
 
     def networks(self) -> dict[str, Network]:
         """What is mounted, by the names of the mounts; a mount that may be left out is there if it is not None."""
@@ -78,7 +76,8 @@ class VehicleModel:
     def with_values(self, values: Mapping[str, float]) -> Self:
         """The same vehicle with the named free values fixed; raises `DesignError` for a name that is not free here."""
         check_known(values, self.free_values())
-        fixed: dict[str, Any] = {name: with_values(network, values) for name, network in self.networks().items()}
+        networks = {name: with_values(network, values) for name, network in self.networks().items()}
+        fixed: dict[str, Any] = {**networks, **_fixed_quantities(self, values)}
         return replace(self, **fixed)
 
 
@@ -101,5 +100,36 @@ class Stage(ABC):
         check_known(values, self.free_values())
         below = {name: value for name, value in values.items() if name in self.vehicle.free_values()}
         other: Any = self
-        fixed: Self = replace(other, vehicle=self.vehicle.with_values(below), network=with_values(self.network, values))
+        own = {"network": with_values(self.network, values), **_fixed_quantities(self, values)}
+        fixed: Self = replace(other, vehicle=self.vehicle.with_values(below), **own)
         return fixed
+
+
+def name_free_quantities(of: Any, what: str) -> None:
+    """Check the quantities of a dataclass, and name the free ones without a name after themselves.
+
+    Raises `MechanismError` unless they are positive (or zero, if that is their default) or, where they may be, free.
+    """
+    for field in fields_of(type(of)):
+        value, said = getattr(of, field.name), f"The {field.in_words} of {what}"
+        if not isinstance(value, Free):
+            if field.default != 0.0 or not is_number(value) or value != 0.0:
+                check_positive(MechanismError, said, value, field.unit)
+        elif not field.may_be_free:
+            raise MechanismError(
+                f"{said} cannot be free: the equations of motion are not linear in it. Give a number of "
+                f"{field.unit}, and compare several."
+            )
+        else:
+            check_quantity(said, value, field.unit)
+            object.__setattr__(of, field.name, replace(value, name=value.name or field.name))
+
+
+def _fixed_quantities(of: Any, values: Mapping[str, float]) -> dict[str, float]:
+    """The free quantities of a dataclass that are named, with their values."""
+    free = {field.name: getattr(of, field.name) for field in fields_of(type(of))}
+    return {
+        name: values[str(value.name)]
+        for name, value in free.items()
+        if isinstance(value, Free) and value.name in values
+    }

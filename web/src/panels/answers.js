@@ -1,9 +1,10 @@
 // The indices of the strut beside the baseline, and what may be done about them at once.
 
 import { kindOf } from "../kinds.js";
+import { isQuick, judging, methodsOf, quickMethod } from "../methods.js";
 import { baselineOf, designOf } from "../questions.js";
 import { namesIn } from "../state/document.js";
-import { shown } from "../state/scale.js";
+import { estimated, shown } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { AskedPanel } from "./asked.js";
@@ -19,14 +20,13 @@ export function AnswersPanel({ store, api }) {
   const { value, sentence, waiting } = state.answers.indices ?? {};
   const document = state.history.present;
   const baseline = baselineOf(document).layout;
-  const methods = state.about?.methods ?? [];
   const problems = state.answers.check?.value?.problems ?? [];
   useShown("indices", state);
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${waiting === true}>
     <h2 id="answers-title">Answers</h2>
     <div class="row">
-      <label>Judged <select value=${state.view.method} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
-        ${methods.map((/** @type {any} */ method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
+      <label>Judged <select value=${judging(state)?.name} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
+        ${methodsOf(state).map((method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
       </select></label>
     </div>
     ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
@@ -40,7 +40,7 @@ export function AnswersPanel({ store, api }) {
   </section>`;
 }
 
-/** @param {{name: string, words?: string, sees: string}} method */
+/** @param {import("../methods.js").Method} method */
 export function methodTitle({ name, sees }) {
   const words = { neither: "without friction and gaps", friction: "with friction", both: "with friction and gaps" }[sees] ?? "";
   return `${words || name} (${name.replaceAll("-", " ")})`;
@@ -65,29 +65,31 @@ function Indices({ value, layout, baseline, stale }) {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
         <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span> <${Notes} result=${result} /></th>
-        <td class="number" data-index=${result.index} data-value=${result.value}>${number(result)}</td>
-        ${!alone && html`<td class="number">${reference ? number(reference) : "–"}</td><td class=${`number ${better(result.improvement_percent)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}</td>`}
+        <td class="number" data-index=${result.index} data-value=${result.value}><${Measured} result=${result} /></td>
+        ${!alone && html`<td class="number">${reference ? html`<${Measured} result=${reference} />` : "–"}</td><td class=${`number ${better(result)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
       </tr>`;
     })}</tbody>
   </table></div>`;
 }
 
-/** A value with its standard error. @param {{value: any, standard_error?: any}} result */
-export function number({ value, standard_error }) {
-  const text = typeof value === "string" ? value.replace("inf", "∞") : shown(value);
-  return typeof standard_error === "number" && standard_error > 0 ? `${text} ± ${shown(standard_error, 2)}` : text;
+/** A value, and below it its standard error. @param {{result: {value: any, standard_error?: any}}} props */
+export function Measured({ result: { value, standard_error: error } }) {
+  if (typeof value === "string") return html`${value.replace("inf", "∞")}`;
+  if (typeof error !== "number" || !(error > 0)) return html`${shown(value)}`;
+  const [number, scatter] = estimated(value, error);
+  return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 
 /** @param {number | null | undefined} value @param {number | null} [error] */
 export function percent(value, error) {
   if (value === null || value === undefined) return "–";
+  if (error) return `${estimated(value, error).join(" ± ")} %`;
   const size = Math.abs(value);
-  const text = `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
-  return error ? `${text} ± ${shown(error, 2)}` : text;
+  return `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
 }
 
-/** @param {number | null | undefined} value */
-const better = (value) => (typeof value !== "number" || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
+/** @param {{improvement_percent?: number | null, tie?: boolean | null}} result */
+const better = ({ improvement_percent: value, tie }) => (typeof value !== "number" || tie || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
 
 /** @param {{result: any}} props */
 function Notes({ result }) {
@@ -114,15 +116,15 @@ function Optimise({ store, api, indices }) {
   const { study, layout } = state.history.present;
   const [index, setIndex] = useState("");
   const [told, setTold] = useState("");
-  const searching = (state.about?.methods ?? []).filter((/** @type {any} */ method) => method.searches);
   const chosen = indices.some(({ symbol }) => symbol === index) ? index : indices[0]?.symbol;
-  const method = searching.some((/** @type {any} */ { name }) => name === state.view.method) ? state.view.method : "norm";
-  if (!chosen) return null;
+  const here = judging(state);
+  const method = here?.searches ? here : quickMethod(state);
+  if (!chosen || !method) return null;
   return html`<form class="row optimise" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const all = /** @type {SubmitEvent} */ (event).submitter?.getAttribute("value") === "all";
     setTold("Searching…");
-    setTold(await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method }));
+    setTold(await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method: method.name }));
   }}>
     <label>Best values for <select name="index" value=${chosen} onChange=${(/** @type {Event} */ event) => setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
       ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
@@ -159,9 +161,9 @@ function Budget({ store, api, indices }) {
 }
 
 /** The method by which the page judges, where it sees what a budget is about; else that of the study. @param {State} state */
-function seeing({ about, view }) {
-  const method = about?.methods?.find((/** @type {any} */ { name }) => name === view.method);
-  return !method || method.sees === "neither" ? {} : { method: view.method };
+function seeing(state) {
+  const method = judging(state);
+  return !method || isQuick(method) ? {} : { method: method.name };
 }
 
 /** @param {any} found @param {string} layout @param {string} baseline */

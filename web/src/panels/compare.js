@@ -1,68 +1,70 @@
 // Two to four designs side by side: layouts of the study, and designs that were kept.
 
 import { html, useState } from "../parts/html.js";
-import { comparedDesign } from "../questions.js";
+import { choicesOf, comparedOf } from "../questions.js";
 import { textsOf } from "../state/document.js";
-import { shown, takenApart } from "../state/scale.js";
-import { number } from "./answers.js";
+import { Measured, percent } from "./answers.js";
 
-const MOST = 4;
+const [FEWEST, MOST] = [2, 4];
 
 /** @param {{store: import("../state/store.js").Store}} props */
 export function ComparePanel({ store }) {
   const state = store.get();
-  const document = state.history.present;
-  const { compared } = state.view;
-  const choices = [...Object.keys(document.study.layouts ?? {}).map((name) => `layout ${name}`), ...document.designs.map(({ name }) => `kept ${name}`)];
+  const choices = choicesOf(state.history.present);
+  const compared = comparedOf(state);
+  const keys = compared.map(({ key }) => key);
+  /** @param {Partial<import("../state/store.js").View>} view */
+  const look = (view) => store.dispatch({ type: "viewed", view });
   /** @param {string} key */
-  const toggle = (key) => store.dispatch({ type: "viewed", view: { compared: compared.includes(key) ? compared.filter((each) => each !== key) : [...compared, key].slice(-MOST) } });
-  const shownKeys = compared.filter((key) => choices.includes(key));
-  return html`<div>
+  const toggle = (key) => look({ compared: keys.includes(key) ? keys.filter((each) => each !== key) : [...keys, key] });
+  const full = compared.length === MOST;
+  return html`<div aria-busy=${state.answers.compare?.waiting === true}>
     <div class="row" role="group" aria-label="Designs to compare">
-      ${choices.map((key) => html`<button type="button" class="chip" key=${key} aria-pressed=${compared.includes(key)} onClick=${() => toggle(key)}>${key.replace(/^(layout|kept) /, "")}${key.startsWith("kept ") ? html` <span class="quiet">kept</span>` : null}</button>`)}
+      ${choices.map(({ key, name, kept }) => html`<button type="button" class="chip" key=${key} aria-pressed=${keys.includes(key)} disabled=${full && !keys.includes(key)} onClick=${() => toggle(key)}>${name}${kept ? html` <span class="quiet">kept</span>` : null}</button>`)}
     </div>
+    ${compared.length >= FEWEST &&
+    html`<p class="row"><label>with <select value=${keys[0]} onChange=${(/** @type {Event} */ event) => look({ against: /** @type {HTMLSelectElement} */ (event.currentTarget).value })}>
+        ${keys.toSorted((one, other) => order(choices, one) - order(choices, other)).map((key) => html`<option key=${key} value=${key}>${choices[order(choices, key)].name}${key.startsWith("kept ") ? " (kept)" : ""}</option>`)}
+      </select></label> ${full && html`<span class="quiet">Four are the most: leave one out for another.</span>`}</p>`}
     <${Keep} store=${store} />
-    ${shownKeys.length < 2 ? html`<p class="quiet">Choose two to four of them.</p>` : html`<${Table} state=${state} keys=${shownKeys} />`}
+    ${compared.length < FEWEST ? html`<p class="quiet">Choose two to four of them.</p>` : html`<${Table} state=${state} />`}
   </div>`;
 }
 
-/** @param {{state: import("../state/store.js").State, keys: string[]}} props */
-function Table({ state, keys }) {
-  const document = state.history.present;
-  const columns = keys.map((key) => {
-    const i = state.view.compared.indexOf(key);
-    const answer = state.answers[`compare.${i}`];
-    const design = comparedDesign(document, key);
-    const asked = JSON.parse(answer?.of ?? "{}").designs?.[0];
-    const fits = asked && JSON.stringify(asked) === JSON.stringify(design.design);
-    return { ...design, told: fits ? answer?.value?.designs?.[0] : null, sentence: answer?.sentence };
-  });
-  const indices = [...new Set(columns.flatMap(({ told }) => told?.results.map((/** @type {any} */ { index }) => index) ?? []))];
-  const elements = [...new Set(columns.flatMap(({ told }) => Object.keys(told?.values ?? {})))];
-  /** @param {any} told @param {string} index */
-  const find = (told, index) => told?.results.find((/** @type {any} */ each) => each.index === index);
-  return html`<div class="scroll" tabindex="0" role="region" aria-label="Comparison"><table class="compared" style=${{ minWidth: `${9 * (columns.length + 1)}rem` }}>
-    <thead><tr><th scope="col"></th>${columns.map(({ key, name }) => html`<th scope="col" key=${key} title=${name}>${name}</th>`)}</tr></thead>
+/** @param {import("../questions.js").Choice[]} choices @param {string} key */
+const order = (choices, key) => choices.findIndex((choice) => choice.key === key);
+
+/** The newest answer: as long as another one is awaited, that of before. @param {{state: import("../state/store.js").State}} props */
+function Table({ state }) {
+  const { value, sentence } = state.answers.compare ?? {};
+  const wrong = sentence && html`<p class="problem" role="alert">${sentence}</p>`;
+  if (!value) return wrong || html`<p class="quiet">Under way…</p>`;
+  const columns = value.designs;
+  const known = [...new Set(columns.flatMap((/** @type {any} */ { numbers }) => Object.keys(numbers)))];
+  const different = known.filter((name) => columns.some((/** @type {any} */ { numbers }) => numbers[name] !== columns[0].numbers[name]));
+  return html`${wrong}<div class="scroll" tabindex="0" role="region" aria-label="Comparison"><table class=${`compared ${sentence ? "stale" : ""}`} style=${{ minWidth: `${9 * (columns.length + 1)}rem` }}>
+    <thead><tr><th scope="col"></th>${columns.map((/** @type {any} */ { name }, /** @type {number} */ i) => html`<th scope="col" key=${i} title=${name}>${name}</th>`)}</tr></thead>
     <tbody>
-      <tr><th scope="row">network</th>${columns.map(({ key, study, design }) => html`<td key=${key}><code>${textsOf(study.layouts?.[design.layout]).join("; ")}</code></td>`)}</tr>
-      ${elements.map((name) => html`<tr key=${name}><th scope="row">${name}</th>${columns.map(({ key, told }) => html`<td class="number" key=${key}>${valueText(told?.values?.[name])}</td>`)}</tr>`)}
-      ${indices.map((index) => {
-        const values = columns.map(({ told }) => find(told, index)?.value).filter((value) => typeof value === "number");
-        const best = Math.min(...values);
-        return html`<tr key=${index}><th scope="row">${index}</th>${columns.map(({ key, told, sentence }) => {
-          const result = find(told, index);
-          return html`<td key=${key} class=${`number ${result?.value === best ? "best" : ""}`}>${result ? html`${number(result)} <span class="unit">${result.unit}</span>` : (sentence ?? "…")}</td>`;
-        })}</tr>`;
-      })}
+      <tr><th scope="row">network</th>${columns.map((/** @type {any} */ { network }, /** @type {number} */ i) => html`<td key=${i}><code>${[...new Set(textsOf(network))].join("; ")}</code></td>`)}</tr>
+      ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>${columns.map((/** @type {any} */ { numbers }, /** @type {number} */ i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
+      ${columns[0].results.map((/** @type {any} */ first, /** @type {number} */ row) => html`<tr key=${first.index}><th scope="row"><b>${first.index}</b> <span class="quiet">${first.title} [${first.unit}]</span></th>
+        ${columns.map((/** @type {any} */ { results }, /** @type {number} */ i) => html`<${Value} key=${i} result=${results[row]} first=${i === 0} />`)}</tr>`)}
     </tbody>
-  </table></div>`;
+  </table></div>
+  <p class="quiet">In per cent of ${columns[0].name}, all on the road of this study, and on the same roads where it is simulated; ± is the standard error of a difference itself. Bold: the best, and what is as good.</p>`;
 }
 
-/** @param {{value: number, unit: string, text?: string} | undefined} told */
-function valueText(told) {
-  if (!told) return "–";
-  const apart = takenApart(told.text ?? `${told.value} ${told.unit}`);
-  return apart ? `${shown(apart.number)} ${apart.unit}` : told.text;
+/** A value, and what lies between it and the first one's. @param {{result: any, first: boolean}} props */
+function Value({ result, first }) {
+  const { value, best, message } = result;
+  return html`<td class=${`number ${best ? "best" : ""}`} title=${message} data-value=${value}><${Measured} result=${result} />${!first && html`<${Difference} result=${result} />`}</td>`;
+}
+
+/** @param {{result: any}} props */
+function Difference({ result: { improvement_percent: better, improvement_error_percent: error, tie } }) {
+  if (typeof better !== "number") return null;
+  if (tie) return html`<div class="difference quiet">as good${error ? `, ${percent(better, error)}` : ""}</div>`;
+  return better > 0 ? html`<div class="difference good">${percent(better, error)} better</div>` : html`<div class="difference bad">${percent(-better, error)} worse</div>`;
 }
 
 /** Keeping the design that is edited under a name, and taking kept ones back. @param {{store: import("../state/store.js").Store}} props */

@@ -1,7 +1,7 @@
 // Opening, undoing, sharing and downloading.
 
 import { indicesOf } from "./answers.js";
-import { bodyOf, designOf, shownDesigns } from "../questions.js";
+import { bodyOf, comparedOf, designOf, shownDesigns } from "../questions.js";
 import { html, useState } from "../parts/html.js";
 import { download, linkTo, open } from "../remembering.js";
 import { begin, openStudy } from "../working.js";
@@ -16,6 +16,7 @@ export function Menu({ store, api }) {
   const { history } = state;
   const { study } = history.present;
   const name = fileName(study.title);
+  const blank = Object.keys(study).length === 0;
   /** @param {() => Promise<void>} work */
   const attempt = (work) => async () => {
     try {
@@ -30,12 +31,14 @@ export function Menu({ store, api }) {
   const csv = (panel) => attempt(async () => download(await api.blob("export/csv", { panel, request: bodyOf(store.get(), panel) }), panel === "indices" ? `${name}.csv` : `${name}-${panel}.csv`));
   const indices = indicesOf(state).map(({ symbol }) => symbol);
   const index = indices.includes(picked) ? picked : indices[0];
-  /** @param {"svg" | "png"} format @param {string} kind @param {any[]} designs */
-  const figure = (format, kind, designs) => attempt(async () => download(await api.blob("figure", { kind, format, study, designs }), `${name}-${kind}.${format}`));
+  /** @param {"svg" | "png"} format @param {string} kind @param {any[]} designs @param {object} more */
+  const figure = (format, kind, designs, more = {}) => attempt(async () => download(await api.blob("figure", { kind, format, study, designs, ...more }), `${name}-${kind}.${format}`));
   /** @param {"svg" | "png"} format */
   const network = (format) => figure(format, "networks", [designOf(history.present)]);
   /** @param {"svg" | "png"} format */
   const response = (format) => figure(format, `response-${index}`, shownDesigns(history.present));
+  /** @param {"svg" | "png"} format */
+  const motion = (format) => figure(format, "history", [designOf(history.present)], { duration: state.view.seconds, seed: state.view.seed });
   const report = attempt(async () => {
     await begin(store, api, { kind: "run", title: `Report: ${study.title ?? "study"}`, study });
     store.dispatch({ type: "viewed", view: { tab: "work" } });
@@ -44,20 +47,23 @@ export function Menu({ store, api }) {
     <button type="button" title="Undo (Ctrl+Z)" disabled=${history.past.length === 0} onClick=${() => store.dispatch({ type: "undone" })}>Undo</button>
     <button type="button" title="Redo (Ctrl+Shift+Z)" disabled=${history.future.length === 0} onClick=${() => store.dispatch({ type: "redone" })}>Redo</button>
     <${Open} store=${store} api=${api} />
-    <details class="menu"><summary>Save</summary><div class="menu-body">
+    ${!blank && html`<details class="menu"><summary>Save</summary><div class="menu-body">
       <button type="button" onClick=${theStudy}>Study file (TOML)</button>
       <button type="button" onClick=${theDesign}>This design, values fixed (TOML)</button>
       <button type="button" onClick=${csv("indices")}>Indices (CSV)</button>
       <button type="button" onClick=${csv("response")}>Frequency response (CSV)</button>
+      ${comparedOf(state).length > 1 && html`<button type="button" onClick=${csv("compare")}>Comparison (CSV)</button>`}
       <button type="button" onClick=${csv("history")}>On the road (CSV)</button>
       <button type="button" onClick=${network("svg")}>Network (SVG)</button>
       <button type="button" onClick=${network("png")}>Network (PNG)</button>
       ${index && html`<label>Response of <select value=${index} onChange=${(/** @type {Event} */ event) => setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>${indices.map((each) => html`<option key=${each}>${each}</option>`)}</select></label>
         <button type="button" onClick=${response("svg")}>Response (SVG)</button>
         <button type="button" onClick=${response("png")}>Response (PNG)</button>`}
+      <button type="button" onClick=${motion("svg")}>On the road (SVG)</button>
+      <button type="button" onClick=${motion("png")}>On the road (PNG)</button>
       <button type="button" onClick=${report}>Report: run the study</button>
     </div></details>
-    <${Share} store=${store} />
+    <${Share} store=${store} />`}
   </div>`;
 }
 

@@ -1,5 +1,6 @@
 // What scatter of its elements makes of an index of the design, and which of them matters.
 
+import { isQuick, judging } from "../methods.js";
 import { designOf } from "../questions.js";
 import { html, useState } from "../parts/html.js";
 import { namesIn } from "../state/document.js";
@@ -53,9 +54,9 @@ function spreadOf(names, form) {
 }
 
 /** The method that the page judges by, unless it averages over roads, and as many samples as a wait allows. @param {State} state @param {number} scattering how many values scatter */
-function effortOf({ about, view }, scattering) {
-  const method = about.methods.find((/** @type {any} */ { name }) => name === view.method);
-  const quick = !method || method.averages || method.sees === "neither";
+function effortOf(state, scattering) {
+  const method = judging(state);
+  const quick = !method || method.averages || isQuick(method);
   const samples = 2 ** Math.floor(Math.log2((quick ? DESIGNS : DESIGNS / 4) / (2 + scattering)));
   return { ...(method && !method.averages ? { method: method.name } : {}), samples: Math.min(MOST, Math.max(FEWEST, samples)) };
 }

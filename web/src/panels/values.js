@@ -5,6 +5,7 @@ import { namesOfVehicle, numbersOf, unitKey, valueAtPlace } from "../questions.j
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { kindOf } from "../kinds.js";
+import { quickMethod } from "../methods.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../state/store.js").State} State */
@@ -12,7 +13,7 @@ import { kindOf } from "../kinds.js";
 const DECADE = 10;
 
 /** A number of the document. `unit` is null where the unit itself tells what it is; `set` gives the change to another text.
- * @typedef {{place: string[], label: string, sentence: string, unit: string | null, text: string, range: {from: string, to: string}, free: boolean, own?: boolean, set: (text: string) => import("../state/document.js").Change}} Amount */
+ * @typedef {{place: string[], label: string, sentence: string, unit: string | null, text: string, range: {from: string, to: string}, free: boolean, mayBeFree: boolean, own?: boolean, set: (text: string) => import("../state/document.js").Change}} Amount */
 
 const FEW = 8; // numbers of one table of a vehicle that stand below each other; more are folded away, and those in tables of tables
 const MANY = 14; // elements of a layout that stand below each other; of more some are scrolled, so that the rest of the page stays near
@@ -52,14 +53,19 @@ function Numbers({ store, table, rows }) {
 }
 
 /** @param {State} state @param {import("../questions.js").NumberRow} row @returns {Amount} */
-function numberAmount(state, { place, unit, sentence, own }) {
-  const { study, ranges } = state.history.present;
+function numberAmount(state, { place, unit, sentence, own, mayBeFree }) {
+  const { study, layout, values, ranges } = state.history.present;
   const before = valueAtPlace(study, place);
+  if (isRange(before)) {
+    const name = place[1];
+    const text = values[layout]?.[name] ?? middle(state, before, unit);
+    return { place, label: name.replaceAll("_", " "), sentence, unit, text, range: before, free: true, mayBeFree, set: (value) => ({ type: "valued", layout, values: { [name]: value } }) };
+  }
   const text = String(before);
   const label = place.slice(place.length > 2 ? 2 : 1).join(", ").replaceAll("_", " ");
   /** @param {string} value */
   const written = (value) => (typeof before === "number" && value !== "" && Number.isFinite(Number(value)) ? Number(value) : value);
-  return { place, label, sentence, unit, text, own, range: ranges[place.join(".")] ?? decade(text), free: false, set: (value) => ({ type: "placed", place, value: written(value) }) };
+  return { place, label, sentence, unit, text, own, range: ranges[place.join(".")] ?? decade(text), free: false, mayBeFree, set: (value) => ({ type: "placed", place, value: written(value) }) };
 }
 
 /** @param {{store: Store, name: string}} props */
@@ -70,15 +76,15 @@ function ElementRow({ store, name }) {
   const kind = kindOf(state, name);
   const sentence = kind ? `${kind.key}: ${kind.sentence}` : "";
   if (isRange(entry)) {
-    const text = values[layout]?.[name] ?? middle(state, entry);
+    const text = values[layout]?.[name] ?? middle(state, entry, null);
     /** @type {Amount} */
-    const amount = { place: ["elements", name], label: name, sentence, unit: null, text, range: entry, free: true, set: (value) => ({ type: "valued", layout, values: { [name]: value } }) };
+    const amount = { place: ["elements", name], label: name, sentence, unit: null, text, range: entry, free: true, mayBeFree: true, set: (value) => ({ type: "valued", layout, values: { [name]: value } }) };
     return html`<${AmountRow} store=${store} amount=${amount} />`;
   }
   const place = typeof entry === "object" && kind ? ["elements", name, kind.quantity] : ["elements", name];
   const text = String(valueAtPlace(study, place) ?? "");
   /** @type {Amount} */
-  const amount = { place, label: name, sentence, unit: null, text, range: ranges[place.join(".")] ?? decade(text), free: false, set: (value) => ({ type: "placed", place, value }) };
+  const amount = { place, label: name, sentence, unit: null, text, range: ranges[place.join(".")] ?? decade(text), free: false, mayBeFree: place.length === 2, set: (value) => ({ type: "placed", place, value }) };
   return html`<${AmountRow} store=${store} amount=${amount} removable=${![...namesOfVehicle(study), ...Object.keys(study.layouts ?? {}).flatMap((each) => namesIn(study, each))].includes(name)} />`;
 }
 
@@ -92,10 +98,10 @@ export function sizeOf(state, text, unit) {
 /** How much one of a unit is in another, or null where it is not known. @param {State} state @param {string} written @param {string | null} unit */
 const oneOf = (state, written, unit) => (written === unit ? 1 : (state.quantities[unitKey(written, unit)]?.value ?? null));
 
-/** The geometric mean of the bounds, in the unit of the lower one. @param {State} state @param {{from: string, to: string}} range */
-function middle(state, { from, to }) {
-  const [lower, upper] = [sizeOf(state, from, null), sizeOf(state, to, null)];
-  return lower === null || upper === null ? "" : inUnitOf(state, from, null, Math.sqrt(lower * upper));
+/** The geometric mean of the bounds, in the unit of the lower one. @param {State} state @param {{from: string, to: string}} range @param {string | null} unit */
+function middle(state, { from, to }, unit) {
+  const [lower, upper] = [sizeOf(state, from, unit), sizeOf(state, to, unit)];
+  return lower === null || upper === null ? "" : inUnitOf(state, from, unit, Math.sqrt(lower * upper));
 }
 
 /** A size as text in the unit of another. @param {State} state @param {string} like @param {string | null} unit @param {number} size */
@@ -146,19 +152,18 @@ function AmountRow({ store, amount, removable = false }) {
 
 /** @param {{store: Store, amount: Amount, removable: boolean}} props */
 function Bounds({ store, amount, removable }) {
-  const { place, label, text, range, free } = amount;
+  const { place, label, text, range, free, mayBeFree } = amount;
   const name = place[1];
-  const isElement = place[0] === "elements" && place.length === 2;
-  const judging = (store.get().about?.methods ?? []).find((/** @type {any} */ { sees, searches }) => sees === "neither" && searches)?.name;
+  const judging = quickMethod(store.get())?.name;
   /** @param {{from: string, to: string}} next */
   const setRange = (next) => (free ? store.change({ type: "placed", place, value: next }) : store.change({ type: "ranged", place: place.join("."), ...next }));
   return html`<details class="bounds">
     <summary aria-label=${`${label}: ${free ? "free" : "fixed"}, bounds`}>${free ? "free" : "fixed"}</summary>
     <div class="menu-body">
-      ${isElement &&
+      ${mayBeFree &&
       html`<div class="row" role="group" aria-label=${`${label} is`}>
-        <button type="button" class="chip" aria-pressed=${!free} onClick=${() => free && store.change({ type: "fixed", name, text })}>fixed</button>
-        <button type="button" class="chip" aria-pressed=${free} onClick=${() => !free && store.change({ type: "freed", name, ...range, method: judging })}>free</button>
+        <button type="button" class="chip" aria-pressed=${!free} onClick=${() => free && store.change({ type: "fixed", place, text })}>fixed</button>
+        <button type="button" class="chip" aria-pressed=${free} onClick=${() => !free && store.change({ type: "freed", place, ...range, method: judging })}>free</button>
       </div>`}
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from} done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
       <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to} done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>

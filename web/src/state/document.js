@@ -19,8 +19,8 @@ import { freshName, names, parse, renamed } from "../network/algebra.js";
  *  | {type: "valued", layout: string, values: {[element: string]: string}}
  *  | {type: "valuedAll", values: Values}
  *  | {type: "ranged", place: string, from: string, to: string}
- *  | {type: "freed", name: string, from: string, to: string, method?: string}
- *  | {type: "fixed", name: string, text: string}
+ *  | {type: "freed", place: string[], from: string, to: string, method?: string}
+ *  | {type: "fixed", place: string[], text: string}
  *  | {type: "drawn", text: string, added?: {[name: string]: ElementEntry}}
  *  | {type: "selected", layout: string, strut?: string | null}
  *  | {type: "layoutAdded", name: string}
@@ -48,21 +48,23 @@ const CHANGES = {
   }),
   valuedAll: (document, { values }) => ({ ...document, values: { ...document.values, ...values } }),
   ranged: (document, { place, from, to }) => ({ ...document, ranges: { ...document.ranges, [place]: { from, to } } }),
-  freed: (document, { name, from, to, method }) => {
-    const entry = document.study.elements?.[name];
+  freed: (document, { place, from, to, method }) => {
+    const [section, name] = place;
+    const entry = /** @type {any} */ (document.study)[section]?.[name];
     const text = typeof entry === "string" ? entry : null;
     const users = text === null ? [] : Object.keys(document.study.layouts ?? {});
     const values = { ...document.values };
     for (const layout of users) values[layout] = { ...values[layout], [name]: /** @type {string} */ (text) };
     const { study } = document;
     const searched = method === undefined || study.study?.optimise !== undefined ? study : placed(study, ["study", "optimise"], method); // what is free needs a method that chooses it
-    return { ...document, values, study: placed(searched, ["elements", name], { from, to }) };
+    return { ...document, values, study: placed(searched, place, { from, to }) };
   },
-  fixed: (document, { name, text }) => {
-    const entry = document.study.elements?.[name];
-    const ranges = isRange(entry) ? { ...document.ranges, [`elements.${name}`]: { from: entry.from, to: entry.to } } : document.ranges;
+  fixed: (document, { place, text }) => {
+    const [section, name] = place;
+    const entry = /** @type {any} */ (document.study)[section]?.[name];
+    const ranges = isRange(entry) ? { ...document.ranges, [place.join(".")]: { from: entry.from, to: entry.to } } : document.ranges;
     const values = Object.fromEntries(Object.entries(document.values).map(([layout, of]) => [layout, without(of, name)]));
-    return { ...document, ranges, values, study: placed(document.study, ["elements", name], text) };
+    return { ...document, ranges, values, study: placed(document.study, place, text) };
   },
   drawn: (document, { text, added = {} }) => {
     if (document.layout === "") return document;

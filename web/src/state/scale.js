@@ -44,6 +44,21 @@ export function shown(number, digits = 5) {
   return minus(Number(number.toPrecision(digits)));
 }
 
+/** A value and its error with as many places as the error tells: one digit of it, or two if the first is 1; both times the same power of
+ * ten. @param {number} value @param {number} error @returns {[string, string]} */
+export function estimated(value, error) {
+  const power = Math.floor(Math.log10(Math.max(Math.abs(value), error)));
+  const far = power >= 6 || power < -3;
+  const factor = far ? 10 ** -power : 1;
+  const [number, scatter] = [value * factor, error * factor];
+  const leading = scatter.toExponential(0);
+  const places = Math.min(20, Math.max(0, (leading.startsWith("1") ? 1 : 0) - Number(leading.split("e")[1])));
+  const times = far ? `·10${superscript(power)}` : "";
+  /** @param {number} each */
+  const written = (each) => each.toFixed(places).replace("-", "−") + times;
+  return [written(number), written(scatter)];
+}
+
 /** @param {number} number */
 const minus = (number) => String(number).replace("-", "−");
 

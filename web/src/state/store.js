@@ -10,7 +10,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {import("../network/algebra.js").Path} Path */
 /** @typedef {{key: string, value: any, sentence: string | null, waiting: boolean, of: string | null}} Answer  of a panel, and to which question */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed", share: number | null, sentence: string | null, result: any}} Job */
-/** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number, playing: boolean, compared: string[], seconds: number, seed: number, across: boolean}} View  `across`: the drawing over the width of the page */
+/** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number, playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View  `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with; `across`: the drawing over the width of the page */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
 /** @typedef {{history: DocumentHistory, answers: {[panel: string]: Answer}, work: {[id: string]: Job}, quantities: {[key: string]: {value?: number, sentence?: string}}, records: any[], view: View, about: any, connection: Connection, message: string | null}} State */
 
@@ -38,7 +38,7 @@ export const initial = () => ({
   work: {},
   quantities: {},
   records: [],
-  view: { path: [], tab: "response", theme: "auto", method: "norm", index: "", speed: 1, playing: false, compared: [], seconds: 10, seed: 0, across: false },
+  view: { path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false, compared: [], against: "", seconds: 10, seed: 0, across: false },
   about: null,
   connection: "connecting",
   message: null,

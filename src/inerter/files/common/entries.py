@@ -11,7 +11,7 @@ from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import checked, list_schema, quantity_schema, words_schema
 from inerter.files.common.suggest import nearest
-from inerter.networks.elements import NAME, Element
+from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.units import format_quantity, parse_quantity, shown, unit_in
 
@@ -39,14 +39,7 @@ class Amount(NamedTuple):
 
 def positive(unit: str) -> PlainValidator:
     """A quantity of `unit` that is greater than zero."""
-
-    def check(text: Any) -> float:
-        value = parse_quantity(text, unit)
-        if value <= 0.0:
-            raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
-        return value
-
-    return checked(check, lambda: quantity_schema(unit, least="positive"))
+    return checked(lambda text: positive_in(text, unit), lambda: quantity_schema(unit, least="positive"))
 
 
 def any_quantity(unit: str) -> PlainValidator:
@@ -56,14 +49,47 @@ def any_quantity(unit: str) -> PlainValidator:
 
 def not_negative(unit: str) -> PlainValidator:
     """A quantity of `unit` that may be zero."""
+    return checked(lambda text: not_negative_in(text, unit), lambda: quantity_schema(unit, least="not negative"))
 
-    def check(text: Any) -> float:
-        value = parse_quantity(text, unit)
-        if value < 0.0:
-            raise EntryError(got=shown(text), fault="negative", expected=f"0 {unit} or more")
-        return value
 
-    return checked(check, lambda: quantity_schema(unit, least="not negative"))
+def not_negative_in(text: Any, unit: str) -> float:
+    """A quantity of `unit` that is zero or more."""
+    value = parse_quantity(text, unit)
+    if value < 0.0:
+        raise EntryError(got=shown(text), fault="negative", expected=f"0 {unit} or more")
+    return value
+
+
+def or_free(unit: str, name: str, *, may_vanish: bool) -> PlainValidator:
+    """A quantity of `unit`, or a table with the two ends of a free value, which has this name."""
+    ends = ("from", "to")
+
+    def check(entry: Any) -> float | Free:
+        if not isinstance(entry, dict):
+            return not_negative_in(entry, unit) if may_vanish else positive_in(entry, unit)
+        if set(entry) != set(ends):
+            given = ", ".join(map(shown, entry)) or "nothing"
+            expected = f'one value, or {{ from = "1 {unit}", to = "2 {unit}" }}'
+            raise EntryError(got=f"a table with {given}", expected=expected)
+        lower, upper = (Amount(unit, positive_in(entry[end], unit)) for end in ends)
+        check_order(lower, upper)
+        return Free(lower.value, upper.value, name)
+
+    return checked(check, lambda: _or_range(unit, may_vanish))
+
+
+def _or_range(unit: str, may_vanish: bool) -> dict[str, Any]:
+    one, end = (quantity_schema(unit, least="not negative" if zero else "positive") for zero in (may_vanish, False))
+    table = {"type": "object", "properties": {"from": end, "to": end}, "required": ["from", "to"]}
+    return {"anyOf": [one, {**table, "additionalProperties": False}]}
+
+
+def positive_in(text: Any, unit: str) -> float:
+    """A quantity of `unit` that is greater than zero."""
+    value = parse_quantity(text, unit)
+    if value <= 0.0:
+        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
+    return value
 
 
 def positive_number(value: Any) -> float:

@@ -29,6 +29,7 @@ from inerter.files.common.entries import (
     element_name,
     layout_name,
     not_negative,
+    or_free,
     positive,
     word,
 )
@@ -69,13 +70,18 @@ class Range(Shape):
         return self
 
 
-def of_quantities(fields: Iterable[Quantity]) -> dict[str, Any]:
-    """Keys for quantities: those without a default must be given, and those whose default is zero may be zero."""
+def of_quantities(fields: Iterable[Quantity], *, free: bool = False) -> dict[str, Any]:
+    """Keys for quantities: those without a default must be given, and those whose default is zero may be zero.
+
+    Those that may be free may be ranges, if that makes sense here (`free`).
+    """
     keys: dict[str, Any] = {}
     for field in fields:
         check = not_negative(field.unit) if field.default == 0.0 else positive(field.unit)
+        if free and field.may_be_free:
+            check = or_free(field.unit, field.key, may_vanish=field.default == 0.0)
         default = ... if field.default is None else field.default
-        keys[field.key] = (Annotated[float, check], Field(default, **of_field(field)))
+        keys[field.key] = (Annotated[Any, check], Field(default, **of_field(field)))
     return keys
 
 
@@ -105,9 +111,12 @@ def of_choices(choices: Iterable[TextChoice]) -> dict[str, Any]:
     return keys
 
 
-def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Shapes]:
-    """The table [vehicle] of any of these models, and its shapes by place; `unknown` is that of any other model."""
-    made = {f"<{model}>": _vehicle_shape(model) for model in models}
+def vehicle_shapes(models: Iterable[str], unknown: type[Shape], *, free: bool) -> tuple[Any, Shapes]:
+    """The table [vehicle] of any of these models, and its shapes by place; `unknown` is that of any other model.
+
+    Its quantities may be `free` where something is optimised.
+    """
+    made = {f"<{model}>": _vehicle_shape(model, free) for model in models}
 
     def tag(vehicle: Any) -> str:
         model = vehicle.get("model") if isinstance(vehicle, dict) else None
@@ -121,10 +130,10 @@ def vehicle_shapes(models: Iterable[str], unknown: type[Shape]) -> tuple[Any, Sh
     return one_of_shapes(shapes, tag), {**places, **seats, **mechanism_shapes()}
 
 
-def _vehicle_shape(model: str) -> type[Shape]:
+def _vehicle_shape(model: str, free: bool) -> type[Shape]:
     if model == MECHANISM:
         return MechanismTable
-    keys = of_quantities(fields_of(VEHICLES[model]))
+    keys = of_quantities(fields_of(VEHICLES[model]), free=free)
     own: dict[str, Any] = {"model": (Literal[model], _what(model))}
     if VEHICLES[model].moved == "road":
         own[SEAT] = (SeatTable | None, MechanismTable.model_fields[SEAT])

@@ -16,7 +16,7 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.tables import Shape
 from inerter.files.common.vehicle_shapes import MECHANISM, SEAT, Inertia, Length, forces_of
-from inerter.networks.elements import Damper, Network, Spring
+from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import format_quantity, shown
 from inerter.vehicle.mechanism import (
     Coordinate,
@@ -53,7 +53,7 @@ def models() -> tuple[str, ...]:
 
 def values_of(table: Shape) -> tuple[str, dict[str, Any]]:
     """The model and the values that the table [vehicle] gives."""
-    values = table.model_dump()
+    values = table.model_dump() | {key: value for key, value in table if isinstance(value, Free)}
     model: str = values.pop("model")
     if values.get(SEAT) is None:
         values.pop(SEAT, None)
@@ -126,9 +126,15 @@ def tracks(model: str, values: Values) -> dict[str, str] | None:
     return {road.name: road.track for road in roads}
 
 
-def in_si(fields: Iterable[Field], values: Mapping[str, float]) -> dict[str, str]:
-    """The texts of those quantities that there is a value of, in SI units."""
-    return {f.key: f"{values[f.key]!r} {f.unit}" for f in fields if f.key in values}  # repr reads back as the same
+def in_si(fields: Iterable[Field], values: Mapping[str, Any]) -> dict[str, Any]:
+    """The texts of those quantities that there is a value of, in SI units; a table of two for one that is free."""
+    return {f.key: _in_si(values[f.key], f.unit) for f in fields if f.key in values}
+
+
+def _in_si(value: float | Free, unit: str) -> str | dict[str, str]:
+    if isinstance(value, Free):
+        return {"from": f"{value.lower!r} {unit}", "to": f"{value.upper!r} {unit}"}
+    return f"{value!r} {unit}"  # repr reads back as the same
 
 
 class _Form(Protocol):
@@ -172,8 +178,12 @@ class _Model:
 
     def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
         for field in fields_of(VEHICLES[self.model]):
-            if values[field.key] != 0.0:
-                yield field.in_words, values[field.key], field.unit
+            value = values[field.key]
+            if isinstance(value, Free):
+                ends = (format_quantity(end, field.unit, digits=12) for end in (value.lower, value.upper))
+                yield field.in_words, None, f"free, {' to '.join(ends)}"
+            elif value != 0.0:
+                yield field.in_words, value, field.unit
 
     def problems(self, values: Values) -> Iterator[Problem]:
         yield from ()

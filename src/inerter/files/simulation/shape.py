@@ -69,7 +69,7 @@ class SimulationFile(WithVehicle):
 @made_of_rows
 def shapes() -> tuple[type[SimulationFile], Shapes]:
     """The shape of a simulation file, and all shapes in it by their place."""
-    vehicle, vehicles = vehicle_shapes(models(), AnyVehicle)
+    vehicle, vehicles = vehicle_shapes(models(), AnyVehicle, free=False)
     *others, last = map(shown, models())
     layout, tables = layouts()
     signal, signals = signal_shapes()

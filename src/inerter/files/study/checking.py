@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -27,17 +28,20 @@ from inerter.systems.piecewise import piecewise
 _MOST_TRIED = 200  # swept values
 
 
-def check_study(study: Study) -> None:
+def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, total: None) -> None:
     """Assemble every layout for every index over the swept values, so that what is ill-posed shows before any work.
 
     Of many swept values some are tried, with the least and the largest: whether a design can be analysed rests on the
-    way it is joined rather than on its numbers, and one that cannot has a status that says so.
+    way it is joined rather than on its numbers, and one that cannot has a status that says so. `tell` is called before
+    each, with how many are assembled and how many there are.
 
     Raises `StudyError` with a line for every layout that cannot be analysed.
     """
     problems, every = [], cases(study)
-    for layout in study.layouts:
-        for point in _tried(every):
+    tried = _tried(every)
+    for number, layout in enumerate(study.layouts):
+        for done, point in enumerate(tried, start=number * len(tried)):
+            tell(done, len(tried) * len(study.layouts))
             try:
                 _check_design(study.at(every.swept(point)), layout)
             except InerterError as error:

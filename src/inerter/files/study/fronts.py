@@ -15,7 +15,6 @@ from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
 from inerter.files.study.ways import ways
-from inerter.networks.elements import Free
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
 from inerter.trade_off.pareto import pareto
@@ -154,7 +153,7 @@ def with_fronts(study: Study, data: xr.Dataset, found: Sequence[FrontOutcome]) -
 
 def fronts_csv(study: Study, found: Sequence[FrontOutcome]) -> str:
     """One row a point."""
-    free = {e.label: e.unit for e in study.elements.values() if isinstance(e.value, Free)}
+    free = study.free_units
     names = [name for name in free if any(name in design for front in found for design in front.parameters)]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

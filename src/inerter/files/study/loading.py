@@ -183,6 +183,7 @@ def _front_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:
     used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
+    used += [name for name, value in study.vehicle.items() if isinstance(value, Free)]
     if used and study.optimise is None:
         method = shown(methods_that(searches)[0])
         yield at(

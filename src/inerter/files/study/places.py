@@ -116,9 +116,10 @@ class _Section(NamedTuple):
 
 
 def _vehicle_numbers(study: Study) -> dict[str, Number]:
-    values, found = study.vehicle, {}
+    values = study.vehicle
+    found: dict[str, Number] = {}
     for f in fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ():
-        found[f.key] = Number(f.unit, f.in_words, values.get(f.key), f.default == 0.0)
+        found |= _with_bounds(f.key, Number(f.unit, f.in_words, values.get(f.key), f.default == 0.0))
     for name, value in values.get("coordinates", {}).items():
         what, unit = ("inertia", "kg m^2") if isinstance(value, Inertia) else ("mass", "kg")
         found[f"coordinates.{name}"] = Number(unit, f"{what} of {name}", value)
@@ -137,6 +138,8 @@ def _put(table: Mapping[str, Any], keys: list[str], number: float) -> dict[str, 
     """A table with a number in the place of another of the same sort."""
     first, *others = keys
     old = table.get(first)
+    if isinstance(old, Free):
+        return {**table, first: _other_bound(old, others[0], number) if others else number}
     new = _put(old, others, number) if others and isinstance(old, dict) else type(old or number)(number)
     return {**table, first: new}
 
@@ -163,14 +166,25 @@ def _put_road(study: Study, key: str, number: float) -> Study:
 
 
 def _element_numbers(study: Study) -> dict[str, Number]:
-    found = {}
+    found: dict[str, Number] = {}
     for name, element in study.elements.items():
-        found[name] = Number(element.unit, name, element.value, element.may_vanish)
+        found |= _with_bounds(name, Number(element.unit, name, element.value, element.may_vanish))
         found |= {f"{name}.{field.name}": number for field, number in _further(name, element)}
-        if isinstance(value := element.value, Free):
-            found[f"{name}.{_LOWER}"] = Number(element.unit, f"lower bound of {name}", value.lower)
-            found[f"{name}.{_UPPER}"] = Number(element.unit, f"upper bound of {name}", value.upper)
     return found
+
+
+def _with_bounds(key: str, number: Number) -> dict[str, Number]:
+    """A number by its key, with its bounds if it is free."""
+    found = {key: number}
+    if isinstance(value := number.value, Free):
+        found[f"{key}.{_LOWER}"] = Number(number.unit, f"lower bound of {number.words}", value.lower)
+        found[f"{key}.{_UPPER}"] = Number(number.unit, f"upper bound of {number.words}", value.upper)
+    return found
+
+
+def _other_bound(value: Free, part: str, number: float) -> Free:
+    lower, upper = (number, value.upper) if part == _LOWER else (value.lower, number)
+    return Free(lower, upper, value.name)
 
 
 def _further(name: str, element: Element) -> list[tuple[Field, Number]]:
@@ -192,8 +206,7 @@ def _with_part(element: Element, part: str, number: float) -> Element:
     if not part:
         return element.with_value(number)
     if isinstance(value, Free) and part in (_LOWER, _UPPER):
-        lower, upper = (number, value.upper) if part == _LOWER else (value.lower, number)
-        return element.with_value(Free(lower, upper, value.name))
+        return element.with_value(_other_bound(value, part, number))
     more = {field.name: getattr(element, field.name) for field in element.more}
     return type(element).of(value, element.name, **{**more, part: number})
 

@@ -21,7 +21,6 @@ from inerter.files.study.ways import ways
 from inerter.methods.compare import difference_of
 from inerter.methods.method import Estimate
 from inerter.methods.registry import is_blind
-from inerter.networks.elements import Free
 
 Array = NDArray[np.float64]
 _OK, _INFEASIBLE = StatusKind.OK.value, StatusKind.INFEASIBLE.value
@@ -45,7 +44,7 @@ class Gathered:
         self._texts: dict[str, str] = {}  # each once
         self._samples: dict[tuple[int, int], Array] = {}  # by case and method, where there is a standard error
         self._uncertain = is_uncertain(study)
-        self._parameters = _parameters(study)
+        self._parameters = study.free_units
         self._data = _labelled(study, self._parameters)
         self._columns = {name: i for i, name in enumerate(self._parameters)}
         self._arrays = {str(name): by_case(self._data, str(name)) for name in self._data.data_vars}
@@ -277,9 +276,3 @@ def _ratio_error(one: Estimate, other: Estimate) -> float:
 
 def _status(outcome: Outcome, kind: str) -> str:
     return kind if kind == _OK or not outcome.message else f"{kind}: {outcome.message}"
-
-
-def _parameters(study: Study) -> dict[str, str]:
-    """The free elements that some layout uses, with their units."""
-    used = {name for layout in study.layouts for name in study.design(layout).free_values()}
-    return {e.label: e.unit for e in study.elements.values() if isinstance(e.value, Free) and e.label in used}

@@ -257,7 +257,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
     settings = create_model("Settings", __base__=Settings, **if_given(index_settings().values()))
     method, own = _method_shapes()
     index, kinds = index_shapes()
-    vehicle, vehicles = vehicle_shapes(judged_models(), AnyCar)
+    vehicle, vehicles = vehicle_shapes(judged_models(), AnyCar, free=True)
     *others, last = map(shown, judged_models())
     cars = f"{', '.join(others)} or {last}"
     some_road: Any = RoadShape | None

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
+from inerter.fields import fields_of
 from inerter.files.common.kind_entry import entry_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
@@ -31,6 +33,7 @@ from inerter.networks.parser import names
 from inerter.scatter.robust import Quantile
 from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
 from inerter.signals.road import Road
+from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 
 POINTS = 25  # of a front
@@ -187,6 +190,19 @@ class Study:
             raise StudyError(str(EntryError(got=f"layout {layout!r}", expected=f"one of {known}", hint=hint)))
         here = self.at(swept) if swept else self
         return here.layouts[layout].design(here.model, here.vehicle, here.elements)
+
+    @cached_property
+    def free_units(self) -> dict[str, str]:
+        """The unit of each free value that some layout has, by name: elements, then numbers of the vehicle."""
+        used = elements_used(self)
+        elements = {name: e.unit for name, e in self.elements.items() if name in used and isinstance(e.value, Free)}
+        own = fields_of(VEHICLES[self.model]) if self.model in VEHICLES else ()
+        return elements | {f.key: f.unit for f in own if isinstance(self.vehicle[f.key], Free)}
+
+    def with_values(self, values: Mapping[str, float]) -> Study:
+        """The study with these numbers in the place of free values, by their names."""
+        sections = ((name, "elements" if name in self.elements else "vehicle") for name in values)
+        return with_numbers(self, [(Place(section, name), values[name]) for name, section in sections])
 
     def resolved(self) -> dict[str, Any]:
         """The study as a study file says it: plain tables, every default filled in, every quantity in SI units.

@@ -56,8 +56,8 @@ def number_of(study: Study, place: Place) -> Number:
     if isinstance(number.value, Free | Tied):
         hint = "Fix it, or leave the sweep out."
         raise EntryError(
-            fault=f"{element} is {'free' if isinstance(number.value, Free) else 'tied to others'}",
-            expected="an element with a fixed value",
+            fault=f"{place.label} is {'free' if isinstance(number.value, Free) else 'tied to others'}",
+            expected="a number with a fixed value",
             hint=hint,
         )
     if element and element not in elements_used(study):

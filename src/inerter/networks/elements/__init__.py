@@ -12,7 +12,7 @@ from inerter.networks.elements.gap import Gap
 from inerter.networks.elements.inerter import Inerter
 from inerter.networks.elements.registry import ELEMENT_TYPES
 from inerter.networks.elements.spring import Spring
-from inerter.networks.elements.values import NAME, Free, Tied, Value, free, tied
+from inerter.networks.elements.values import NAME, Free, Tied, Value, free, middle, tied
 
 __all__ = [
     "ELEMENT_TYPES",
@@ -31,5 +31,6 @@ __all__ = [
     "Value",
     "check_network",
     "free",
+    "middle",
     "tied",
 ]

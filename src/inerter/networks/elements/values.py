@@ -36,6 +36,13 @@ class Free:
         check_name(self.name)
 
 
+def middle(value: float | Free) -> float:
+    """The value, or the middle of the bounds of one that is free: on a logarithmic scale, if neither is zero."""
+    if not isinstance(value, Free):
+        return value
+    return (value.lower * value.upper) ** 0.5 or value.upper
+
+
 def free(lower: float, upper: float, name: str | None = None) -> Free:
     """A value to be chosen between `lower` and `upper`, in the unit of the element that it is given to.
 

@@ -1,0 +1,185 @@
+"""Designs beside each other: the indices of each, what they differ by, and which may be the best."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from inerter.app.designs import Design, baseline_of, design_of, designs_of
+from inerter.app.documents import study_from
+from inerter.app.kinds import Tell
+from inerter.app.valued import limits_at, valued
+from inerter.errors import DesignError
+from inerter.files.study.cases import FAILURES
+from inerter.files.study.places import element_at, place_of, places
+from inerter.files.study.study import Study, elements_used
+from inerter.methods.compare import Comparison, compare
+from inerter.methods.method import Estimate
+from inerter.units import format_quantity
+
+Body = Mapping[str, Any]
+Answer = dict[str, Any]
+
+_FEWEST, _MOST = 2, 4  # designs that stand side by side
+_VEHICLE, _DIGITS = "vehicle", 5
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """A design with its value of one index by one method."""
+
+    design: Design
+    index: str
+    method: str
+    estimate: Estimate
+
+    def beside(self, other: _Judged) -> Comparison | None:
+        """What it differs by from another one on the same roads; None where one of them has no number."""
+        if not np.isfinite([self.estimate.value, other.estimate.value]).all():
+            return None
+        first, second = self.design.vehicle, other.design.vehicle
+        asked, method = self.design.asked(self.index), self.design.study.method(self.method)
+        try:
+            return compare(first, second, asked, method, known=(self.estimate, other.estimate))
+        except FAILURES:
+            return None
+
+
+def indices(study: Study, body: Body) -> Answer:
+    """The indices of all designs beside the baseline, and which limits they keep."""
+    designs = designs_of(study, body)
+    baseline = baseline_of(study, body, designs)
+    asked = _asked(study, body)
+    base = [None if baseline is None else _judged(baseline, *each) for each in asked]
+    return {
+        "designs": [
+            {
+                **design.told(),
+                "results": [_told(_judged(design, *each), one) for each, one in zip(asked, base, strict=True)],
+                "limits": limits_at(study, design, asked[0][1]),
+            }
+            for design in designs
+        ],
+        "baseline": None if baseline is None else baseline.told(),
+    }
+
+
+def side_by_side(study: Study, body: Body) -> Answer:
+    """Two to four designs beside the first of them, each of which may be one of another study."""
+    return compared(study, body, lambda done, total, told: None)
+
+
+def compared(study: Study, body: Body, tell: Tell) -> Answer:
+    """The same, told design by design.
+
+    What is asked of all, on which road and by which methods, is what `study` says.
+    """
+    designs = _of_studies(study, body)
+    if not _FEWEST <= len(designs) <= _MOST:
+        raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
+    asked = _asked(study, body)
+    found: list[list[_Judged]] = []
+    for i, design in enumerate(designs):
+        tell(i, len(designs), design.name)
+        found.append([_judged(design, *each) for each in asked])
+    tell(len(designs), len(designs), "")
+    best = [_best(column) for column in zip(*found, strict=True)]
+    return {
+        "designs": [
+            {
+                **one[0].design.told(),
+                "network": one[0].design.study.layouts[one[0].design.layout].entry(),
+                "numbers": _numbers(one[0].design),
+                "results": [
+                    {**_told(each, base), "best": i in least}
+                    for each, base, least in zip(one, found[0], best, strict=True)
+                ],
+            }
+            for i, one in enumerate(found)
+        ]
+    }
+
+
+def _of_studies(study: Study, body: Body) -> list[Design]:
+    """The designs of a request; one that has a study of its own is a design of that, of which is asked what is here."""
+    given = body.get("designs") or []
+    if not any(one.get("study") for one in given):
+        return designs_of(study, body)
+    return [
+        design_of(_put(study, one.get("study")), one["layout"], one.get("values") or {}, one.get("name") or "")
+        for one in given
+    ]
+
+
+def _put(study: Study, document: object) -> Study:
+    """What a study asks, put to the vehicle, the elements and the layouts of another one."""
+    if not document:
+        return study
+    own = study_from(document)
+    return replace(study, model=own.model, vehicle=own.vehicle, elements=own.elements, layouts=own.layouts)
+
+
+def _numbers(design: Design) -> dict[str, str]:
+    """What a design is made of: the numbers of its elements and of its vehicle, by what they are."""
+    used = {name for name, layouts in elements_used(design.fixed).items() if design.layout in layouts}
+    found = {}
+    for label, number in places(design.fixed).items():
+        place = place_of(label)
+        if isinstance(number.value, int | float) and (place.section == _VEHICLE or element_at(place) in used):
+            found[number.words] = format_quantity(number.value, number.unit, digits=_DIGITS)
+    return found
+
+
+def _asked(study: Study, body: Body) -> list[tuple[str, str]]:
+    """Each index that is asked for, by each method."""
+    indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
+    return [(index, method) for index in indices for method in methods]
+
+
+def _judged(design: Design, index: str, method: str) -> _Judged:
+    return _Judged(design, index, method, valued(design.vehicle, design.asked(index), design.study.method(method)))
+
+
+def _best(found: Sequence[_Judged]) -> list[int]:
+    """Numbers of the designs of which none is known to be better than another one of all."""
+    finite = [i for i, one in enumerate(found) if np.isfinite(one.estimate.value)]
+    if not finite:
+        return []
+    least = min(finite, key=lambda i: found[i].estimate.value)
+    beside = {i: found[i].beside(found[least]) for i in finite if i != least}
+    return [i for i in finite if i == least or ((two := beside[i]) is not None and two.is_tie)]
+
+
+def _told(one: _Judged, baseline: _Judged | None) -> Answer:
+    """A value, and by how much it is better than the baseline's: null where there is no number."""
+    study, estimate = one.design.study, one.estimate
+    two = None if baseline is None else one.beside(baseline)
+    better, error = (None, None) if two is None else _improvement(two)
+    return {
+        "index": one.index,
+        "title": study.index(one.index).title,
+        "unit": study.unit(one.index),
+        "method": one.method,
+        "value": estimate.value,
+        "standard_error": estimate.standard_error,
+        "status": estimate.status.kind.value,
+        "message": estimate.status.message,
+        "notes": list(estimate.notes),
+        "realisations": estimate.realisations,
+        "improvement_percent": better,
+        "improvement_error_percent": error,
+        "tie": None if two is None else two.is_tie,
+    }
+
+
+def _improvement(two: Comparison) -> tuple[float, float | None]:
+    """By how many per cent the first is better, and the standard error of that where there is scatter.
+
+    Without scatter it is rounded as results of a study are.
+    """
+    if two.first.standard_error is None:
+        return 100.0 * (1.0 - two.first.value / two.second.value), None
+    return -two.percent, two.percent_error

@@ -1,0 +1,38 @@
+"""What an optimiser asks of an index: its values, and where there are some, its gradients."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Objective(Protocol):
+    """An index of a design as a function of its free values, for an optimiser. Points are (values,) or (n, values).
+
+    One that knows no more than its values is costly: searches make do with few of them.
+    """
+
+    def values(self, points: Array) -> Array:
+        """The index at each row of `points`."""
+        ...
+
+
+@runtime_checkable
+class Differentiable(Objective, Protocol):
+    """An index with gradients: smooth, or the largest of smooth functions."""
+
+    def value_and_gradient(self, point: Array) -> tuple[float, Array]:
+        """The index and its gradient at one point, where it is smooth."""
+        ...
+
+    def active(self, point: Array) -> Array | None:
+        """Where the index is the largest of many smooth functions: those that matter here; None if it is smooth."""
+        ...
+
+    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
+        """Those smooth functions and their gradients (components,), (components, values)."""
+        ...

@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from typing import Any
 
 import pytest
 
 
-def sampled(members: Iterable[Any], always: Collection[Any], seldom: Collection[Any] = ()) -> list[Any]:
+def sampled(
+    members: Iterable[Any],
+    always: Collection[Any] = (),
+    seldom: Collection[Any] = (),
+    *,
+    often: Collection[Any] = (),
+    kept: int | None = None,
+) -> list[Any]:
     """Parameters of which some are tested always, some `seldom`, in a marathon, and the others in a campaign.
 
-    A tuple is several parameters.
+    Of a family with many members the campaign takes those that are named as `often`, and about so many of the others
+    as are to be `kept`, evenly spread; the rest are a marathon. A tuple is several parameters.
     """
     members = list(members)
-    assert all(member in members for member in [*always, *seldom])
-    other = {True: pytest.mark.marathon, False: pytest.mark.campaign}
+    assert all(member in members for member in [*always, *seldom, *often])
+    others = [member for member in members if member not in [*always, *seldom, *often]]
+    spread = others if kept is None else others[:: -(-len(others) // kept)]
+    campaign = [*often, *spread]
     return [
         pytest.param(
             *(member if isinstance(member, tuple) else (member,)),
-            marks=[] if member in always else [other[member in seldom]],
+            marks=[] if member in always else pytest.mark.campaign if member in campaign else pytest.mark.marathon,
         )
         for member in members
-    ]
-
-
-def in_parts(parts: Sequence[Any], kept: int) -> list[Any]:
-    """Parameters of which about so many, evenly spread, are a campaign, and the others a marathon; as `sampled`."""
-    every = -(-len(parts) // kept)
-    return [
-        pytest.param(
-            *(part if isinstance(part, tuple) else (part,)),
-            marks=pytest.mark.marathon if i % every else pytest.mark.campaign,
-        )
-        for i, part in enumerate(parts)
     ]

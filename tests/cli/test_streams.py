@@ -11,7 +11,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from campaigns import in_parts, sampled
+from campaigns import sampled
 from study_text import study_text
 
 from inerter.cli.main import call
@@ -56,7 +56,7 @@ ENDED_MOTIONS = list(product(ENDS.values(), (SIMULATE,)))
 
 @pytest.mark.parametrize(
     ("line", "arguments"),
-    [*sampled(product(ENDS.values(), (RUN,)), [(ENDS["no reader at all"], RUN)]), *in_parts(ENDED_MOTIONS, 2)],
+    [*sampled(product(ENDS.values(), (RUN,)), [(ENDS["no reader at all"], RUN)]), *sampled(ENDED_MOTIONS, kept=2)],
 )
 def test_results_are_whole_whoever_listens(line: str, arguments: str, home: Path) -> None:
     code, out, err = shell(line.format(arguments), home)

@@ -11,31 +11,26 @@ from typing import Any
 
 import pytest
 from browser import EXAMPLES, Visitor, wait_until
+from study_text import PAPER_CAR, study_text
 
 import inerter as it
 from inerter.app.about import examples
 from inerter.app.designs import design_of
 from inerter.app.documents import study_from
 
-FIXED = """title = "All fixed"
-[vehicle]
-model = "quarter-car"
-sprung_mass = "181.75 kg"
-unsprung_mass = "25 kg"
-tyre_stiffness = "120 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "120 kN/m"
-c = "3 kN s/m"
-b = "100 kg"
-[layouts]
-S1 = "k | c"
-S3 = "k | c - b"
-[study]
-indices = ["J1"]
-"""
+FIXED = {"k": '"120 kN/m"', "c": '"3 kN s/m"', "b": '"100 kg"'}
+ONE_INDEX = 'indices = ["J1"]'
+
+
+def _two_struts(settings: str = ONE_INDEX, title: str = "All fixed", inerter: str = "k | c - b", **values: str) -> str:
+    """The text of a study; nothing is free in it unless `values`, which are TOML, say so."""
+    return study_text(
+        settings,
+        vehicle=PAPER_CAR,
+        elements="\n".join(f"{name} = {value}" for name, value in {**FIXED, **values}.items()),
+        layouts=f'S1 = "k | c"\nS3 = "{inerter}"',
+        title=f'title = "{title}"',
+    )
 
 
 def _open(visitor: Visitor, text: str, folder: Path) -> None:
@@ -45,15 +40,6 @@ def _open(visitor: Visitor, text: str, folder: Path) -> None:
     visitor.page.wait_for_selector(".notice")
     visitor.page.get_by_role("button", name="Close the message").click()
     visitor.settled()
-
-
-def _downloaded(visitor: Visitor, name: str, folder: Path) -> Path:
-    with visitor.page.expect_download() as found:
-        visitor.page.get_by_text("Save", exact=True).click()
-        visitor.page.get_by_role("button", name=name).click()
-    visitor.page.keyboard.press("Escape")
-    found.value.save_as(folder / found.value.suggested_filename)
-    return folder / found.value.suggested_filename
 
 
 def _numbers(table: Any, *place: str) -> Iterator[str]:
@@ -118,7 +104,7 @@ def test_a_lever_of_a_mechanism_is_moved(visitor: Visitor, tmp_path: Path) -> No
     page.keyboard.press("Enter")
     page.wait_for_selector("text=expected a number, such as 1")
     shown = visitor.values()
-    path = _downloaded(visitor, "This design, values fixed", tmp_path)
+    path = visitor.download("This design, values fixed", tmp_path)
     strut = tomllib.loads(path.read_text())["vehicle"]["struts"]["secondary_rear"]
     assert strut["upper"] == {"body": 1, "pitch": "-9 m"}
     assert strut["lower"] == {"bogie_rear": 0.5}
@@ -132,7 +118,7 @@ def test_a_lever_of_a_mechanism_is_moved(visitor: Visitor, tmp_path: Path) -> No
 def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) -> None:
     """Of a study in which nothing was free, and which names no method."""
     page = visitor.page
-    _open(visitor, FIXED, tmp_path)
+    _open(visitor, _two_struts(), tmp_path)
     before = visitor.values()
     page.locator("[data-place='elements.c'] summary").click()
     page.locator("[data-place='elements.c']").get_by_role("button", name="free").click()
@@ -142,18 +128,15 @@ def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) ->
     page.get_by_role("button", name="Optimise").click()
     page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
     assert visitor.values()["J1"] < before["J1"]
-    path = _downloaded(visitor, "Study file", tmp_path)
+    path = visitor.download("Study file", tmp_path)
     assert tomllib.loads(path.read_text())["study"]["optimise"] == "norm"
 
 
 @pytest.mark.campaign
 def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
-    _open(
-        visitor,
-        FIXED.replace('"3 kN s/m"', '{ from = "100 N s/m", to = "100 kN s/m" }') + 'optimise = "norm"\n',
-        tmp_path,
-    )
+    text = _two_struts(f'{ONE_INDEX}\noptimise = "norm"', c='{ from = "100 N s/m", to = "100 kN s/m" }')
+    _open(visitor, text, tmp_path)
     page.get_by_text("Indices and limits").click()
     page.get_by_role("group", name="Indices of the study").get_by_role("button", name="J3", exact=True).click()
     page.wait_for_selector("td[data-index=J3]")
@@ -171,7 +154,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     page.get_by_role("button", name="Optimise").click()
     page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
     page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
-    study = tomllib.loads(_downloaded(visitor, "Study file", tmp_path).read_text())["study"]
+    study = tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
     assert study["indices"] == ["J1", "J3"]
     assert study["subject_to"] == {
         "suspension-travel": {"at_most": "8 mm"},
@@ -180,7 +163,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     for name in ("suspension-travel at most", "static-stiffness strut at least"):
         page.get_by_role("button", name=f"Delete the limit: {name}").click()
     page.wait_for_selector(".limits", state="detached")
-    assert "subject_to" not in tomllib.loads(_downloaded(visitor, "Study file", tmp_path).read_text())["study"]
+    assert "subject_to" not in tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
 
 
 @pytest.mark.campaign
@@ -214,7 +197,7 @@ def test_tables_and_link_hold_what_is_looked_at(visitor: Visitor, visitors: Any,
     visitor.settled()
     shown = visitor.values()
     for name, column in {"Frequency response (CSV)": "frequency", "On the road (CSV)": "time"}.items():
-        with _downloaded(visitor, name, tmp_path).open() as stream:
+        with visitor.download(name, tmp_path).open() as stream:
             rows = list(csv.reader(stream))
         assert any(column in head for head in rows[0]), name
         assert len(rows) > 100, name
@@ -239,7 +222,7 @@ def _drop(visitor: Visitor, path: Path) -> None:
 def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     study = tmp_path / "dropped.toml"
-    study.write_text(FIXED)
+    study.write_text(_two_struts())
     _drop(visitor, study)
     page.wait_for_selector("text=dropped.toml is open")
     assert page.input_value(".title") == "All fixed"
@@ -248,7 +231,7 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     (folder / "figures").mkdir(parents=True)
     for number in range(150):  # more than a browser tells at once
         (folder / f"a-{number}.svg").write_text("<svg/>")
-    (folder / "study.resolved.toml").write_text(FIXED.replace("All fixed", "From a folder"))
+    (folder / "study.resolved.toml").write_text(_two_struts(title="From a folder"))
     (folder / "summary.csv").write_text("layout,index\n")
     _drop(visitor, folder)
     page.wait_for_selector("text=study.resolved.toml is open")
@@ -349,11 +332,9 @@ def test_a_drawing_of_many_elements_is_laid_across_the_page(visitors: Callable[.
 def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
     """By the method that the page judges by: how much friction takes all of what an inerter brings."""
     page = visitor.page
-    values = {'"k | c - b"': '"k | d - (b | f)"', '"3 kN s/m"': '"4981 N s/m"', '"100 kg"': '"328.72 kg"'}
-    study_text = FIXED.replace("[layouts]", 'd = "7353 N s/m"\nf = "10 N"\n[layouts]')
-    for before, after in values.items():
-        study_text = study_text.replace(before, after)
-    _open(visitor, study_text, tmp_path)
+    values = {"c": "4981 N s/m", "d": "7353 N s/m", "b": "328.72 kg", "f": "10 N"}
+    text = _two_struts(inerter="k | d - (b | f)", **{name: f'"{value}"' for name, value in values.items()})
+    _open(visitor, text, tmp_path)
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
     page.get_by_text("What it bears").click()
     asked: list[Any] = []
@@ -377,7 +358,7 @@ def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
 @pytest.mark.campaign
 def test_a_report_is_made_and_downloaded(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
-    _open(visitor, FIXED, tmp_path)
+    _open(visitor, _two_struts(), tmp_path)
     page.get_by_text("Save", exact=True).click()
     page.get_by_role("button", name="Report: run the study").click()
     job = page.locator(".job").first

@@ -35,11 +35,7 @@ def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, 
         }"""
     )
     found = visitor.values()
-    with page.expect_download() as download:
-        page.get_by_text("Save", exact=True).click()
-        page.get_by_role("button", name="This design, values fixed").click()
-    path = tmp_path / "design.toml"
-    download.value.save_as(path)
+    path = visitor.download("This design, values fixed", tmp_path)
     assert it.load_study(path).elements["c"].value == float(text.removesuffix(" N s/m"))
     assert found["J1"] == _value(path, "S3", "J1")
     page.get_by_role("button", name="Undo").click()

@@ -12,31 +12,20 @@ from typing import Any
 
 import pytest
 from browser import EXAMPLES, Served, Visitor, free_port, wait_until
+from study_text import PAPER_CAR, study_text
 
 import inerter as it
 from inerter.app.designs import design_of
 from inerter.app.documents import study_from
 from inerter.files.study.loading import load_study
 
-NEWCOMER = """title = "A newcomer's car"
-[vehicle]
-model = "quarter-car"
-sprung_mass = "181.75 kg"
-unsprung_mass = "25 kg"
-tyre_stiffness = "120 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "120 kN/m"
-c = { from = "100 N s/m", to = "100 kN s/m" }
-[layouts]
-S1 = "k | c"
-[study]
-indices = ["J1", "J3", "J5"]
-optimise = "norm"
-baseline = "S1"
-"""
+ELEMENTS = 'k = "120 kN/m"\nc = { from = "100 N s/m", to = "100 kN s/m" }'
+
+
+def _newcomer(*indices: str) -> str:
+    settings = f'indices = {json.dumps(indices)}\noptimise = "norm"\nbaseline = "S1"'
+    title = 'title = "A newcomer\'s car"'
+    return study_text(settings, vehicle=PAPER_CAR, elements=ELEMENTS, layouts='S1 = "k | c"', title=title)
 
 
 def _run(study: Path, out: Path) -> list[dict[str, Any]]:
@@ -53,16 +42,6 @@ def _run(study: Path, out: Path) -> list[dict[str, Any]]:
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     return list(json.loads(done.stdout)["designs"])
-
-
-def _download(visitor: Visitor, name: str, into: Path) -> Path:
-    with visitor.page.expect_download() as found:
-        visitor.page.get_by_text("Save", exact=True).click()
-        visitor.page.get_by_role("button", name=name).click()
-    visitor.page.keyboard.press("Escape")
-    visitor.page.mouse.click(640, 5)  # closes the menu
-    found.value.save_as(into / found.value.suggested_filename)
-    return into / found.value.suggested_filename
 
 
 def _by_mouse(visitor: Visitor) -> None:
@@ -104,7 +83,7 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
     visitor = visitors(served).visit()
     page = visitor.page
     study = tmp_path / "newcomer.toml"
-    study.write_text(NEWCOMER)
+    study.write_text(_newcomer("J1", "J3", "J5"))
     visitor.open(study)
     visitor.wait_for_text("k | c")
     visitor.settled()
@@ -142,10 +121,10 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
     assert other.values() == optimum
     assert served.token not in other.page.url
 
-    free = _download(other, "Study file", tmp_path)
+    free = other.download("Study file", tmp_path)
     found = {row["layout"]: row["value"] for row in _run(free, tmp_path / "free") if row["index"] == "J1"}
     assert found["S2"] == optimum["J1"]
-    fixed = _download(other, "This design, values fixed", tmp_path)
+    fixed = other.download("This design, values fixed", tmp_path)
     assert {row["index"]: row["value"] for row in _run(fixed, tmp_path / "fixed")} == optimum
 
 
@@ -298,30 +277,30 @@ def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Pa
 @pytest.mark.campaign
 def test_downloads_hold_what_is_shown(visitor: Visitor, tmp_path: Path) -> None:
     shown = visitor.values()
-    table = _download(visitor, "Indices (CSV)", tmp_path)
+    table = visitor.download("Indices (CSV)", tmp_path)
     with table.open() as stream:
         rows = list(csv.DictReader(stream))
     assert {row["index"]: float(row["value"]) for row in rows if row["layout"] == "S3e"} == shown
-    assert _download(visitor, "Network (SVG)", tmp_path).read_text().lstrip().startswith("<?xml")
-    assert _download(visitor, "Network (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
+    assert visitor.download("Network (SVG)", tmp_path).read_text().lstrip().startswith("<?xml")
+    assert visitor.download("Network (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.campaign
 def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
     """Of every index of the study, whatever it is called: what the menu asks for, the server has."""
     study = tmp_path / "study.toml"
-    study.write_text(NEWCOMER.replace('["J1", "J3", "J5"]', '["J1", "tyre-load"]'))
+    study.write_text(_newcomer("J1", "tyre-load"))
     visitor.open(study)
     visitor.wait_for_text("k | c")
     visitor.settled()
     for index in ("J1", "tyre-load"):
         visitor.page.get_by_text("Save", exact=True).click()
         visitor.page.locator(".menu-body select").select_option(index)
-        visitor.page.mouse.click(640, 5)
-        picture = _download(visitor, "Response (SVG)", tmp_path)
+        visitor.page.keyboard.press("Escape")
+        picture = visitor.download("Response (SVG)", tmp_path)
         assert picture.name.endswith(f"response-{index}.svg")
         assert picture.read_text().lstrip().startswith("<?xml")
-    assert _download(visitor, "Response (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
+    assert visitor.download("Response (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.campaign

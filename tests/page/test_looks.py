@@ -13,30 +13,23 @@ from typing import Any
 
 import pytest
 from browser import EXAMPLES, Served, Visitor
+from study_text import PAPER_CAR, study_text
 
 AXE = pytest.importorskip("axe_playwright_python.sync_playwright")
 SERIOUS = ("serious", "critical")
 SIZES = {"wide": (1280, 800), "narrow": (420, 800), "projector": (1920, 1080)}
 TABS = ("response", "history", "compare", "tolerance", "work", "rig")
 DOCUMENTED = {("quarter-car", "wide", "light", "response"), ("ball_screw", "wide", "dark", "history")}
-HEAD = """[vehicle]
-model = "quarter-car"
-sprung_mass = "181.75 kg"
-unsprung_mass = "25 kg"
-tyre_stiffness = "120 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-"""
-TAIL = '[study]\nindices = ["J1", "J3", "J5"]\n'
+INDICES = 'indices = ["J1", "J3", "J5"]'
 
 
 def _forty_elements() -> str:
     branches = [(f"k{i}", f"c{i}", f"b{i}", f"d{i}") for i in range(10)]
     values = {"k": "12 kN/m", "c": "300 N s/m", "b": "30 kg", "d": "200 N s/m"}
-    elements = "".join(f'{name} = "{values[name[0]]}"\n' for branch in branches for name in branch)
+    elements = "\n".join(f'{name} = "{values[name[0]]}"' for branch in branches for name in branch)
     network = " | ".join(f"{k} | {c} - ({b} | {d})" for k, c, b, d in branches)
-    return f'title = "Forty elements"\n{HEAD}[elements]\n{elements}[layouts]\nS1 = "k0 | c0"\nS2 = "{network}"\n{TAIL}'
+    layouts = f'S1 = "k0 | c0"\nS2 = "{network}"'
+    return study_text(INDICES, vehicle=PAPER_CAR, elements=elements, layouts=layouts, title='title = "Forty elements"')
 
 
 def _long_names() -> str:
@@ -44,9 +37,12 @@ def _long_names() -> str:
     long = "the_damper_that_the_supplier_calls_by_its_whole_catalogue_number_0123456789"
     title = ("A title of many words, as a committee on suspension would have it, " * 4)[:200]
     layout, other = (f"{start}-layout-with-everything-anybody-ever-wished-for"[:40] for start in ("the", "another"))
-    return (
-        f'title = "{title}"\n{HEAD}[elements]\nk = "120 kN/m"\n{long} = {{ from = "100 N s/m", to = "100 kN s/m" }}\n'
-        f'b = "300 kg"\n[layouts]\n{layout} = "k | {long}"\n{other} = "k | {long} - b"\n{TAIL}optimise = "norm"\n'
+    return study_text(
+        f'{INDICES}\noptimise = "norm"',
+        vehicle=PAPER_CAR,
+        elements=f'k = "120 kN/m"\n{long} = {{ from = "100 N s/m", to = "100 kN s/m" }}\nb = "300 kg"',
+        layouts=f'{layout} = "k | {long}"\n{other} = "k | {long} - b"',
+        title=f'title = "{title}"',
     )
 
 

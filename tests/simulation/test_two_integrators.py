@@ -6,7 +6,7 @@ from itertools import count
 
 import numpy as np
 import pytest
-from campaigns import in_parts, sampled
+from campaigns import sampled
 from mechanisms import random_case
 
 from inerter import Trajectory, simulate
@@ -69,7 +69,7 @@ def differences(vehicle, inputs: dict) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize("chunk", [*sampled(FIRST, [12]), *in_parts(OTHERS, 14)])
+@pytest.mark.parametrize("chunk", [*sampled(FIRST, [12]), *sampled(OTHERS, kept=14)])
 def test_the_difference_vanishes_with_the_step_of_time_stepping(chunk):
     orders, done = [], 0
     for seed in count(1000 * chunk):

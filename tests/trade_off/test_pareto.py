@@ -107,7 +107,10 @@ def test_no_random_design_dominates_a_point(kind, pair, number):
         assert max(closed) <= 2.5 * np.median(closed)
 
 
-@pytest.mark.parametrize("number", sampled(range(120), [16]))
+HARD = [83, 89, 93, 95]  # fronts that had gaps, as 16
+
+
+@pytest.mark.parametrize("number", sampled(range(120), [16], often=HARD, kept=10))
 def test_fronts_of_a_force_have_no_gaps_that_are_not_told(number):
     """Many designs may have the least force of a damper: the best of them in the other criterion is the end."""
     rng = np.random.default_rng([number, 818])

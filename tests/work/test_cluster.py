@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -150,7 +151,7 @@ def test_no_scheduler_answers(tmp_path: Path) -> None:
     assert "no scheduler of dask answers at tcp://127.0.0.1:9" in errors
 
 
-TROUBLES = ["none", "one killed", "one added", "all killed, new ones started"]
+TROUBLES = ["none", "one killed, one added", "all killed, new ones started"]
 
 
 @pytest.mark.timeout(900)
@@ -159,9 +160,8 @@ def test_whatever_workers_come_and_go(trouble: str, alone: Mapping[str, bytes], 
     process = inerter("run", study_file(tmp_path, 12, 8), "-o", tmp_path / "out", "--scheduler", there.address)
     wait_until(lambda: finished(tmp_path) >= 5, process)
     first, second = there.processes[1:]
-    if trouble == "one killed":
+    if trouble == "one killed, one added":
         kill(first)
-    elif trouble == "one added":
         there.start_worker()
     elif trouble != "none":
         kill(first)
@@ -175,36 +175,34 @@ def test_whatever_workers_come_and_go(trouble: str, alone: Mapping[str, bytes], 
 
 @pytest.mark.campaign
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("victim", ["coordinator", "scheduler"])
-def test_what_ends_is_gone_on_with_by_another_executor(
-    victim: str, alone: Mapping[str, bytes], tmp_path: Path, there: Cluster
-) -> None:
+def test_what_one_executor_began_another_ends(alone: Mapping[str, bytes], tmp_path: Path, there: Cluster) -> None:
+    """By own processes and on a cluster until the command is killed, there until the scheduler is, and by processes."""
     study, out = study_file(tmp_path, 12, 8), tmp_path / "out"
-    process = inerter("run", study, "-o", out, "--scheduler", there.address)
-    wait_until(lambda: finished(tmp_path) >= 5, process)
-    if victim == "coordinator":
+    own, far = ("-j", 2), ("--scheduler", there.address)
+    kept = [b""]
+
+    def begin(*words: object) -> subprocess.Popen[str]:
+        process = inerter("run", study, "-o", out, *words)
+        wait_until(lambda: finished(tmp_path) >= kept[-1].count(b"\n") + 3, process)
+        return process
+
+    def keep() -> None:
+        journal = next(tmp_path.rglob("journal.jsonl")).read_bytes()
+        kept.append(journal[: journal.rindex(b"\n") + 1])
+
+    for words in (own, ("--resume", *far)):
+        process = begin(*words)
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
-    else:
-        kill(there.processes[0])
-        assert "executor that the work was handed to has ended" in done(process, 1)
-    before = next(tmp_path.rglob("journal.jsonl")).read_bytes()
-    kept = before[: before.rindex(b"\n") + 1]
-    done(inerter("run", study, "-o", out, "--resume", "-j", 2))
+        keep()
+    process = begin("--resume", *far)
+    kill(there.processes[0])
+    assert "executor that the work was handed to has ended" in done(process, 1)
+    keep()
+    done(inerter("run", study, "-o", out, "--resume", *own))
+    keep()
     assert results(out) == alone
-    assert next(out.rglob("journal.jsonl")).read_bytes().startswith(kept)  # nothing was done again
-
-
-@pytest.mark.campaign
-@pytest.mark.timeout(900)
-def test_what_an_executor_began_a_cluster_ends(alone: Mapping[str, bytes], tmp_path: Path, there: Cluster) -> None:
-    study, out = study_file(tmp_path, 12, 8), tmp_path / "out"
-    process = inerter("run", study, "-o", out, "-j", 2)
-    wait_until(lambda: finished(tmp_path) >= 5, process)
-    os.killpg(process.pid, signal.SIGKILL)
-    process.communicate()
-    done(inerter("run", study, "-o", out, "--resume", "--scheduler", there.address))
-    assert results(out) == alone
+    assert all(later.startswith(earlier) for earlier, later in pairwise(kept))  # nothing was done again
 
 
 @pytest.mark.campaign

@@ -99,6 +99,47 @@ def test_many_norms_by_quadrature():
         check_one(seed)
 
 
+def test_searches_with_a_constant_coherence_are_compiled(monkeypatch):
+    """Values and slopes against quadrature, and none of them from fractions, which take a thousand times as long."""
+    vehicle, road = car(np.random.default_rng(1)), it.Road(5e-7, 22.0, coherence=it.Coherence.constant(0.6))
+    strut = it.Spring(25e3) | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b"))
+    free, index = replace(vehicle, front=strut, rear=strut), it.RandomResponse({"roll_acceleration": 1.0}, road)
+    objective = it.Norm().objective(free, index)
+    assert np.isfinite(objective.values(np.array([[2e3, 100.0]]))).all()
+    monkeypatch.setattr("inerter.methods.compiled_norm.h2_exactly", None)
+
+    def at(c, b):
+        expected = by_quadrature(free.with_values({"c": c, "b": b}), road, ["roll_acceleration"], road.coherence)
+        return float(expected[0])
+
+    for c, b in ((500.0, 30.0), (2e3, 100.0), (8e3, 400.0)):
+        value, gradient = objective.value_and_gradient(np.array([c, b]))
+        assert value == pytest.approx(at(c, b), rel=2e-5)
+        ends = (at(c * 1.01, b), at(c / 1.01, b)), (at(c, b * 1.01), at(c, b / 1.01))
+        slopes = [(above - below) / (2.0 * math.log(1.01)) for above, below in ends]
+        np.testing.assert_allclose(gradient * [c, b], slopes, atol=2e-4 * value)
+
+
+def test_a_filter_without_states_is_a_number():
+    """Twice the road makes twice the motion, also where the road's shape is held in the tyres."""
+    axle, strut = {"unsprung_mass": 40.0, "tyre_stiffness": 2e5}, it.Spring(3e4) | it.Damper(it.free(1e3, 1e4, "c"))
+    vehicle = it.HalfCar(
+        sprung_mass=700.0,
+        pitch_inertia=1100.0,
+        distance_front=1.2,
+        distance_rear=1.4,
+        front=strut,
+        rear=strut,
+        **{f"{name}_{where}": value for name, value in axle.items() for where in ("front", "rear")},
+    )
+    road = it.Road(5e-7, 22.0)
+    indices = [it.RideComfort(road), it.RideComfort(it.Shaped(road, it.Filter([4.0], [2.0])))]
+    many = it.evaluate_many(vehicle, indices, {"c": [1.5e3, 4e3]}, it.Norm())
+    one = [it.evaluate(vehicle.with_values({"c": 4e3}), index, it.Norm()).value for index in indices]
+    np.testing.assert_allclose(many[:, 1], 2.0 * many[:, 0], rtol=1e-9)
+    np.testing.assert_allclose(one, many[1], rtol=1e-9)
+
+
 def check_simulated(count, coherence, lowest, near, seed=0):
     """Norms against multisines simulated on both tracks: mean squares with their scatter.
 

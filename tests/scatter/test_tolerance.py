@@ -159,6 +159,55 @@ def test_the_quantile_is_that_of_a_known_distribution():
     assert found.value == pytest.approx(1.18e5, rel=1e-3)
 
 
+def made_up():
+    """A strut whose second spring makes up 100 kN/m with the first, and whose second damper is half the first."""
+    k1, k2 = it.Spring(it.free(1.1e5, 1e6, "k1")), it.Spring(1.0 / (1.0 / 1e5 - 1.0 / it.tied("k1")), "k2")
+    first, second = it.Damper(it.free(100.0, 1e5, "c")), it.Damper(it.tied("c", 0.5), "c2")
+    return paper_quarter_car((k1 - k2) | first - it.Inerter(300.0) | second)
+
+
+@pytest.mark.parametrize("spread", [{"c": 0.3, "k1": 0.2}, {"c": 0.3, "c2": 0.2, "k2": 0.1}, {"k2": 0.3}])
+def test_what_is_tied_follows_in_the_design_and_scatters_by_itself(spread):
+    """Quantiles of both ways against plain random numbers, each part written as a number."""
+    at, rng, count = {"k1": 2.5e5, "c": 5e3}, np.random.default_rng(3), 4000
+    design = made_up().with_values(at)
+    parts = {**at, "k2": 1.0 / (1.0 / 1e5 - 1.0 / at["k1"]), "c2": 0.5 * at["c"]}
+    made = {n: parts[n] * (1.0 + spread.get(n, 0.0) * rng.uniform(-1.0, 1.0, count)) for n in parts}
+    k1, k2 = (it.Spring(it.free(1.0, 1e7, name)) for name in ("k1", "k2"))
+    c, c2 = (it.Damper(it.free(1.0, 1e6, name)) for name in ("c", "c2"))
+    loose = paper_quarter_car((k1 - k2) | c - it.Inerter(300.0) | c2)
+    values = it.evaluate_many(loose, J3, made, NORM)[:, 0]
+    found = it.tolerance(design, J3, NORM, spread=spread, samples=1024)
+    of = it.Quantile(J3, scatter_of(spread, "uniform"), samples=1024)
+    objective, point = objective_of(made_up(), of, NORM), np.array([at[name] for name in made_up().free_values()])
+    near = 0.1 * values.std()
+    assert found.mean == pytest.approx(values.mean(), abs=near)
+    assert found.standard_deviation == pytest.approx(values.std(), rel=0.05)
+    for quantile in (
+        found.quantile(0.95),
+        it.evaluate(design, of, NORM).value,
+        float(objective.values(point[None])[0]),
+    ):
+        assert quantile == pytest.approx(np.quantile(values, 0.95), abs=near)
+    objective = objective_of(made_up(), it.Quantile(J3, of.scatter, samples=32), NORM)  # whose samples keep their ranks
+    value, gradient = objective.value_and_gradient(point)
+    for i in range(2):
+        step = np.where(np.arange(2) == i, 1e-6, 0.0)
+        up, down = objective.values(np.array([point * (1.0 + step), point * (1.0 - step)]))
+        assert gradient[i] * point[i] / value == pytest.approx((up - down) / 2e-6 / value, abs=1e-5)
+
+
+def test_two_parts_of_one_free_value_scatter_by_their_names():
+    """Dampers side by side, both c: the sum of two that scatter scatters less than twice one of them."""
+    pair = it.Damper(it.free(100.0, 1e5, "c"), "left") | it.Damper(it.free(100.0, 1e5, "c"), "right")
+    car, one = paper_quarter_car(it.Spring(1.2e5) | pair), paper_quarter_car(it.Spring(1.2e5) | it.Damper(1e4, "c"))
+    scattered, alone = scatter_of({"left": 0.3, "right": 0.3}, "uniform"), scatter_of({"c": 0.3}, "uniform")
+    here = it.evaluate(car.with_values({"c": 5e3}), it.Quantile(J1, scattered, samples=256), NORM).value
+    objective = objective_of(car, it.Quantile(J1, scattered, samples=256), NORM)
+    assert float(objective.values(np.array([[5e3]]))[0]) == pytest.approx(here, rel=1e-9)
+    assert here < it.evaluate(one, it.Quantile(J1, alone, samples=256), NORM).value
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [

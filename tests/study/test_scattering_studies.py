@@ -89,6 +89,41 @@ def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
     assert "quantile" in asked.title
 
 
+TIED = (
+    FREE
+    + """
+k1 = { from = "40 kN/m", to = "1 MN/m" }
+k2 = { tied = "1 / (1 / k - 1 / k1)" }"""
+)
+
+
+def test_a_tied_value_scatters_by_its_own_name(tmp_path: Path) -> None:
+    """The best design and the one that is best at a quantile, each with what Python says of it."""
+    path = tmp_path / "study.toml"
+    for line in ("", "quantile = 0.9\n"):
+        settings = ASK + 'tolerance = { k2 = "20 %" }\n' + line
+        path.write_text(study_text(settings, elements=TIED, layouts='S1 = "k1 - k2 | c"'), encoding="utf-8")
+        study = load_study(path)
+        found = run_study(study, tmp_path / f"out{len(line)}")
+        values = dict(zip(("c", "k1"), found.data["parameter_value"].squeeze().values.tolist(), strict=True))
+        k2 = 1.0 / (1.0 / 30e3 - 1.0 / values["k1"])
+        strut = it.Spring(values["k1"]) - it.Spring(k2, "k2") | it.Damper(values["c"])
+        car = it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=strut)
+        by_hand = it.tolerance(car, it.RideComfort(study.road), it.Norm(), spread={"k2": 0.2}, seed=0)
+        (one,) = found.tolerances
+        assert one.numbers["mean"] == pytest.approx(by_hand.mean, rel=1e-9)
+        if line:
+            assert float(found.data["value"].squeeze()) == pytest.approx(by_hand.quantile(0.9), rel=1e-3)
+
+
+def test_what_no_layout_is_made_of_does_not_scatter(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    text = study_text(ASK + "tolerance = { k = 0.1 }", elements=TIED, layouts='S1 = "k1 - k2 | c"')
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(StudyError, match="no layout has it as a part; k2 follows from it, and scatters by its own"):
+        load_study(path)
+
+
 BAD: dict[str, tuple[str, str, list[str]]] = {
     "of nothing": (ASK + "tolerance = { q = 0.1 }", "study.tolerance.q", ["not in [elements]"]),
     "of the road": (ASK + "tolerance = { road.speed = 0.1 }", 'study.tolerance."road.speed"', ["no number"]),

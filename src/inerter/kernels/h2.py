@@ -16,7 +16,7 @@ import numpy as np
 
 from inerter.kernels.closing import DESCRIPTOR, close_twofold, pull_back, twofold_space
 from inerter.kernels.declare import kernel, part
-from inerter.kernels.linalg import exponential, factor, matmul, solve, solve_transposed
+from inerter.kernels.linalg import exponential, factor, factor_within, matmul, solve, solve_transposed
 from inerter.kernels.twofold import add_multiple
 
 Array = Any
@@ -56,24 +56,64 @@ def balance(A: Array, scale: Array, inverse: Array) -> None:
                 inverse[i] = 1.0 / scale[i]
 
 
-@part()
-def places(n: int) -> Array:
-    """Where the entries of a symmetric matrix of order n stand when each is listed once."""
-    place = np.empty((n, n), np.int64)
-    count = 0
+@part(borrowing=True)
+def list_places(A: Array, place: Array, depends: Array, order: Array) -> None:
+    """Fill `place` with where the entries of a symmetric matrix of the order of A stand when each is listed once.
+
+    An entry stands before those that its equation in A P + P A' has from states which A moves without being moved by
+    them, as a filter is moved by what it filters: blocks of zeros under the diagonal then stay zero in the factors.
+    """
+    n = A.shape[0]
     for i in range(n):
-        for j in range(i, n):
-            place[i, j] = count
-            place[j, i] = count
-            count += 1
-    return place
+        for j in range(n):
+            depends[i, j] = A[i, j] != 0.0 or i == j
+    for k in range(n):
+        for i in range(n):
+            if depends[i, k]:
+                for j in range(n):
+                    depends[i, j] = depends[i, j] or depends[k, j]
+    count = 0
+    for size in range(n, 0, -1):  # what depends on more states comes first
+        for i in range(n):
+            total = 0
+            for j in range(n):
+                total += depends[i, j]
+            if total == size:
+                order[count] = i
+                count += 1
+    count, start = 0, 0
+    while start < n:
+        end = block_end(depends, order, start)
+        first = start
+        while first < n:
+            last = block_end(depends, order, first)
+            for i in range(start, end):
+                for j in range(max(i, first), last):
+                    place[order[i], order[j]] = count
+                    place[order[j], order[i]] = count
+                    count += 1
+            first = last
+        start = end
+
+
+@part(borrowing=True)
+def block_end(depends: Array, order: Array, start: int) -> int:
+    """Where the states end that depend on each other, from that one on."""
+    end = start + 1
+    while end < order.size and depends[order[start], order[end]] and depends[order[end], order[start]]:
+        end += 1
+    return end
 
 
 @part()
 def lyapunov_space(n: int) -> Any:
-    """Room for the Lyapunov equations of order n: factors, pivots, places, units, a right-hand side, A in its units."""
+    """Room for the Lyapunov equations of order n: factors, pivots, places, units, a right-hand side, A in its units,
+    and what places are found by.
+    """
     N = n * (n + 1) // 2
-    return np.zeros((N, N)), np.empty(N, np.int64), places(n), (np.ones(n), np.ones(n)), np.empty(N), np.empty((n, n))
+    places, finding = np.empty((n, n), np.int64), (np.empty((n, n), np.bool_), np.empty(n, np.int64))
+    units = np.ones(n), np.ones(n)
+    return np.zeros((N, N)), np.empty(N, np.int64), places, units, np.empty(N), np.empty((n, n)), finding
 
 
 @part(borrowing=True)
@@ -82,26 +122,34 @@ def lyapunov_factors(A: Array, drifts: Array, lyapunov: Array) -> bool:
 
     An entry of P between two of the states `drifts` is the negative of its right-hand side, and in no other equation.
     """
-    K, pivots, place, (scale, inverse), _, scaled = lyapunov
+    K, pivots, place, (scale, inverse), _, scaled, (depends, order) = lyapunov
     n = A.shape[0]
+    list_places(A, place, depends, order)
     balance(A, scale, inverse)
     for i in range(n):
         for j in range(n):
             scaled[i, j] = A[i, j] * scale[j] * inverse[i]
     K[:, :] = 0.0
+    pivots[:] = 0  # until it is factored: the last row of each column that is not zero
     for i in range(n):
         for j in range(i, n):
             row = place[i, j]
             for k in range(n):
-                K[row, place[k, j]] += scaled[i, k]
-                K[row, place[i, k]] += scaled[j, k]
+                if scaled[i, k] != 0.0:
+                    K[row, place[k, j]] += scaled[i, k]
+                    pivots[place[k, j]] = max(pivots[place[k, j]], row)
+                if scaled[j, k] != 0.0:
+                    K[row, place[i, k]] += scaled[j, k]
+                    pivots[place[i, k]] = max(pivots[place[i, k]], row)
+    for column in range(pivots.size):
+        pivots[column] = max(pivots[column], column, pivots[max(column - 1, 0)])
     for i in range(drifts.size):
         for j in range(drifts.size):
             known = place[drifts[i], drifts[j]]
             for row in range(K.shape[0]):
                 K[row, known] = 0.0
             K[known, known] = 1.0
-    return factor(K, pivots)
+    return factor_within(K, pivots)
 
 
 @part()
@@ -216,7 +264,7 @@ def propagated_adjoint(
 @part(borrowing=True)
 def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
     """P of A P + P A' + W = 0, or of A' P + P A + W = 0, from the factors of the former."""
-    K, pivots, place, (scale, inverse), b, _ = lyapunov
+    K, pivots, place, (scale, inverse), b, _, _ = lyapunov
     n = W.shape[0]
     into, out = (scale, inverse) if adjoint else (inverse, scale)
     for i in range(n):
@@ -245,7 +293,7 @@ def norms_space(descriptor: Array) -> Any:
 def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arrivals: Array) -> None:
     """Fill `met` with what each arrival meets of those before it, and with bounds of its error."""
     gaps, (poles, residues, direct), (drifts, _) = arrivals
-    _, _, _, (scale, _), _, scaled = lyapunov
+    _, _, _, (scale, _), _, scaled, _ = lyapunov
     n, m = B.shape
     E_scaled, u, unsure = np.empty((n, n)), np.empty(n), np.empty(n)
     for i in range(n):
@@ -302,20 +350,20 @@ def leave(lost: Array, A: Array, B: Array, met: Array, W: Array, P: Array, rest:
 
 
 @part()
-def norms_in(space: Array, p: Array, descriptor: Array, twofold: Array, arrivals: Array, result: Array) -> bool:
-    """Fill `result` with the norm of each output; False where it may be off by more than `_ACCURATE`.
+def norms_in(space: Array, p: Array, descriptor: Array, twofold: Array, arrivals: Array, result: Array) -> float:
+    """Fill `result` with the norm of each output; returns how doubtful that is, see `judge`.
 
     What P leaves of A P + P A' + W = 0, A and B as they were before rounding, corrects all rounding at first order:
     solved for once more it is what P lacks, whose share of a square has small terms where that can be believed.
     """
     closing, lyapunov, met, (W, P, Q, rest, lacks), CP = space
     if not close_twofold(closing, p, descriptor, twofold):
-        return False
+        return np.inf
     A, B, C = closing[0][0], closing[0][1], closing[0][2]
     lost_A, lost_B, lost_C, _ = closing[1]
     drifts, walks = arrivals[2]
     if not lyapunov_factors(A, drifts, lyapunov):
-        return False
+        return np.inf
     if B.shape[1] > 1:
         excite(lost_A, B, lost_B, lyapunov, met, arrivals)
     matrices, lost = (A, B, C, met), (lost_A, lost_B, lost_C)
@@ -389,8 +437,12 @@ def refine(matrices: Array, lost: Array, lyapunov: Array, drifts: Array, room: A
 
 
 @part(borrowing=True)
-def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Array, result: Array) -> bool:
-    """Fill `result` once A, B and C, the factors and `met` are there. See `norms_in`."""
+def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Array, result: Array) -> float:
+    """Fill `result` once A, B and C, the factors and `met` are there. See `norms_in`.
+
+    Returns the sizes of the terms of the correction and of what rounding may add, relative to a square: the norm may be
+    off by a small part of it. Infinite where it may be off by more than `_ACCURATE`.
+    """
     A, B, C, met = matrices
     drifts, walks = known
     lost_A, lost_B, lost_C = lost
@@ -412,7 +464,7 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
     solve_symmetric(lyapunov, W, False, P)
     found, limit = refine(matrices, (lost_A, lost_B), lyapunov, drifts, (W, P, rest, lacks))
     if not found:
-        return False
+        return np.inf
     terms, unsure = 0.0, 0.0
     for k in range(o):
         total, change, size, rounding = 0.0, 0.0, 0.0, 0.0
@@ -428,13 +480,14 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
             size += most * abs(C[k, i]) + 2.0 * abs(CP[k, i] * lost_C[k, i])
             rounding += n * _EPS * row * abs(C[k, i])
         if not total > 0.0:
-            return False
+            return np.inf
         result[k] = np.sqrt(total + change)
         terms += size / total
         unsure += rounding / total
     if m > 1 or drifts.size > 0:
         unsure += unsure_of_road(matrices, lyapunov, known, result, Q)
-    return limit > 0.0 and terms <= min(_SMALL, limit) and unsure <= _ACCURATE
+    believed = limit > 0.0 and terms <= min(_SMALL, limit) and unsure <= _ACCURATE
+    return terms + unsure if believed else np.inf
 
 
 @part()
@@ -481,21 +534,22 @@ def gradient_in(space: Array, p: Array, descriptor: Array, arrivals: Array, weig
     "complex128[::1], float64)), Tuple((int64[::1], float64[:,::1])))), float64[::1])",
 )
 def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, weights: Array) -> Any:
-    """Norms (designs, outputs) at each row of `points`, gradients over it, and whether each norm is right.
+    """Norms (designs, outputs) at each row of `points`, gradients over it, and how doubtful the norms are.
 
     The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. Norms that
-    may be off are nan, or what was found, with its gradient. `twofold` as in `close_twofold`. `arrivals` = (gaps,
-    (poles, residues, direct), (drifts, walks)): times between an arrival of the road and the next, the Pade approximant
-    (no poles: exact), and the states that only the road moves, if there are any, with their covariance.
+    may be off are nan, or what was found, with its gradient; their doubt (see `judge`) is infinite. `twofold` as in
+    `close_twofold`. `arrivals` = (gaps, (poles, residues, direct), (drifts, walks)): times between an arrival of the
+    road and the next, the Pade approximant (no poles: exact), and the states that only the road moves, if there are
+    any, with their covariance.
     """
     space = norms_space(descriptor)
     count = points.shape[0]
-    result, good = np.full((count, descriptor[7].shape[1]), np.nan), np.empty(count, np.bool_)
+    result, doubts = np.full((count, descriptor[7].shape[1]), np.nan), np.empty(count)
     gradients = np.full((count if weights.size > 0 else 0, points.shape[1]), np.nan)
     for i in range(count):
-        good[i] = norms_in(space, points[i], descriptor, twofold, arrivals, result[i])
+        doubts[i] = norms_in(space, points[i], descriptor, twofold, arrivals, result[i])
         if weights.size > 0 and not np.isnan(result[i, -1]):
             gradient = gradient_in(space, points[i], descriptor, arrivals, weights, result[i])
             for j in range(gradient.size):
                 gradients[i, j] = gradient[j]
-    return result, gradients, good
+    return result, gradients, doubts

@@ -17,10 +17,18 @@ def factor(A: Array, pivots: Array) -> bool:
 
     The inverse of each pivot stands in its place: a product costs a tenth of a quotient.
     """
+    for k in range(A.shape[0]):
+        pivots[k] = A.shape[0] - 1
+    return factor_within(A, pivots)
+
+
+@part(borrowing=True)
+def factor_within(A: Array, pivots: Array) -> bool:
+    """As `factor`, where `pivots` come as rows below which each column is zero, none less than that before it."""
     n = A.shape[0]
     for k in range(n):
-        best, row = abs(A[k, k]), k
-        for i in range(k + 1, n):
+        best, row, end = abs(A[k, k]), k, pivots[k] + 1
+        for i in range(k + 1, end):
             here = abs(A[i, k])
             if here > best:
                 best, row = here, i
@@ -32,7 +40,7 @@ def factor(A: Array, pivots: Array) -> bool:
                 A[k, j], A[row, j] = A[row, j], A[k, j]
         inverse = 1.0 / A[k, k]
         A[k, k] = inverse
-        for i in range(k + 1, n):
+        for i in range(k + 1, end):
             if A[i, k] != 0.0:
                 ratio = A[i, k] * inverse
                 A[i, k] = ratio

@@ -33,6 +33,7 @@ _ASTRIDE, _SAME = 1e-4, 1e-7  # relative distance at which a gradient is looked 
 _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
+_DOUBTFUL = 1e-10  # doubt from which on the error bound of a norm behind a filter may be exceeded
 _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
@@ -187,26 +188,26 @@ class CompiledQuestion:
             if np.any(self.serves):
                 result[:, self.serves] = CompiledQuestion(self.problem.part(self.serves))._compiled_norms(points)
             return result
-        norms, _, good = self._with_gradients(points, np.empty(0))
-        norms[~(good & self._steady(points, norms))] = np.nan
+        norms, _, doubts = self._with_gradients(points, np.empty(0))
+        norms[~self._sure(points, norms, doubts)] = np.nan
         return norms
 
-    def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Norms, gradients of their sum with `weights`, none without, and whether all went well, by compiled code.
+    def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """Norms, gradients of their sum with `weights`, none without, and how doubtful norms are, by compiled code.
 
         Of several sources, squares are added up; what does not see one gets nothing of it.
         """
         if not self.apart and np.all(self.seen):
-            norms, gradients, good = h2_kernels.norms(points, *self.arguments, weights)
-            return np.asarray(norms), np.asarray(gradients), np.asarray(good)
-        squares, good = np.zeros((points.shape[0], self.serves.size)), np.ones(points.shape[0], dtype=bool)
+            norms, gradients, doubts = h2_kernels.norms(points, *self.arguments, weights)
+            return np.asarray(norms), np.asarray(gradients), np.asarray(doubts)
+        squares, doubts = np.zeros((points.shape[0], self.serves.size)), np.zeros(points.shape[0])
         found = []
         for seen, one in self.sighted:
             own = np.ascontiguousarray(points[:, self._columns(one)])
-            norms, _, fine = one._with_gradients(own, np.empty(0))
+            norms, _, of_one = one._with_gradients(own, np.empty(0))
             squares[:, seen] += norms**2
             found.append(norms)
-            good &= fine
+            doubts = np.maximum(doubts, of_one)
         total = np.sqrt(squares)
         gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
@@ -215,21 +216,24 @@ class CompiledQuestion:
                 columns = self._columns(one)
                 own = np.ascontiguousarray(points[row : row + 1, columns])
                 gradients[row, columns] += one._with_gradients(own, shares)[1][0]
-        return total, gradients, good
+        return total, gradients, doubts
 
-    def _steady(self, points: Array, norms: Array) -> NDArray[np.bool_]:
-        """Whether norms stay as they are where the points are moved by some roundings.
+    def _sure(self, points: Array, norms: Array, doubts: Array) -> NDArray[np.bool_]:
+        """Whether norms are right: doubtful ones behind filters beyond first order, whether they stay as they are where
+        the points are moved by some roundings.
 
-        That is asked of filters beyond first order: under light damping the states of a filter cancel in its output,
-        and the error bound of compiled code may then be exceeded a little.
+        Under light damping the states of such a filter cancel in its output, and the error bound of compiled code may
+        then be exceeded a little.
         """
-        if self.problem.highest_filter < 2:
-            return np.ones(points.shape[0], dtype=bool)
-        if not points.shape[1]:
-            return np.zeros(points.shape[0], dtype=bool)
-        moved = [self._with_gradients(points * (1.0 + by), np.empty(0))[0] for by in _MOVED]
-        with np.errstate(invalid="ignore"):
-            return np.asarray(np.all(np.abs(np.array(moved) - norms) <= _STEADY * norms, axis=(0, 2)))
+        sure = np.isfinite(doubts)
+        asked = np.flatnonzero(sure & (doubts > _DOUBTFUL) & (self.problem.highest_filter >= 2))
+        if asked.size:
+            moved = np.concatenate([points[asked] * (1.0 + by) for by in _MOVED])
+            again = self._with_gradients(moved, np.empty(0))[0].reshape(len(_MOVED), asked.size, -1)
+            with np.errstate(invalid="ignore"):
+                steady = np.all(np.abs(again - norms[asked]) <= _STEADY * norms[asked], axis=(0, 2))
+            sure[asked] = steady & bool(points.shape[1])
+        return sure
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
         """An index of r.m.s. values and its gradient.
@@ -239,9 +243,9 @@ class CompiledQuestion:
         """
         if not np.all(self.serves):
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradients, good = self._with_slopes(point[None])
+        norms, gradients, doubts = self._with_slopes(point[None])
         found = value = float(self._combined(norms)[0])
-        if not (good[0] and self._steady(point[None], norms)[0]):
+        if not self._sure(point[None], norms, doubts)[0]:
             value = self._exact_index(point)
         if abs(found - value) <= _SAME * value and self._confirmed(point, value, gradients[0]):
             return value, gradients[0]
@@ -251,7 +255,7 @@ class CompiledQuestion:
     def _combined(self, norms: Array) -> Array:
         return self.problem.question.combined(norms, self.problem.weights)
 
-    def _with_slopes(self, points: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    def _with_slopes(self, points: Array) -> tuple[Array, Array, Array]:
         """As `_with_gradients` at one point, with those of the index."""
         question, weights = self.problem.question, self.problem.weights
         if question.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms

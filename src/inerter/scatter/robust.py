@@ -21,7 +21,7 @@ from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
-from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of
+from inerter.scatter.spread import Scatter, elements_scatter, followed, loosened, nominal, scatter_of
 from inerter.scatter.tolerance import scattered
 from inerter.vehicle.vehicle import Vehicle
 
@@ -98,8 +98,9 @@ class Quantile(OfIndex):
         """The quantile as a function of the free values, with its gradient if the index has one."""
         loose = loosened(vehicle, self.scatter)
         inner = objective_of(loose, self.index, method)
-        own = nominal(vehicle, self.scatter)
-        plain = _Values(self, inner, tuple(vehicle.free_values()), tuple(loose.free_values()), tuple(own.items()))
+        own, after = nominal(vehicle, self.scatter), followed(vehicle, self.scatter)
+        names = tuple(vehicle.free_values()), tuple(loose.free_values())
+        plain = _Values(self, inner, *names, tuple(own.items()), tuple(after.items()))
         return _Smooth(plain) if isinstance(inner, Differentiable) else plain
 
 
@@ -112,6 +113,7 @@ class _Values:
     names: tuple[str, ...]  # of the free values
     inner_names: tuple[str, ...]  # of those and of what scatters besides
     own: tuple[tuple[str, float], ...]
+    after: tuple[tuple[str, str], ...]  # which of the free values those have that scatter about one
 
     @cached_property
     def weights(self) -> Array:
@@ -127,7 +129,14 @@ class _Values:
     def inner_points(self, point: Array) -> Array:
         """The sample around a point (samples, inner values)."""
         known = dict(self.own) | dict(zip(self.names, point.tolist(), strict=True))
+        known |= {name: known[free] for name, free in self.after}
         return np.ascontiguousarray(self.table * np.array([known[name] for name in self.inner_names]))
+
+    @cached_property
+    def follows(self) -> Array:
+        """Which free value each inner value scatters about (inner values, names)."""
+        after = dict(self.after)
+        return np.array([[after.get(inner, inner) == name for name in self.names] for inner in self.inner_names], float)
 
     def values(self, points: Array) -> Array:
         """The quantile at each row of `points`; infinite where it is not known."""
@@ -157,11 +166,10 @@ class _Smooth:
         if not np.all(np.isfinite(values)):
             return np.inf, np.zeros(point.size)
         order = np.argsort(values, kind="stable")
-        places = [plain.inner_names.index(name) for name in plain.names]
         gradient = np.zeros(point.size)
         for rank in np.flatnonzero(plain.weights > _WEIGHT):
             row = order[rank]
-            gradient += plain.weights[rank] * (_gradient(plain.inner, inner[row]) * plain.table[row])[places]
+            gradient += plain.weights[rank] * (_gradient(plain.inner, inner[row]) * plain.table[row]) @ plain.follows
         return float(values[order] @ plain.weights), gradient
 
     def active(self, point: Array) -> None:
@@ -195,8 +203,9 @@ def robust(
     """The free values that make an index least in the worse cases: at its 95 % quantile, when values scatter.
 
     `spread` is that of `tolerance`, of elements alone, all between equally likely: free values scatter about what is
-    chosen, fixed ones about what they are. The optimum's value is that quantile, over one sample for all designs;
-    everything else is as in `optimise`, with two starts for each free value. `Quantile` has what is not told here.
+    chosen, fixed ones about what they are, and tied ones, by their labels, about what they follow from. The optimum's
+    value is that quantile, over one sample for all designs; everything else is as in `optimise`, with two starts for
+    each free value. `Quantile` has what is not told here.
 
     Raises what `optimise` and `tolerance` raise.
 

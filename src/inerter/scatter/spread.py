@@ -25,7 +25,9 @@ class Scatter:
     """By what part values lie above or below their own at the most, by their names.
 
     Under "uniform" all values between are equally likely; under "normal" the standard deviation is a third of the
-    spread, where the distribution is cut off. All scatter by themselves; elements of one label together.
+    spread, where the distribution is cut off. All scatter by themselves; elements of one label together. It is parts
+    that scatter as they are made: what is tied to a value follows that in the design, not in its scatter, and has a
+    scatter of its own under its own label.
 
     Raises `DesignError` for a spread that is not between 0 and 1, or another distribution.
     """
@@ -98,12 +100,10 @@ def _value(vehicle: Vehicle, name: str) -> float:
     chosen = labelled(vehicle, name)
     if chosen:
         value = chosen[0].value
-        if isinstance(value, Free | Tied):
-            raise DesignError(f"{name!r} is tied to others, and scatters with them; name those.")
         if any(element.value != value for element in chosen):
             several = " and ".join(dict.fromkeys(str(element) for element in chosen))
             raise DesignError(f"{name!r} stands for {several}, which cannot scatter as one. Give them different names.")
-        return value
+        return np.nan if isinstance(value, Free | Tied) else value
     if name in masses(vehicle):
         return _number(name, masses(vehicle)[name])
     changed(vehicle, {name: 1.0})  # which says what there is
@@ -117,15 +117,26 @@ def _number(name: str, value: float | Free) -> float:
 
 
 def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
-    """The vehicle with a free value in the place of each fixed one that scatters, by its name."""
+    """The vehicle with a free value of its own, by its name, in the place of all that scatters."""
     parts = dict(scatter.spread)
     vehicle, free = opened(vehicle), vehicle.free_values()
     chosen = {id(element) for name in parts if name not in free for element in labelled(vehicle, name)}
 
     def loose(element: Element) -> Element:
         value, name = element.value, element.label
-        if id(element) not in chosen or isinstance(value, Free | Tied):
+        if id(element) not in chosen or isinstance(value, Tied):
             return element
-        return element.with_value(Free((1.0 - parts[name]) * value, (1.0 + parts[name]) * value, name))
+        lower, upper = (value.lower, value.upper) if isinstance(value, Free) else (value, value)
+        return element.with_value(Free((1.0 - parts[name]) * lower, (1.0 + parts[name]) * upper, name))
 
     return with_elements(vehicle, loose)
+
+
+def followed(vehicle: Vehicle, scatter: Scatter) -> dict[str, str]:
+    """The free value that each label has its value from, of those labels that scatter and are no free value."""
+    vehicle, found = opened(vehicle), {}
+    for name in set(scatter.names) - set(vehicle.free_values()):
+        for element in labelled(vehicle, name):
+            if isinstance(element.value, Free):
+                found[name] = str(element.value.name)
+    return found

@@ -81,7 +81,8 @@ def tolerance(
     `spread` says for values by their names (elements by their labels, quantities of the vehicle, coordinates of a
     mechanism) by what part of themselves they scatter, up and down at the most: {"c": 0.1} is 10 %. Under the
     `distribution` "uniform" all between is equally likely; under "normal" the standard deviation is a third of the
-    spread, at which it is cut off. `samples`, a power of two, are points of a scrambled Sobol' sequence; the index is
+    spread, at which it is cut off. What was tied to a value is a part of its own, which scatters by its own label, and
+    not with that value. `samples`, a power of two, are points of a scrambled Sobol' sequence; the index is
     taken at 2 + n times as many, for n values that scatter. Elements go through compiled code where the method has
     some, other quantities one by one, on the `executor` if there is one.
 

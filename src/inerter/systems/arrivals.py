@@ -3,11 +3,12 @@
 A filter b(s)/a(s) before an input is an equation more: with the solution z of a(d/dt) z = w for the source w, the input
 gets b(d/dt) z. The states are z and its derivatives but the highest, which is an unknown. What reaches an input is an
 unknown too, so that levers and coefficients enter as they were given, and what is owed to the free values stays affine.
+Where no filter has a state, inputs are sums of the sources, and states that only a road moves stay such.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -16,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import LinearSystemError
-from inerter.systems.descriptor import Descriptor
+from inerter.systems.descriptor import Descriptor, Sum
 from inerter.systems.filters import Filter
 from inerter.systems.polynomials import Polynomial
 
@@ -77,6 +78,12 @@ def fed(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
     columns = columns_of(arrivals)
     at = [next(i for i, c in enumerate(columns) if c[1:] == (a.source, a.delay)) for a in arrivals]
     d = _by_displacement(descriptor, {a.input for a in arrivals if a.displacement})
+    sums = {
+        name: tuple((a.input, a.whole) for i, a in zip(at, arrivals, strict=True) if i == number)
+        for number, (name, *_) in enumerate(columns)
+    }
+    if all(a.filter is None or a.filter.order == 0 for a in arrivals):
+        return _levered(d, list(zip(at, arrivals, strict=True)), sums)
     chains = list(dict.fromkeys((i, a.filter) for i, a in zip(at, arrivals, strict=True) if a.filter is not None))
     old, e, inputs = d.X_x.shape[0], d.S.shape[1], len(d.inputs)
     edges = np.cumsum([old, *(one.order for _, one in chains)])
@@ -105,11 +112,21 @@ def fed(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
         states=(*d.states, *(f"filter_{i}_{k}" for i, (_, f) in enumerate(chains, 1) for k in range(1, f.order + 1))),
         inputs=tuple(name for name, *_ in columns),
         sizes=wired.stacks(d.sizes, sizes=True),
-        sums={
-            name: tuple((a.input, a.whole) for i, a in zip(at, arrivals, strict=True) if i == number)
-            for number, (name, *_) in enumerate(columns)
-        },
+        sums=sums,
     )
+
+
+def _levered(d: Descriptor, reached: Sequence[tuple[int, Arrival]], sums: Mapping[str, Sum]) -> Descriptor:
+    """The descriptor whose inputs are columns times numbers."""
+    levers = np.zeros((2, len(d.inputs), len(sums)), np.longdouble)  # and the sizes of their terms
+    for column, arrival in reached:
+        gain = 1.0 if arrival.filter is None else arrival.filter.scaled[1][0] / arrival.filter.scaled[2][0]
+        lever = np.longdouble(arrival.lever) * gain
+        levers[:, d.inputs.index(arrival.input), column] += lever, abs(lever)
+    F, Y_u, X_u = d.F @ levers[0], d.Y_u @ levers[0], (d.X_u @ levers[0]).astype(float)
+    F_size, Y_u_size = (d.sizes[i] @ levers[1].astype(float) for i in (2, 5))
+    sizes = (*d.sizes[:2], F_size, *d.sizes[3:5], Y_u_size)
+    return replace(d, F=F, Y_u=Y_u, X_u=X_u, inputs=tuple(sums), sizes=sizes, sums=sums)
 
 
 def _plain(arrivals: Sequence[Arrival]) -> bool:

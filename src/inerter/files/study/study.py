@@ -28,7 +28,7 @@ from inerter.methods.asking import Asked
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
-from inerter.networks.elements import Element, Free, Tied
+from inerter.networks.elements import Element, Tied
 from inerter.networks.parser import names
 from inerter.scatter.robust import Quantile
 from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
@@ -123,7 +123,7 @@ class Study:
         """By what part of themselves values of a layout scatter, by their names."""
         if not self.tolerance:
             return {}
-        names, found = _scattering(self, layout), {}
+        names, found = scattering(self, layout), {}
         for label, part in self.tolerance.items():
             place = place_of(label)
             known = what_of(self, place)
@@ -267,11 +267,9 @@ def elements_used(study: Study) -> dict[str, list[str]]:
     return used
 
 
-def _scattering(study: Study, layout: str) -> set[str]:
-    """The elements of a layout that can scatter: those in it, and what is free."""
-    mounted = {name for text in study.layouts[layout].struts.values() for name in _names(text)}
-    used = (name for name, layouts in elements_used(study).items() if layout in layouts)
-    return {name for name in used if name in mounted or isinstance(study.elements[name].value, Free)}
+def scattering(study: Study, layout: str) -> set[str]:
+    """The elements of a layout that can scatter: the parts that it is made of."""
+    return {name for text in study.layouts[layout].struts.values() for name in _names(text)}
 
 
 def _followed(study: Study, name: str) -> tuple[str, ...]:

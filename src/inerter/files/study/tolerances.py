@@ -12,11 +12,13 @@ import numpy as np
 
 from inerter.errors import InerterError, StatusKind
 from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.suggest import some
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.conditions import what_of
-from inerter.files.study.places import place_of
-from inerter.files.study.study import Study
+from inerter.files.study.places import element_at, place_of
+from inerter.files.study.study import Study, scattering
 from inerter.files.study.sweeps import unknown_place
+from inerter.networks.elements import Tied
 from inerter.optimisation.threads import one_blas_thread
 from inerter.scatter.tolerance import tolerance
 from inerter.units import shown
@@ -116,12 +118,21 @@ def tolerance_of(study: Study, entries: Mapping[str, Any]) -> tuple[dict[str, fl
             place = place_of(label)
             if what_of(study, place) is None or place.section == "road":
                 raise unknown_place(study, place)
+            _check_is_part(study, element_at(place))
             spread[place.label] = _part(given)
         except EntryError as error:
             problems.append(replace(error.problem, place=(*_PLACE, label)))
         except InerterError as error:
             problems.append(at((*_PLACE, label), str(error)))
     return spread, problems
+
+
+def _check_is_part(study: Study, name: str) -> None:
+    """Raises `EntryError` for an element that no layout has, of which nothing is made that could scatter."""
+    if name and not any(name in scattering(study, layout) for layout in study.layouts):
+        tied = [other for other, e in study.elements.items() if isinstance(e.value, Tied) and name in e.value.names]
+        hint = f"; {some(tied)} follows from it, and scatters by its own name" if tied else ""
+        raise EntryError(got=shown(name), fault=f"no layout has it as a part{hint}", expected="a part of a layout")
 
 
 def _part(given: Any) -> float:

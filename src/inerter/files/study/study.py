@@ -28,7 +28,7 @@ from inerter.methods.asking import Asked
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import DEFAULT, make_method, method_settings
-from inerter.networks.elements import Element, Tied
+from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
 from inerter.scatter.robust import Quantile
 from inerter.scatter.spread import DISTRIBUTIONS, scatter_of

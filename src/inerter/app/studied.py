@@ -18,6 +18,7 @@ from inerter.errors import StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.cases import Outcome
+from inerter.files.study.checking import check_study
 from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
@@ -83,13 +84,13 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
             tell(0, 0, f"compiling kernels {number} of {total}: {title}")
 
     done = [0]
+    check_study(study, preparing)
     result = run_study(
         study,
         folder / RESULTS,
         jobs=max((os.cpu_count() or 2) - 1, 1),
         progress=told,
         compiling=compiling,
-        preparing=preparing,
         finish=show,
     )
     return json.loads("".join(as_text(result)))

@@ -217,7 +217,7 @@ class Mechanism:
 
 
 def _with_inertia(coordinate: Coordinate, element: Network) -> Coordinate:
-    assert isinstance(element, Inerter)
+    assert isinstance(element, Element)
     assert not isinstance(element.value, Tied)
     return replace(coordinate, inertia=element.value)
 

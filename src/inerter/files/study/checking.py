@@ -28,15 +28,21 @@ from inerter.systems.piecewise import piecewise
 _MOST_TRIED = 200  # swept values
 
 
+_sound: Study | None = None  # the last one without problems: who checks before a run may tell how far that is
+
+
 def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, total: None) -> None:
     """Assemble every layout for every index over the swept values, so that what is ill-posed shows before any work.
 
     Of many swept values some are tried, with the least and the largest: whether a design can be analysed rests on the
     way it is joined rather than on its numbers, and one that cannot has a status that says so. `tell` is called before
-    each, with how many are assembled and how many there are.
+    each, with how many are assembled and how many there are. A study that was checked just before is not again.
 
     Raises `StudyError` with a line for every layout that cannot be analysed.
     """
+    global _sound  # noqa: PLW0603
+    if study is _sound:
+        return
     problems, every = [], cases(study)
     tried = _tried(every)
     for number, layout in enumerate(study.layouts):
@@ -49,6 +55,7 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
                 break
     if problems:
         raise refusal(study.path, problems)
+    _sound = study
 
 
 def _tried(every: Cases) -> list[int]:

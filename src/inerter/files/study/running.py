@@ -91,7 +91,6 @@ def run_study(
     force: bool = False,
     progress: Progress = lambda done, total, last, not_ok: None,
     compiling: Told | None = None,
-    preparing: Callable[[int, int], object] = lambda done, total: None,
     finish: Callable[[StudyResult, Path], object] = lambda result, folder: None,
 ) -> StudyResult:
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
@@ -100,8 +99,7 @@ def run_study(
     than one, a script that calls this needs the line `if __name__ == "__main__":`, because processes are started
     afresh and import it. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) works in their place, and
     goes on afterwards. Results do not depend on it. `progress` is told whenever some are done how many designs and
-    budgets are, how many there are, the last one, and how many have a status that is not ok; before, `preparing` is
-    told how many designs are assembled of those that are tried. `finish` may add files to
+    budgets are, how many there are, the last one, and how many have a status that is not ok. `finish` may add files to
     the results, in the folder that it is given. What the work needs of compiled code is compiled first, if it is not
     yet; `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
 
@@ -113,7 +111,7 @@ def run_study(
     from this study, or if another run is writing to it, and then nothing has been changed; `WorkError` if the disk is
     full, or an executor has ended, or its processes have another version.
     """
-    check_study(study, preparing)
+    check_study(study)
     with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
         gathered, done, computed = _computed(study, results, pool, progress, compiling)
         budgets = tuple(one for case in budget_cases(study) if isinstance(one := done[case], BudgetOutcome))

@@ -73,6 +73,7 @@ def test_a_sweep_that_is_being_prepared_tells_how_far_it_is_and_stops(
 ) -> None:
     """Each layout is assembled at many of its points, however long that takes: here 20 s."""
     check = checking._check_design
+    monkeypatch.setattr(checking, "_sound", None)
     monkeypatch.setattr(checking, "_check_design", lambda *design: (time.sleep(0.05), check(*design)))
     number = begin(client, kind="run", study=LONG)
     deadline = time.monotonic() + 15.0

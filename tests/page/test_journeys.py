@@ -181,6 +181,20 @@ def test_every_example_opens(visitor: Visitor) -> None:
 
 
 @pytest.mark.campaign
+def test_one_car_in_motion_after_another(visitor: Visitor) -> None:
+    """What is drawn is never the motion of one with the parts of another, whichever answer comes first."""
+    page = visitor.page
+    page.click("#tab-history")
+    for name in ("full-car-two-tracks", "train", "quarter-car"):
+        visitor.open(EXAMPLES / f"{name}.toml")
+        page.wait_for_selector(f"text={name}.toml is open")
+        visitor.settled()
+        visitor.drawn()
+        page.wait_for_selector(".motion canvas[data-frames]")
+    assert visitor.faults == []
+
+
+@pytest.mark.campaign
 def test_a_long_sweep_is_stopped_and_survives_a_reload(visitor: Visitor) -> None:
     page = visitor.page
     page.click("#tab-work")

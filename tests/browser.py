@@ -148,3 +148,11 @@ def wait_until(true: Callable[[], bool], seconds: float = 30.0) -> None:
     while not true():
         assert time.monotonic() < end, "it did not come true"
         time.sleep(0.05)
+
+
+def drop(visitor: Visitor, path: Path) -> None:
+    """Drop a file or folder on the page, as the desktop does."""
+    session = visitor.page.context.new_cdp_session(visitor.page)
+    data = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
+    for kind in ("dragEnter", "dragOver", "drop"):
+        session.send("Input.dispatchDragEvent", {"type": kind, "x": 640, "y": 300, "data": data})

@@ -263,7 +263,8 @@ def test_a_record_is_read_and_forgotten(client: TestClient) -> None:
     assert told.status_code == 201
     found = told.json()
     assert (found["name"], found["samples"], found["size"]) == ("bench.csv", 500, len(CSV))
-    assert [channel["name"] for channel in found["channels"]] == ["displacement", "force"]
+    channels = {channel["name"]: channel["unit"] for channel in found["channels"]}
+    assert channels == {"displacement": "m", "force": "N"}
     assert client.delete(f"/api/records/{found['id']}").status_code == 200
     assert client.delete(f"/api/records/{found['id']}").status_code == 404
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import json
 import tomllib
 from collections.abc import Callable, Iterator
@@ -10,13 +11,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Visitor, wait_until
+from browser import EXAMPLES, Visitor, drop, wait_until
 from study_text import PAPER_CAR, study_text
 
 import inerter as it
 from inerter.app.about import examples
 from inerter.app.designs import design_of
 from inerter.app.documents import study_from
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.running import run_simulation
 
 FIXED = {"k": '"120 kN/m"', "c": '"3 kN s/m"', "b": '"100 kg"'}
 ONE_INDEX = 'indices = ["J1"]'
@@ -210,20 +213,12 @@ def test_tables_and_link_hold_what_is_looked_at(visitor: Visitor, visitors: Any,
     assert other.values() == shown
 
 
-def _drop(visitor: Visitor, path: Path) -> None:
-    """Drop a file or folder on the page, as the desktop does."""
-    session = visitor.page.context.new_cdp_session(visitor.page)
-    data = {"items": [], "files": [str(path)], "dragOperationsMask": 1}
-    for kind in ("dragEnter", "dragOver", "drop"):
-        session.send("Input.dispatchDragEvent", {"type": kind, "x": 640, "y": 300, "data": data})
-
-
 @pytest.mark.campaign
 def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     study = tmp_path / "dropped.toml"
     study.write_text(_two_struts())
-    _drop(visitor, study)
+    drop(visitor, study)
     page.wait_for_selector("text=dropped.toml is open")
     assert page.input_value(".title") == "All fixed"
 
@@ -233,7 +228,7 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
         (folder / f"a-{number}.svg").write_text("<svg/>")
     (folder / "study.resolved.toml").write_text(_two_struts(title="From a folder"))
     (folder / "summary.csv").write_text("layout,index\n")
-    _drop(visitor, folder)
+    drop(visitor, folder)
     page.wait_for_selector("text=study.resolved.toml is open")
     assert page.input_value(".title") == "From a folder"
 
@@ -242,7 +237,7 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     record.write_text("time [s],displacement [mm],force [N]\n" + "\n".join(rows) + "\n")
     answers: list[Any] = []
     page.on("response", lambda answer: answers.append(answer) if "/api/records" in answer.url else None)
-    _drop(visitor, record)
+    drop(visitor, record)
     page.wait_for_selector("text=noise.csv was read.")
     found = answers[0].json()
     told = page.locator(".records .finding").all_inner_texts()
@@ -251,6 +246,30 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     assert page.locator(".records select option").all_inner_texts() == [each["name"] for each in found["channels"]]
     page.get_by_role("button", name="Remove noise.csv").click()
     page.wait_for_selector(".records .plot", state="detached")
+
+
+@pytest.mark.campaign
+def test_results_of_a_simulation_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
+    """A vehicle is opened as a study of it, a device of a rig joins the study that is open; nothing is overwritten."""
+    page = visitor.page
+    for name in ("half_car_friction", "backlash_rattle"):
+        request = load_simulation(EXAMPLES / f"{name}.toml")
+        run_simulation(dataclasses.replace(request, duration=0.2), tmp_path / name)
+    drop(visitor, tmp_path / "half_car_friction")
+    page.wait_for_selector("text=simulation.toml is open as a study of its vehicle")
+    request = load_simulation(EXAMPLES / "half_car_friction.toml")
+    wait_until(lambda: page.input_value(".title") == request.title)
+    found = visitor.values()
+    comfort = it.RideComfort(it.Road(roughness=request.roughness, speed=request.speed))
+    assert found == {"J1": it.evaluate(request.design(), comfort, it.Norm()).value}
+    before = page.get_attribute("[id='entry elements.b']", "title")
+    drop(visitor, tmp_path / "backlash_rattle")
+    page.wait_for_selector("text=simulation.toml: The device is in the new layout")
+    page.wait_for_function("() => document.querySelector('#network-text').value.includes('- g - (b2 | f2)')")
+    visitor.settled()
+    assert page.get_attribute("[id='entry elements.b2']", "title") == "113.0 kg"
+    assert before in page.locator("[id='entry elements.b']").evaluate_all("all => all.map(each => each.title)")
+    assert page.locator(".problem").count() == 0
 
 
 WALK = """() => {

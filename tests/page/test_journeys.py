@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, free_port, wait_until
+from browser import EXAMPLES, Served, Visitor, drop, free_port, wait_until
 from study_text import PAPER_CAR, study_text
 
 import inerter as it
@@ -42,6 +42,11 @@ def _run(study: Path, out: Path) -> list[dict[str, Any]]:
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     return list(json.loads(done.stdout)["designs"])
+
+
+def _study(visitor: Visitor) -> Any:
+    """The study as the page keeps it."""
+    return json.loads(visitor.page.evaluate("() => sessionStorage.getItem('inerter.document')"))["study"]
 
 
 def _by_mouse(visitor: Visitor) -> None:
@@ -152,6 +157,20 @@ def test_every_example_opens(visitor: Visitor) -> None:
         shown = page.get_by_role("group", name="Layouts").locator(".chip").all_inner_texts()
         assert [text.removesuffix(" ★") for text in shown] == list(study.layouts)
     assert opened >= 4
+
+
+@pytest.mark.campaign
+def test_one_car_in_motion_after_another(visitor: Visitor) -> None:
+    """What is drawn is never the motion of one with the parts of another, whichever answer comes first."""
+    page = visitor.page
+    page.click("#tab-history")
+    for name in ("full-car-two-tracks", "train", "quarter-car"):
+        visitor.open(EXAMPLES / f"{name}.toml")
+        page.wait_for_selector(f"text={name}.toml is open")
+        visitor.settled()
+        visitor.drawn()
+        page.wait_for_selector(".motion canvas[data-frames]")
+    assert visitor.faults == []
 
 
 @pytest.mark.campaign
@@ -268,10 +287,29 @@ def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Pa
     page.select_option("select[name=model]", "ball-screw")
     page.get_by_role("button", name="Identify").click()
     page.wait_for_selector(".fit[data-state=done] table", timeout=120_000)
+    before = _study(visitor)
     page.get_by_role("button", name="Take the device into the editor").click()
     page.wait_for_function("() => document.querySelector('#network-text').value.includes('| (')")
     visitor.settled()
     assert page.locator("#network-problem").count() == 0
+    wait_until(lambda: _study(visitor) != before)
+    taken = _study(visitor)
+    assert {name: taken["elements"][name] for name in before["elements"]} == before["elements"]  # none is another one
+    names = set(taken["elements"]) - set(before["elements"])
+    page.get_by_role("button", name="Undo").click()
+    wait_until(lambda: _study(visitor) == before)  # all of it in one step
+
+    (job,) = [job for job in json.loads(visitor.served.get("work"))["work"] if job["kind"] == "identify"]
+    page.locator(".fit").get_by_role("button", name="Files…").click()
+    page.wait_for_selector(".fit .files >> text=report.html")
+    folder = tmp_path / "identified"
+    folder.mkdir()
+    for name in ("fit.json", "residuals.csv"):
+        (folder / name).write_bytes(visitor.served.get(f"work/{job['id']}/files/{name}"))
+    drop(visitor, folder)
+    page.wait_for_selector("text=fit.json: The device is in the new layout")
+    wait_until(lambda: _study(visitor) == taken)
+    assert names
 
 
 @pytest.mark.campaign

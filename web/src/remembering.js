@@ -2,7 +2,7 @@
 
 import { empty } from "./state/document.js";
 import { initial } from "./state/store.js";
-import { openStudy as beginWith } from "./working.js";
+import { openStudy as beginWith, takeDevice } from "./working.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./state/document.js").Document} Document */
@@ -98,6 +98,7 @@ export async function open(store, api, files) {
     try {
       if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
       else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
+      else if (/\.json$/i.test(file.name)) await openFit(store, api, file);
       else say(store, `${file.name} is no file that this page knows: it takes study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat).`);
     } catch (error) {
       say(store, `${file.name}: ${/** @type {Error} */ (error).message}`);
@@ -105,11 +106,13 @@ export async function open(store, api, files) {
   }
 }
 
-/** Of a result folder the study it was made of, else the files themselves. @param {Iterable<File>} files */
+const SOURCES = ["study.resolved.toml", "simulation.toml", "fit.json"]; // what a result folder was made of, or what came of it
+
+/** Of a result folder what it was made of, else the files themselves. @param {Iterable<File>} files */
 async function studiesFirst(files) {
   const all = [...files];
-  const resolved = all.find(({ name }) => name === "study.resolved.toml");
-  return resolved ? [resolved] : all;
+  const source = SOURCES.map((wanted) => all.find(({ name }) => name === wanted)).find(Boolean);
+  return source ? [source] : all;
 }
 
 /** Whether a table is one of results, not a record. @param {File} file */
@@ -122,6 +125,7 @@ const say = (store, message) => store.dispatch({ type: "said", message });
 async function openStudyFile(store, api, file) {
   const { study, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
   const other = problems?.[0]?.sentence;
+  if (isSimulation(study)) return openSimulation(store, api, file.name, study);
   const isStudy = study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
   if (!isStudy) {
     say(store, `${file.name} is no study file, and nothing was changed. ${other ?? ""}`.trim());
@@ -129,6 +133,30 @@ async function openStudyFile(store, api, file) {
   }
   await beginWith(store, api, study);
   say(store, problems.length ? `${file.name} is open; ${problems.length === 1 ? "one entry needs" : `${problems.length} entries need`} another value.` : `${file.name} is open.`);
+}
+
+const RIG = "displacement"; // what is moved there: an end of the device itself
+
+/** Whether tables are those of a simulation file. @param {any} tables */
+const isSimulation = (tables) => tables !== null && typeof tables === "object" && ["vehicle", "elements", "layouts", "signal"].every((key) => key in tables) && !("study" in tables);
+
+/** A simulated vehicle is opened as a study that asks for the first index; a device of a rig joins the study that is open.
+ * @param {Store} store @param {Api} api @param {string} name @param {any} tables */
+async function openSimulation(store, api, name, { signal, simulation, ...study }) {
+  const { about } = store.get();
+  const model = about.vehicles.find((/** @type {any} */ { key }) => key === study.vehicle.model);
+  if (model?.moved === RIG) return say(store, `${name}: ${takeDevice(store, study)}`);
+  await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } });
+  if (simulation?.layout in study.layouts) store.change({ type: "selected", layout: simulation.layout });
+  say(store, `${name} is open as a study of its vehicle; what drove the simulation is left out.`);
+}
+
+/** What was identified joins the study that is open. @param {Store} store @param {Api} api @param {File} file */
+async function openFit(store, api, file) {
+  const { elements } = JSON.parse(await file.text());
+  if (typeof elements !== "string") return say(store, `${file.name} is no result of inerter identify, and nothing was changed.`);
+  const { study } = await api.post("study/read", { text: elements, name: file.name });
+  say(store, `${file.name}: ${takeDevice(store, study ?? {})}`);
 }
 
 /** @param {Store} store @param {Api} api @param {File} file */

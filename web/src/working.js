@@ -3,7 +3,8 @@
 import { Lost } from "./api.js";
 import { unitOf } from "./kinds.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
-import { isRange } from "./state/document.js";
+import { freshName, names, parse, renamed } from "./network/algebra.js";
+import { isRange, nextLayout, textOf } from "./state/document.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./api.js").Api} Api */
@@ -72,6 +73,33 @@ export async function beginAtBest(store, api, gesture = null) {
 async function isSmall(api, study, layout) {
   const { coordinates } = await api.post("panel/mechanism", { study, layout, client: "page.size", sequence: Date.now() });
   return coordinates.length <= SMALL;
+}
+
+/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would have the name of another
+ * element gets a new one. Returns what to tell. @param {Store} store @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device */
+export function takeDevice(store, { elements = {}, layouts = {} }) {
+  const document = store.get().history.present;
+  const written = Object.values(layouts)[0];
+  const tree = typeof written === "string" ? parse(written) : null;
+  if (tree === null) return "There is no device that could be taken.";
+  if (document.layout === "") return "Open a study first: the device joins its strut.";
+  const known = document.study.elements ?? {};
+  /** @type {{[name: string]: any}} */
+  const added = {};
+  let text = String(written);
+  for (const name of new Set(names(tree))) {
+    const other = name in known && JSON.stringify(known[name]) !== JSON.stringify(elements[name]);
+    const own = other ? freshName(name, [...Object.keys(known), ...Object.keys(elements), ...Object.keys(added)]) : name;
+    text = renamed(text, name, own);
+    if (name in elements) added[own] = elements[name];
+  }
+  const name = nextLayout(document);
+  const gesture = `device ${Date.now()}`;
+  store.change({ type: "layoutAdded", name }, gesture);
+  const before = textOf(store.get().history.present);
+  store.change({ type: "drawn", text: before ? `${before} | ${text}` : text, added }, gesture);
+  store.dispatch({ type: "rested" });
+  return `The device is in the new layout ${name}, beside the strut that was there.`;
 }
 
 /** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */

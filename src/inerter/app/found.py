@@ -8,6 +8,7 @@ from typing import Any
 from inerter.figures.curves import thinned
 from inerter.files.identification.loading import RecordRequest
 from inerter.files.identification.running import read
+from inerter.records.record import CHANNELS
 
 _SHOWN = 2000  # samples of a channel
 
@@ -24,7 +25,10 @@ def found_in(path: str) -> dict[str, Any]:
         "samples": int(record.time.size),
         "duration": float(record.time[-1] - record.time[0]),
         "channels": [
-            dict(zip(("name", "time", "values"), (name, *thinned(record.time, values, _SHOWN)), strict=True))
+            {
+                **dict(zip(("name", "time", "values"), (name, *thinned(record.time, values, _SHOWN)), strict=True)),
+                "unit": CHANNELS[name],
+            }
             for name, values in record.channels().items()
             if name != "time"
         ],

@@ -66,7 +66,7 @@ function Indices({ value, layout, baseline, stale }) {
       return html`<tr key=${result.index}>
         <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span> <${Notes} result=${result} /></th>
         <td class="number" data-index=${result.index} data-value=${result.value}><${Measured} result=${result} /></td>
-        ${!alone && html`<td class="number">${reference ? html`<${Measured} result=${reference} />` : "–"}</td><td class=${`number ${better(result)}`}>${percent(result.improvement_percent, result.improvement_error_percent)}${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
+        ${!alone && html`<td class="number">${reference ? html`<${Measured} result=${reference} />` : "–"}</td><td class=${`number ${better(result)}`}><${Improvement} result=${result} />${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
       </tr>`;
     })}</tbody>
   </table></div>`;
@@ -78,6 +78,13 @@ export function Measured({ result: { value, standard_error: error } }) {
   if (typeof error !== "number" || !(error > 0)) return html`${shown(value)}`;
   const [number, scatter] = estimated(value, error);
   return html`${number}<div class="scatter">± ${scatter}</div>`;
+}
+
+/** By how much it is better, and below that the standard error. @param {{result: any}} props */
+function Improvement({ result: { improvement_percent: value, improvement_error_percent: error } }) {
+  if (typeof value !== "number" || !error) return html`${percent(value)}`;
+  const [number, scatter] = estimated(value, error);
+  return html`${number} %<div class="scatter">± ${scatter} %</div>`;
 }
 
 /** @param {number | null | undefined} value @param {number | null} [error] */

@@ -23,7 +23,7 @@ export function ComparePanel({ store }) {
       ${choices.map(({ key, name, kept }) => html`<button type="button" class="chip" key=${key} aria-pressed=${keys.includes(key)} disabled=${full && !keys.includes(key)} onClick=${() => toggle(key)}>${name}${kept ? html` <span class="quiet">kept</span>` : null}</button>`)}
     </div>
     ${compared.length >= FEWEST &&
-    html`<p class="row"><label>with <select value=${keys[0]} onChange=${(/** @type {Event} */ event) => look({ against: /** @type {HTMLSelectElement} */ (event.currentTarget).value })}>
+    html`<p class="row"><label>Compared with <select value=${keys[0]} onChange=${(/** @type {Event} */ event) => look({ against: /** @type {HTMLSelectElement} */ (event.currentTarget).value })}>
         ${keys.toSorted((one, other) => order(choices, one) - order(choices, other)).map((key) => html`<option key=${key} value=${key}>${choices[order(choices, key)].name}${key.startsWith("kept ") ? " (kept)" : ""}</option>`)}
       </select></label> ${full && html`<span class="quiet">Four are the most: leave one out for another.</span>`}</p>`}
     <${Keep} store=${store} />

@@ -13,6 +13,7 @@ export function HistoryPanel({ store }) {
   const state = store.get();
   const faulty = (state.answers.check?.value?.problems ?? []).length > 0;
   const { value, sentence, waiting } = state.answers.history ?? {};
+  const mechanism = state.answers.mechanism?.value;
   const [picked, setPicked] = useState("");
   const signals = value?.signals ?? [];
   const signal = signals.find((/** @type {any} */ { name }) => name === picked) ?? signals[0];
@@ -43,6 +44,11 @@ export function HistoryPanel({ store }) {
     html`<${Plot} x=${signal.time} curves=${curves} bands=${bands} xLabel="time [s]" yLabel=${`${signal.label} [${signal.unit}]`} title=${`${signal.label} over time`} theme=${state.view.theme} />
       <p class="quiet">r.m.s. ${shown(value.rms?.[signal.name])} ${signal.unit}, peak ${shown(value.peaks?.[signal.name])} ${signal.unit}.
         ${bands.length > 0 && html` <span class="key stick"></span> friction sticks, <span class="key open"></span> a gap is open.`}</p>`}
-    ${value?.motion && state.answers.mechanism?.value && html`<${Motion} store=${store} motion=${value.motion} mechanism=${state.answers.mechanism.value} />`}
+    ${value?.motion && mechanism && isOf(value.motion, mechanism) && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}
   </div>`;
+}
+
+/** Whether a motion is one of this vehicle: when another study is opened, the two answers do not come at once. @param {any} motion @param {any} mechanism */
+function isOf({ coordinates, roads }, mechanism) {
+  return mechanism.coordinates.every((/** @type {any} */ { name }) => name in coordinates) && mechanism.roads.every((/** @type {any} */ { name }) => name in roads);
 }

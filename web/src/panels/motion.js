@@ -15,6 +15,7 @@ const GROUND = 285;
 const RADIUS = 24;
 const METRE = 130; // [px] along the car, where there is room for it
 const OVERHANG = 60; // [px] of a body beyond its struts
+const THICK = 26; // [px] of a body
 const SPEEDS = [1, 0.5, 0.25, 0.1];
 
 /** @param {{store: Store, motion: Motions, mechanism: any}} props */
@@ -118,7 +119,7 @@ function paint(canvas, scene, at) {
   const across = (x) => middle + (x - mean) * metre;
   drawRoad(pen, scene, at, width, across, ends, metre);
   for (const [i, tyre] of scene.mechanism.tyres.entries()) drawWheel(pen, across(ends[i]), WHEEL - scene.stretch * heightOf(tyre.port, pose), GROUND - scene.stretch * (pose[tyre.road] ?? 0));
-  for (const strut of scene.mechanism.struts) {
+  for (const strut of standing(scene)) {
     const x = across(strutPlace(scene, strut));
     drawBogie(pen, scene, strut, pose, across);
     drawStrut(pen, scene.store, strut.network, x, levelOf(scene, strut.upper.port, pose), levelOf(scene, strut.lower.port, pose));
@@ -222,20 +223,32 @@ function drawStrut(pen, store, tree, x, top, bottom) {
   pen.stroke();
 }
 
-/** What is carried: a box over each place where a strut's upper end is, joined to one body where it pitches. @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {Pose} pose @param {(x: number) => number} across */
+/** The struts that stand between two places. Between others, such as an anti-roll bar, something is only as far as two places part.
+ * @param {Scene} scene @returns {any[]} */
+function standing({ mechanism }) {
+  const angles = new Set(mechanism.coordinates.filter((/** @type {any} */ { angle }) => angle).map((/** @type {any} */ { name }) => name));
+  return mechanism.struts.filter((/** @type {any} */ { upper }) => Object.entries(upper.port).reduce((sum, [name, lever]) => sum + (angles.has(name) ? 0 : Number(lever)), 0) > 0.5);
+}
+
+/** The end of a body beyond the first or the last of its mounts, in line with the one next to it. @param {number[][]} mounts @param {number} end */
+function beyond(mounts, end) {
+  const [x, y] = mounts[end];
+  const [nextX, nextY] = mounts[end === 0 ? 1 : end - 1] ?? [x, y];
+  const slope = nextX === x ? 0 : (nextY - y) / (nextX - x);
+  const reach = end === 0 ? -OVERHANG : OVERHANG;
+  return [x + reach, y + reach * slope];
+}
+
+/** What is carried: a body that joins the places where the upper ends of struts are. @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {Pose} pose @param {(x: number) => number} across */
 function drawBody(pen, scene, pose, across) {
-  const mounts = scene.mechanism.struts.map((/** @type {any} */ strut) => [across(strutPlace(scene, strut)), levelOf(scene, strut.upper.port, pose)]);
+  const mounts = standing(scene).map((/** @type {any} */ strut) => [across(strutPlace(scene, strut)), levelOf(scene, strut.upper.port, pose)]);
   if (mounts.length === 0) return;
   mounts.sort((/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] - b[0]);
-  const [first, last] = [mounts[0], mounts[mounts.length - 1]];
-  const slope = last[0] === first[0] ? 0 : (last[1] - first[1]) / (last[0] - first[0]);
-  const [left, right] = [first[0] - OVERHANG, last[0] + OVERHANG];
-  const [y1, y2] = [first[1] - OVERHANG * slope, last[1] + OVERHANG * slope];
+  const [front, back] = [0, mounts.length - 1].map((end) => beyond(mounts, end));
+  const below = [front, ...mounts, back];
+  const above = below.map(([x, y]) => [x, y - THICK]).reverse();
   pen.beginPath();
-  pen.moveTo(left, y1);
-  pen.lineTo(left, y1 - 26);
-  pen.lineTo(right, y2 - 26);
-  pen.lineTo(right, y2);
+  for (const [x, y] of [...below, ...above]) pen.lineTo(x, y);
   pen.closePath();
   pen.fill();
   pen.stroke();

@@ -1,12 +1,11 @@
 // A rig corner: measured records, what was found in them, what the device is made of, and the device into the editor.
 
-import { names, parse } from "../network/algebra.js";
-import { nextLayout } from "../state/document.js";
 import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { shown } from "../state/scale.js";
-import { begin, stop } from "../working.js";
+import { Files } from "./files.js";
+import { begin, stop, takeDevice } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../api.js").Api} Api */
@@ -52,7 +51,7 @@ function RecordRow({ store, api, record }) {
       <button type="button" aria-label=${`Remove ${record.name}`} onClick=${() => forget(store, api, record.id)}>Remove</button></div>
     <ul>${(record.findings ?? []).map((/** @type {any} */ { severity, about, sentence }) => html`<li key=${`${about} ${sentence}`} class="finding" data-severity=${severity}>${sentence}</li>`)}
       ${(record.notes ?? []).map((/** @type {string} */ note) => html`<li key=${note} class="quiet">${note}</li>`)}</ul>
-    ${channel && html`<${Plot} x=${channel.time} curves=${curves} xLabel="time [s]" yLabel=${channel.name} title=${`${channel.name} of ${record.name} over time`} theme=${store.get().view.theme} />`}</li>`;
+    ${channel && html`<${Plot} x=${channel.time} curves=${curves} xLabel="time [s]" yLabel=${`${channel.name} [${channel.unit}]`} title=${`${channel.name} of ${record.name} over time`} theme=${store.get().view.theme} />`}</li>`;
 }
 
 /** @param {Store} store @param {Api} api @param {string} id */
@@ -75,24 +74,7 @@ function Fit({ store, api, job }) {
         <tbody>${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">${shown(each.value)} <span class="unit">${each.unit}</span></td><td class="number">${(each.interval ?? []).map((/** @type {any} */ end) => (typeof end === "number" ? shown(end) : String(end))).join(" to ")}</td><td>${each.identified ? "" : each.sentence}</td></tr>`)}</tbody>
       </table></div>
       ${(result.notes ?? []).map((/** @type {any} */ note) => html`<p class="quiet">${typeof note === "string" ? note : (note.sentence ?? "")}</p>`)}
-      <button type="button" class="main" onClick=${() => takeDevice(store, result)}>Take the device into the editor</button>`}
+      <button type="button" class="main" onClick=${() => store.dispatch({ type: "said", message: takeDevice(store, result.device ?? {}) })}>Take the device into the editor</button>
+      <${Files} api=${api} job=${job} />`}
   </section>`;
-}
-
-/** The device joins the strut that is edited, in a layout of its own beside its spring. @param {Store} store @param {any} result */
-function takeDevice(store, result) {
-  const document = store.get().history.present;
-  const device = result.device ?? {};
-  const elements = device.elements ?? {};
-  const text = String(Object.values(device.layouts ?? {})[0] ?? result.layout ?? "");
-  const tree = parse(text);
-  if (tree === null) return;
-  const name = nextLayout(document);
-  store.change({ type: "layoutAdded", name });
-  const needed = Object.fromEntries(names(tree).filter((each) => each in elements).map((each) => [each, elements[each]]));
-  const before = store.get().history.present;
-  const there = before.study.layouts?.[name];
-  const present = typeof there === "string" && there ? `${there} | ` : "";
-  store.change({ type: "drawn", text: present + text, added: needed });
-  store.dispatch({ type: "said", message: `The device is in the new layout ${name}, with the values that were identified.` });
 }

@@ -1,9 +1,9 @@
 // Long work: one queue, and a row for each kind of it with its form and what is shown of its result.
 
 import { percent } from "./answers.js";
+import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody } from "./front.js";
 import { Plot } from "../plot.js";
-import { download } from "../remembering.js";
 import { html, useState } from "../parts/html.js";
 import { shown, takenApart, quantity } from "../state/scale.js";
 import { begin, stop, takeOptima } from "../working.js";
@@ -102,14 +102,6 @@ function RunResult({ store, api, job }) {
   </table></div>
   ${rows.length > many && html`<p class="quiet">${rows.length} rows in all: they are in summary.csv.</p>`}
   <${Files} api=${api} job=${job} />`;
-}
-
-/** @param {{api: Api, job: Job}} props */
-function Files({ api, job }) {
-  const [files, setFiles] = useState(/** @type {{name: string, size: number}[] | null} */ (null));
-  return files === null
-    ? html`<button type="button" onClick=${async () => setFiles((await api.get(`work/${job.id}/files`)).files)}>Files…</button>`
-    : html`<ul class="files">${files.map(({ name, size }) => html`<li key=${name}><button type="button" class="link" onClick=${async () => download(await api.blob(`work/${job.id}/files/${name}`), name.split("/").at(-1) ?? name)}>${name}</button> <span class="quiet">${shown(size / 1000, 3)} kB</span></li>`)}</ul>`;
 }
 
 /** The numbers that can be swept: elements, and then what else the study has. @param {State} state @returns {{place: string, words: string, text: string}[]} */

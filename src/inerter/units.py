@@ -128,13 +128,22 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     '7.544 kN s/m'
     """
     rounded = float(f"{value:.{digits}g}")
-    if unit == PURE:
+    if unit in ("", PURE):
         return f"{rounded:.12g}"
     if rounded == 0.0 or not math.isfinite(rounded):
         return f"{rounded:g} {unit}"
     choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
     _, scale, name = next(choice for choice in choices if abs(rounded) >= choice[0])
     return f"{rounded / scale:.12g} {name}"
+
+
+def headed(what: str, unit: str) -> str:
+    """What a column or an axis holds, with its unit in brackets if it has one.
+
+    >>> headed("value", "N"), headed("ratio", "")
+    ('value [N]', 'ratio')
+    """
+    return f"{what} [{unit}]" if unit else what
 
 
 def format_with_interval(value: float, low: float, high: float, unit: str) -> tuple[str, str]:

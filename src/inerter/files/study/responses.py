@@ -52,9 +52,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
                 sizes = np.abs(frequency_response(system, omega, problem.pade_order))
             together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
             gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
-        own = f"({question.unit})" if "/" in question.unit else question.unit
-        per = question.drive.unit
-        unit = question.unit if not per else f"{own}/({per})" if "/" in per else f"{own}/{per}"
+        unit = _per(question.unit, question.drive.unit)
         attributes = {"units": unit, "long_name": study.index(index).response}
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
         units = [unit_of(designs[next(iter(mine)), index].mechanism(), [o.output]) for o in question.outputs]
@@ -63,11 +61,17 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
     return data
 
 
+def _per(unit: str, per: str) -> str:
+    """A unit over that of what excites, if that has one of its own."""
+    top, bottom = (f"({one})" if "/" in one else one for one in (unit, per))
+    return f"{top or 1}/{bottom}" if per else unit
+
+
 def _weighted(output: Weighted, own: str, unit: str) -> str:
     """An output, of the unit `own`, as it enters an index of that `unit`: times a lever, or over what it is part of."""
     if output.weight == 1.0:
         return output.output
-    if own and unit == f"{own}/{own}":
+    if own and not unit:
         return f"{output.output} over {format_quantity(1.0 / output.weight, own)}"
     return f"{output.output} x {output.weight:g}{' m' if own.startswith('rad') else ''}"
 

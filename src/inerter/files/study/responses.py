@@ -52,8 +52,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
                 sizes = np.abs(frequency_response(system, omega, problem.pade_order))
             together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
             gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
-        unit = _per(question.unit, question.drive.unit)
-        attributes = {"units": unit, "long_name": study.index(index).response}
+        attributes = {"units": _per(question.unit, question.drive.unit), "long_name": _words(study, index)}
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
         units = [unit_of(designs[next(iter(mine)), index].mechanism(), [o.output]) for o in question.outputs]
         names = [_weighted(o, own, question.unit) for o, own in zip(question.outputs, units, strict=True)]
@@ -65,6 +64,13 @@ def _per(unit: str, per: str) -> str:
     """A unit over that of what excites, if that has one of its own."""
     top, bottom = (f"({one})" if "/" in one else one for one in (unit, per))
     return f"{top or 1}/{bottom}" if per else unit
+
+
+def _words(study: Study, index: str) -> str:
+    """What the frequency response of an index is, in words; from what excites it, if the file says so."""
+    own = study.own_indices.get(index)
+    source = own.excited_by if own else ""
+    return f"gain from {source}" if source else study.index(index).response
 
 
 def _weighted(output: Weighted, own: str, unit: str) -> str:

@@ -103,7 +103,7 @@ class WhiteForce:
 
     name: str
     intensity: float
-    unit = "N"
+    unit = ""  # N, or of a moment N m
     is_random = True
 
     def __post_init__(self) -> None:

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
+from inerter.indices.question import Question
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
-from inerter.systems.outputs import unit_of
+from inerter.systems.outputs import input_unit, unit_of
 from inerter.units import format_quantity
-from inerter.vehicle.mechanism import Weighted
+from inerter.vehicle.mechanism import Mechanism, Weighted
 
 Array = NDArray[np.float64]
 
@@ -52,9 +53,13 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
                 sizes = np.abs(frequency_response(system, omega, problem.pade_order))
             together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
             gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
-        attributes = {"units": _per(question.unit, question.drive.unit), "long_name": _words(study, index)}
+        mechanism = designs[next(iter(mine)), index].mechanism()
+        attributes = {
+            "units": _per(question.unit, _source_unit(mechanism, question)),
+            "long_name": _words(study, index),
+        }
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
-        units = [unit_of(designs[next(iter(mine)), index].mechanism(), [o.output]) for o in question.outputs]
+        units = [unit_of(mechanism, [o.output]) for o in question.outputs]
         names = [_weighted(o, own, question.unit) for o, own in zip(question.outputs, units, strict=True)]
         data = data.assign_coords({f"output_{index}": names})
     return data
@@ -62,8 +67,15 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
 
 def _per(unit: str, per: str) -> str:
     """A unit over that of what excites, if that has one of its own."""
-    top, bottom = (f"({one})" if "/" in one else one for one in (unit, per))
+    top, bottom = (f"({one})" if brackets & {*one} else one for one, brackets in ((unit, {"/"}), (per, {"/", " "})))
     return f"{top or 1}/{bottom}" if per else unit
+
+
+def _source_unit(mechanism: Mechanism, question: Question) -> str:
+    """The unit of a source; empty for one input, whose unit that of its gain has in it already."""
+    if question.drive.unit or not question.drive.is_random:
+        return question.drive.unit
+    return input_unit(mechanism, question.arrivals(mechanism)[0].input)
 
 
 def _words(study: Study, index: str) -> str:

@@ -21,7 +21,7 @@ from inerter.files.common.signal_kinds import unit_of
 from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved
-from inerter.indices.registry import amplitude_of, index_choices, index_settings
+from inerter.indices.registry import amplitude_of, index_settings, needed_settings
 from inerter.methods.objective import Differentiable
 from inerter.methods.registry import averages, with_gradients
 from inerter.report.question import vehicle_rows
@@ -210,7 +210,7 @@ def test_a_vehicle_has_no_quantity_named_as_the_key_that_names_it(added: Added, 
 
 def test_every_setting_of_an_index_is_a_key_of_study_files(tmp_path: Path) -> None:
     assert set(index_settings()) >= {"high_pass", "force"}
-    asked = [symbol for symbol in it.INDICES if not any(text.needed for text in index_choices(symbol))]
+    asked = [symbol for symbol in it.INDICES if not needed_settings(symbol)]
     symbols = ", ".join(f'"{symbol}"' for symbol in asked)
     lines = "\n".join(f'{key} = "{f.example}"' for key, f in index_settings().items())
     path = tmp_path / "study.toml"
@@ -271,6 +271,71 @@ def test_a_setting_has_a_key_of_its_own_or_the_unit_of_its_namesake(
     added(it.INDICES, index_with(setting))
     path = tmp_path / "study.toml"
     path.write_text(study_text(f'indices = ["J1"]\n{line}'), encoding="utf-8")
+    with pytest.raises(RowError, match=words):
+        load_study(path)
+
+
+@dataclass(frozen=True)
+class Heard:
+    """How loud something is beside another, whatever excites it."""
+
+    outputs: Any = field(metadata=it.formed("outputs", "What is heard.", "{ tyre_load = 1 }"))
+    ear: str = field(metadata=it.formed("output", "Where.", '"sprung_velocity"'))
+    cause: Any = field(metadata=it.formed("excitation", "Why.", "{ }", key="because"))
+    hearing: Any = field(
+        default=None, metadata=it.formed("filter", "How.", "{ numerator = [1.0], denominator = [1.0, 0.5] }", key="by")
+    )
+    symbol, title, unit, response = "X2", "loudness", "", "gain"
+
+    def question(self, mechanism: it.Mechanism) -> it.Question:
+        outputs = (*(it.Weighted(*one) for one in self.outputs.items()), it.Weighted(self.ear))
+        return it.Question(outputs, it.Combination.SUM_OF_RMS, self.cause, "", self.hearing)
+
+
+HEARD = """[indices.noise]
+kind = "heard"
+outputs = { sprung_acceleration = 0.5 }
+ear = "unsprung_velocity"
+because = { force = "sprung_force", intensity = "3 N^2/Hz" }
+by = { numerator = [2.0], denominator = [1.0, 2.0] }
+[study]"""
+
+
+def test_an_index_of_another_distribution_has_settings_of_all_forms(added: Added, tmp_path: Path) -> None:
+    added(it.INDICES, Heard)
+    path = tmp_path / "study.toml"
+    path.write_text(study_text('indices = ["noise"]').replace("[study]", HEARD), encoding="utf-8")
+    study, force, low_pass = load_study(path), it.WhiteForce("sprung_force", 3.0), it.Filter([2.0], [1.0, 2.0])
+    assert study.index("noise") == Heard({"sprung_acceleration": 0.5}, "unsprung_velocity", force, low_pass)
+    assert study.at([]).index("noise") in {study.index("noise")}
+    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
+    assert load_study(tmp_path / "again.toml") == study
+    parts = ({"sprung_acceleration": 0.5}, {"unsprung_velocity": 1.0})
+    alone = [it.RandomResponse(part, force, low_pass) for part in parts]
+    car = study.design("S1")
+    found, *apart = (it.evaluate(car, index, it.Norm()).value for index in (study.index("noise"), *alone))
+    assert found == pytest.approx(sum(apart), rel=1e-12)
+    path.write_text(path.read_text(encoding="utf-8").replace("unsprung_velocity", "unsprug_velocity"), encoding="utf-8")
+    with pytest.raises(it.InerterError, match=r'indices\.noise\.ear: got "unsprug_velocity".*"unsprung_velocity"'):
+        load_study(path)
+
+
+@pytest.mark.parametrize(
+    ("metadata", "words"),
+    [
+        (it.formed("filtre", "How.", "{ }"), r"has the form 'filtre'; forms are filter, outputs"),
+        (it.formed("filter", "How.", "{ }", key="kind"), r"X3 has a setting 'kind', a key that \[indices\.NAME\] has"),
+        (it.formed("filter", "How.", "{ }", key="excitation"), r"X3 has a setting 'excitation', a key that"),
+    ],
+)
+def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
+    metadata: Any, words: str, added: Added, tmp_path: Path
+) -> None:
+    words_of_it = dict.fromkeys(("title", "unit", "response", "question"), "x")
+    given: list[Any] = [("road", it.Road), ("by", Any, field(default=None, metadata=metadata))]
+    added(it.INDICES, make_dataclass("Third", given, namespace={"symbol": "X3", **words_of_it}, frozen=True))
+    path = tmp_path / "study.toml"
+    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
     with pytest.raises(RowError, match=words):
         load_study(path)
 
@@ -349,7 +414,7 @@ def test_without_a_method_that_has_settings_there_is_no_section_for_them(tmp_pat
 def test_methods_that_see_friction_need_to_know_how_large_a_force_is() -> None:
     """Where a row says so, a peak gain without an amplitude is refused; where not, there is a value."""
     car = it.QuarterCar(250.0, 35.0, 150e3, STRUT | it.Friction(20.0))
-    assert [symbol for symbol in it.INDICES if amplitude_of(symbol)] == ["J5"]
+    assert [symbol for symbol in it.INDICES if amplitude_of(symbol)] == ["J5", "peak-response"]
     for kind in it.METHODS.values():
         if kind.needs_amplitude:
             with pytest.raises(it.InerterError, match="amplitude"):

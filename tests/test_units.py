@@ -53,6 +53,47 @@ def test_powers_of_prefixes():
     assert parse_quantity("500 mm^3/cycle", "m^3/cycle") == pytest.approx(5e-7, rel=1e-14)
 
 
+DENSITY = "(m/s^2)^2/Hz"
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("2 (m/s^2)^2/Hz", DENSITY, 2.0),
+        ("2 m^2/s^4/Hz", DENSITY, 2.0),
+        ("2 (mm/s²)²/Hz", DENSITY, 2e-6),
+        ("2 (m/s^2)**2/kHz", DENSITY, 2e-3),
+        ("2 m^2/s^3/rad", DENSITY, 4.0 * math.pi),  # per rad/s: 2 pi of them in a hertz
+        ("2 N^2 s/rad", "N^2/Hz", 4.0 * math.pi),
+        ("2 kN^2/Hz", "N^2/Hz", 2e6),
+        ("2 (N m)^2/Hz", "(N m)^2/Hz", 2.0),
+    ],
+)
+def test_densities_are_per_hertz_or_per_radian(text, unit, value):
+    assert parse_quantity(text, unit) == pytest.approx(value, rel=1e-14)
+    assert parse_one_of(text, {"N": "", unit: ""}, unit) == (unit, pytest.approx(value, rel=1e-14))
+
+
+@pytest.mark.parametrize("text", ["1 m^2/s^3", "1 (m/s^2)^2 s", "1 N^2 s", "1 (N m)^2 s"])
+def test_a_density_that_may_be_either_is_refused(text):
+    unit = {"m": DENSITY, "(m": DENSITY, "N": "N^2/Hz", "(N": "(N m)^2/Hz"}[re.split(r"[ ^/]", text)[1]]
+    for read in (parse_quantity, lambda text, unit: parse_one_of(text, {unit: ""}, unit)):
+        with pytest.raises(UnitError, match="per Hz and one per rad/s are not the same"):
+            read(text, unit)
+
+
+@pytest.mark.parametrize("text", ["1 ((m)^9)^9 N", "1 ((km^9)^9)^9/m N"])
+def test_a_power_of_a_power_of_a_bracket_is_no_unit(text):
+    with pytest.raises(UnitError, match="is not known"):
+        parse_quantity(text, "N")
+
+
+def test_a_number_beyond_all_is_told():
+    for text in ("1 (Ym^9)^9/(ym^9)^9 N", "1 (ym^9)^9/(Ym^9)^9 N"):
+        with pytest.raises(UnitError, match="too large a number"):
+            parse_quantity(text, "N")
+
+
 def test_a_hertz_is_two_pi_radians_per_second():
     assert parse_quantity("1 Hz", "rad/s") == pytest.approx(2 * math.pi, rel=1e-15)
 

@@ -6,6 +6,7 @@ from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
 from inerter.fields import Field as Field
 from inerter.fields import choice as choice
+from inerter.fields import formed as formed
 from inerter.fields import mount as mount
 from inerter.fields import quantity as quantity
 from inerter.files.common.folder import Intent as Intent

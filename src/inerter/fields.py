@@ -1,4 +1,4 @@
-"""Quantities of which something is made, stated where it is: name, SI unit, a sentence, an example.
+"""What something is made of, stated where it is: quantities with their units, texts, and what has a form of its own.
 
 A frozen dataclass gives them to its own fields as `field(metadata=quantity(...))`. The keys of files, the rows of
 reports and the checks are made of them; the tables of the docs are checked against them.
@@ -9,9 +9,9 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 
-_QUANTITY, _MOUNT, _CHOICE = "inerter quantity", "inerter mount", "inerter choice"
+_QUANTITY, _MOUNT, _CHOICE, _FORMED = "inerter quantity", "inerter mount", "inerter choice", "inerter formed"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -43,6 +43,21 @@ class TextChoice:
     example: str = ""
     key: str = ""  # in files, if that is not the name
     needed: bool = False  # whether it must be given
+
+
+@dataclasses.dataclass(frozen=True)
+class Formed:
+    """A value of a form that files know by its name, such as a filter."""
+
+    name: str
+    form: str
+    sentence: str
+    example: str  # as TOML writes it
+    key: str = ""  # in files, if that is not the name
+    needed: bool = False  # whether it must be given
+
+
+Stated = TypeVar("Stated", TextChoice, Formed)
 
 
 def quantity(
@@ -77,6 +92,21 @@ def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: s
     return {_CHOICE: TextChoice("", options, sentence, example or (options[0] if options else ""), key)}
 
 
+def formed(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[str, Any]:
+    """The metadata of a field of an index that has this form in study files; else as `quantity`.
+
+    A "filter" is a `Filter`, "outputs" are names with weights, an "excitation" is one for `RandomResponse`, an "output"
+    or an "input" is the name of one, and an "amplitude" that of an input. `example` is written as in TOML.
+
+    >>> @dataclasses.dataclass(frozen=True)
+    ... class Heard:
+    ...     at: str = dataclasses.field(metadata=formed("output", "Where.", '"sprung_velocity"'))
+    >>> formed_of(Heard)
+    (Formed(name='at', form='output', sentence='Where.', example='"sprung_velocity"', key='at', needed=True),)
+    """
+    return {_FORMED: Formed("", form, sentence, example, key)}
+
+
 def mount(sentence: str) -> Mapping[str, Any]:
     """The metadata of a dataclass field that is a network; files give it in their layouts, unless it may be None."""
     return {_MOUNT: sentence}
@@ -89,7 +119,12 @@ def fields_of(kind: type) -> tuple[Field, ...]:
 
 def choices_of(kind: type) -> tuple[TextChoice, ...]:
     """The texts of a dataclass that are chosen, in their order."""
-    return tuple(_choice_of(f) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
+    return tuple(_named(f, f.metadata[_CHOICE]) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
+
+
+def formed_of(kind: type) -> tuple[Formed, ...]:
+    """The fields of a dataclass that have a form of their own, in their order."""
+    return tuple(_named(f, f.metadata[_FORMED]) for f in dataclasses.fields(kind) if _FORMED in f.metadata)
 
 
 def mounts_of(kind: type) -> tuple[str, ...]:
@@ -109,9 +144,8 @@ def _stated(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
     return quantities, {f.name: f.default is dataclasses.MISSING for f in every if _MOUNT in f.metadata}
 
 
-def _choice_of(field: dataclasses.Field[Any]) -> TextChoice:
-    stated: TextChoice = field.metadata[_CHOICE]
-    needed = field.default is dataclasses.MISSING
+def _named(field: dataclasses.Field[Any], stated: Stated) -> Stated:
+    needed = field.default is field.default_factory is dataclasses.MISSING
     return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, needed=needed)
 
 

@@ -18,7 +18,11 @@ STANDARD_GRAVITY = 9.80665  # [m/s^2]
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*")
 _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 # Pint evaluates what it is given, so only names, small exponents and separators reach it.
-_UNIT = re.compile(r"(?:[^\W\d_]++(?:(?:\^|\*\*)-?\d|[²³])?+|[()\s*/·.])+")
+_POWER = r"(?:(?:\^|\*\*)-?\d|[²³])"
+_NAME = rf"[^\W\d_]++{_POWER}?+"
+_UNIT = re.compile(rf"(?:{_NAME}|\((?:{_NAME}|[\s*/·.])++\){_POWER}|[()\s*/·.])+")  # a bracket with a power holds none
+_DENSITY = "/Hz"  # a spectral density ends so, and may be told per rad/s too
+_PER_FREQUENCY = re.compile(r"\b[kM]?(?:Hz|hertz)\b|\brad(?:ian)?s?\b")
 _FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # the weight of a mass, for those who mean it
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
 PURE = "1"  # the unit of what is a mere number
@@ -50,13 +54,14 @@ def parse_quantity(text: str, unit: str) -> float:
     if _dimension(given) != _dimension(unit):
         problem = f"{_described(given)} is a unit of another kind"
         _fail(text, problem, expected, f"{_number_of(text)} {_as_force(given, (unit,)) or _prefixed(given, unit)}")
+    _check_density(text, given, unit)
     return _converted(text, number, given, unit)
 
 
-def parse_one_of(text: str, units: Mapping[str, str], example: str) -> tuple[str, float]:
+def parse_one_of(text: str, units: Mapping[str, str], example: str, what: str = "element") -> tuple[str, float]:
     """The one of `units` that is of the kind of unit that `text` has, and the number that it stands for in that unit.
 
-    `units` goes from a unit to what it is the unit of; `example` is one of them, for messages.
+    `units` goes from a unit to the kind of `what` it is the unit of; `example` is one of them, for messages.
 
     Raises `UnitError` unless `text` is a finite number followed by a unit of one of these kinds.
 
@@ -67,11 +72,12 @@ def parse_one_of(text: str, units: Mapping[str, str], example: str) -> tuple[str
     kind = _dimension(given)
     for unit in units:
         if _dimension(unit) == kind:
+            _check_density(text, given, unit)
             return unit, _converted(text, number, given, unit)
     known = ", ".join(f"{unit} ({what})" for unit, what in units.items())
     force = _as_force(given, units)
     hint = f' Did you mean "{_number_of(text)} {force}"?' if force else ""
-    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no element; expected one of {known}.{hint}")
+    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no {what}; expected one of {known}.{hint}")
 
 
 def unit_in(text: str) -> str:
@@ -122,13 +128,22 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     '7.544 kN s/m'
     """
     rounded = float(f"{value:.{digits}g}")
-    if unit == PURE:
+    if unit in ("", PURE):
         return f"{rounded:.12g}"
     if rounded == 0.0 or not math.isfinite(rounded):
         return f"{rounded:g} {unit}"
     choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
     _, scale, name = next(choice for choice in choices if abs(rounded) >= choice[0])
     return f"{rounded / scale:.12g} {name}"
+
+
+def headed(what: str, unit: str) -> str:
+    """What a column or an axis holds, with its unit in brackets if it has one.
+
+    >>> headed("value", "N"), headed("ratio", "")
+    ('value [N]', 'ratio')
+    """
+    return f"{what} [{unit}]" if unit else what
 
 
 def format_with_interval(value: float, low: float, high: float, unit: str) -> tuple[str, str]:
@@ -228,6 +243,13 @@ def _split(text: object, expected: str, unit: str) -> tuple[str, str]:
     return number.group(1), given
 
 
+def _check_density(text: object, given: str, unit: str) -> None:
+    """That a spectral density says whether it is per Hz or per rad/s: seconds alone may be either."""
+    if unit.endswith(_DENSITY) and not _PER_FREQUENCY.search(given):
+        why = "a density per Hz and one per rad/s are not the same"
+        _fail(text, why, f"a unit of {unit}", f"{_number_of(text)} {unit}")
+
+
 def _number_of(text: object) -> str:
     """The number in `text` for use in an example, or one that is plausible."""
     if isinstance(text, int | float) and not isinstance(text, bool) and abs(text) < 1e12:
@@ -248,9 +270,12 @@ def _prefixed(given: str, unit: str) -> str:
 
 
 def _converted(text: str, number: str, given: str, unit: str) -> float:
-    up, down = _factors(given, unit)
     # Dividing by a whole number is exact to the last digit where multiplying by its inverse is not: 0.3 mm = 0.0003 m.
-    value = float(number) * up if up >= 1.0 else float(number) / down
+    try:
+        up, down = _factors(given, unit)
+        value = float(number) * up if up >= 1.0 else float(number) / down
+    except (OverflowError, ZeroDivisionError):
+        value = math.inf
     if not math.isfinite(value):
         _fail(text, "too large a number", f"a unit of {unit}", f"120 {unit}")
     return value

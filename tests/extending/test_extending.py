@@ -330,7 +330,7 @@ BAD = {
     "model": ('"seated-car"', '"seeted-car"', "vehicle.model", ['"seated-car"', 'Did you mean "seated-car"?']),
     "field": ('seat_stiffness = "15 kN/m"\n', "", "vehicle.seat_stiffness", ['seat_stiffness = "15 kN/m"']),
     "unit": ('"500 N s/m"\ntyre', '"500 N/m"\ntyre', "vehicle.seat_damping", ["another kind", "N s/m"]),
-    "index": ('"T1"', '"T2"', "study.indices", ['"element-velocity", "T1", "W1"']),
+    "index": ('"T1"', '"T2"', "study.indices", ['"peak-response", "T1", "W1"']),
     "setting": ('["J1", "T1", "W1"]', '["J1"]', "study.weighting_corner", ["weighting filter of W1", "no weighting_c"]),
     "setting's unit": ('"0.5 Hz"', '"0.5 s"', "study.weighting_corner", ["another kind", "rad/s"]),
     "method": ('"quadrature"', '"quadrture"', "study.evaluate", ['Did you mean "quadrature"?']),

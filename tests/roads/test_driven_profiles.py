@@ -35,10 +35,16 @@ def test_columns_in_either_order_and_any_unit_of_length(road_file):
 
 HEADER = "distance [m], height [mm]\n"
 BAD = {
-    "no units": ("distance, height\n0,0\n1,1\n", "'distance' has no unit. Name the unit of the distance"),
+    "no units": (
+        "distance, height\n0,0\n1,1\n",
+        r"'distance' has no unit. Write it behind the name, such as \"distance \[m\]\"",
+    ),
     "no header": ("0,0\n1,1\n", "has no header, and several columns increase throughout"),
     "no header, no unit": ("0,0\n1,1\n2,0\n", "'column 0' has no unit"),
-    "one unit": ("distance [m], height\n0,0\n1,1\n", "'height' has no unit. Name the unit of the height"),
+    "one unit": (
+        "distance [m], height\n0,0\n1,1\n",
+        r"'height' has no unit. Write it behind the name, such as \"height \[mm\]\"",
+    ),
     "twice the same": ("height [m], height [mm]\n0,0\n1,1\n", r"height \[m\] and height \[mm\] may both be the height"),
     "unknown unit": ("distance [m], height [furl]\n0,0\n1,1\n", "the unit \"furl\" of 'height' is none of length"),
     "unit of another kind": ("distance [s], height [mm]\n0,0\n1,1\n", 'the unit "s" .* is none of length'),

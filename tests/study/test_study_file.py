@@ -453,7 +453,12 @@ BAD = {
     # keys and sections
     "top key": ([("title", "titel")], "titel", ["unknown key", 'Did you mean "title"?']),
     "section": ([("[road]", "[raod]")], "raod", ["unknown key", 'Did you mean "road"?']),
-    "section missing": ([("[road]", "[raod]")], "road", ["missing", "[road]", "speed"]),
+    "section missing": (
+        [('[road]\nspeed = "25 m/s"\nroughness = "5e-7 m^3/cycle"\n', "")],
+        "road",
+        ["missing, but J3, J1 need it", "[road]", "speed"],
+    ),
+    "section misspelt": ([("[road]", "[raod]")], "raod", ["unknown key", 'Did you mean "road"?']),
     "vehicle key": ([("unsprung_mass", "unsprng_mass")], "vehicle.unsprng_mass", ['Did you mean "unsprung_mass"?']),
     "key missing": ([('sprung_mass = "181.75 kg"\n', "")], "vehicle.sprung_mass", ["missing", '"181.75 kg"']),
     "half car's key": ([('"25 kg"', '"25 kg"\npitch_inertia = "1 kg m^2"')], "vehicle.pitch_inertia", ['"half-car"']),

@@ -387,3 +387,35 @@ def assert_same(signals, expected):
     for track in signals:
         assert np.array_equal(signals[track](time), expected[track](time))
     assert not np.array_equal(signals["left"](time), signals["right"](time))
+
+
+@pytest.mark.parametrize(
+    ("header", "renamed"),
+    [
+        ("weg [m], links [mm], rechts [mm]", "distance [m], height [mm], right [mm]"),
+        ("s [m], links [mm], rechts [mm]", "s [m], height [mm], right [mm]"),
+        ("weg, hoehe", "distance [m], height [mm]"),
+        ("x, z", "x [m], z [mm]"),
+        ("x [s], z [mm]", "x [m], z [mm]"),
+        ("x [m], y [mm], z [mm]", "x [m], height [mm], other [mm]"),
+    ],
+)
+def test_what_is_advised_about_the_columns_of_a_profile_can_be_done_in_its_file(
+    header: str, renamed: str, tmp_path: Path
+) -> None:
+    """No key of a study file names columns: the advice is about the file, and mends it."""
+    count, path = header.count(",") + 1, tmp_path / "study.toml"
+    path.write_text(text_of('profile = "road.csv"'), encoding="utf-8")
+    rng = np.random.default_rng(9)
+    heights = np.cumsum(rng.normal(size=(4000, count - 1)), axis=0)
+    lines = [", ".join(f"{x:.6g}" for x in (0.1 * i, *row)) for i, row in enumerate(heights)]
+    (tmp_path / "road.csv").write_text("\n".join([header, *lines]), encoding="utf-8")
+    with pytest.raises(StudyError) as caught:
+        load_study(path)
+    (line,) = str(caught.value).splitlines()
+    advice, _, python = line.partition("in Python")
+    assert python
+    assert "=" not in advice
+    assert "in the file" in advice or "behind the name" in advice
+    (tmp_path / "road.csv").write_text("\n".join([renamed, *lines]), encoding="utf-8")
+    assert load_study(path).line is not None

@@ -10,6 +10,7 @@ from typing import Any
 
 from inerter.app.answers import answered
 from inerter.errors import StudyError
+from inerter.units import headed
 
 Rows = Iterable[list[Any]]
 
@@ -47,7 +48,7 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
     )
     names = list(dict.fromkeys(chain.from_iterable(design["values"] for design in answer["designs"])))
     units = {name: told["unit"] for design in answer["designs"] for name, told in design["values"].items()}
-    yield ["design", "layout", *said, *(f"{name} [{units[name]}]" for name in names)]
+    yield ["design", "layout", *said, *(headed(name, units[name]) for name in names)]
     for design in answer["designs"]:
         values = [design["values"].get(name, {}).get("value") for name in names]
         for result in design["results"]:
@@ -56,7 +57,7 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
 
 def _response(answer: Mapping[str, Any]) -> Rows:
     curves = answer["curves"]
-    yield ["frequency [Hz]", *(f"{c['name']} {c['index']} {c['label']} [{c['unit']}]" for c in curves)]
+    yield ["frequency [Hz]", *(headed(f"{c['name']} {c['index']} {c['label']}", c["unit"]) for c in curves)]
     yield from (
         list(row) for row in zip(answer["frequency"].tolist(), *(c["gain"].tolist() for c in curves), strict=True)
     )

@@ -41,6 +41,9 @@ def explain(wanted: str | None) -> int:
     if wanted is None:
         print("\n".join(_table(keys)))
         return 0
+    section = wanted.partition(".")[0]
+    if kind_with(section) is not None and all(key.place != section for key in keys):
+        raise StudyError(_unknown(wanted, keys))
     told = [list(_told(key, keys)) for key in found(keys, wanted)]
     told += [list(_row(what, wanted, rows[wanted])) for what, rows in _words().items() if wanted in rows]
     if not told:
@@ -101,9 +104,10 @@ def _table(keys: Sequence[Key]) -> Iterator[str]:
         sentences = dict.fromkeys(key.sentence for key in alike)
         text = " ".join(sentences) if len(sentences) == 1 else _by_model(alike)
         units = dict.fromkeys(key.unit for key in alike if key.unit)
-        lines = wrap(text, _WIDTH - len(indent), break_on_hyphens=False)
-        yield f"{place:<{_PLACE}}  {' or '.join(units):<{_UNIT}}{lines[0]}"
-        yield from (indent + line for line in lines[1:])
+        head = f"{place:<{_PLACE}}  {' or '.join(units):<{_UNIT - 1}}"
+        first, *lines = wrap(text, _WIDTH - len(indent), break_on_hyphens=False)
+        yield from [f"{head} {first}"] if len(head) < len(indent) else [head.rstrip(), indent + first]
+        yield from (indent + line for line in lines)
 
 
 def _by_model(keys: Sequence[Key]) -> str:

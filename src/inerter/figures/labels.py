@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from inerter.errors import StatusKind
-from inerter.units import PURE, format_quantity, parse_quantity
+from inerter.units import format_quantity, headed, parse_quantity
 
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
@@ -202,7 +202,7 @@ def with_unit(value: float, unit: str, error: float = np.nan) -> str:
     if not shows_error(value, error):
         return format_quantity(value, unit)
     own = scale([value], unit)
-    return f"{measured(value * own.factor, error * own.factor)} {own.unit}".removesuffix(f" {PURE}")
+    return f"{measured(value * own.factor, error * own.factor)} {own.unit}".rstrip()
 
 
 def shows_error(value: float, error: float) -> bool:
@@ -272,5 +272,5 @@ def scale(values: ArrayLike, unit: str) -> Scale:
 
 def axis_label(what: str, unit: str) -> str:
     """The label of an axis: what it is, and its unit in brackets; on two lines where it is long."""
-    text = f"{what} [{typeset(unit).replace(' ', _NO_BREAK_SPACE)}]"
+    text = headed(what, typeset(unit).replace(" ", _NO_BREAK_SPACE))
     return text if len(text) <= _LONGEST_LABEL else fill(text, _LONGEST_LABEL, break_long_words=False)

@@ -24,7 +24,7 @@ class DynamicLoadCoefficient:
     road: Road | Excitation
     symbol = "dynamic-load-coefficient"
     title = "dynamic load coefficient"
-    unit = "N/N"
+    unit = ""  # a ratio
     response = "tyre force over static load per road velocity"
 
     def question(self, mechanism: Mechanism) -> Question:

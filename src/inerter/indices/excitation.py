@@ -84,7 +84,7 @@ class RoadVelocity:
             if not road.track:
                 raise PerformanceIndexError(
                     f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Say which, "
-                    f'RoadInput(..., track="left"), or leave the coherence out.'
+                    f'track = "left" or "right", or leave the coherence out.'
                 )
             for (source, ratio), right in zip(parts.items(), (1.0, -1.0), strict=True):
                 if ratio is not None:
@@ -103,7 +103,7 @@ class WhiteForce:
 
     name: str
     intensity: float
-    unit = "N"
+    unit = ""  # N, or of a moment N m
     is_random = True
 
     def __post_init__(self) -> None:

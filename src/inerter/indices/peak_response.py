@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
+from inerter.fields import formed
 from inerter.indices.excitation import OneInput
 from inerter.indices.question import Combination, Given, Question
 from inerter.systems.filters import as_filter
-from inerter.systems.outputs import unit_of
+from inerter.systems.outputs import input_unit, unit_of
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
 
@@ -33,14 +34,23 @@ class PeakResponse:
     (10.012523, 0.997497)
     """
 
-    input: str
-    output: str
-    filter: Given = None
-    amplitude: float | None = None
+    input: str = field(
+        metadata=formed("input", "A force, a road (its displacement) or NAME_velocity of a road.", '"sprung_force"')
+    )
+    output: str = field(metadata=formed("output", "What responds.", '"sprung_displacement"'))
+    filter: Given = field(
+        default=None,
+        metadata=formed(
+            "filter", "On the output; none if left out.", "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }"
+        ),
+    )
+    amplitude: float | None = field(
+        default=None, metadata=formed("amplitude", "Of the sinusoidal input, for friction and gaps.", '"1 kN"')
+    )
     symbol = "peak-response"
     title = "peak response"
     unit = ""  # that of its output over that of its input
-    response = "output per input"
+    response = "gain from input to output"
 
     def __post_init__(self) -> None:
         for what, name in (("input", self.input), ("output", self.output)):
@@ -52,12 +62,13 @@ class PeakResponse:
 
     def question(self, mechanism: Mechanism) -> Question:
         """Raises `PerformanceIndexError` if the mechanism has no such input."""
-        moved = any(self.input == f"{road.name}_velocity" for road in mechanism.roads)
-        unit = _over(unit_of(mechanism, [self.output]), "m/s" if moved else unit_of(mechanism, [self.input]))
+        unit = _over(unit_of(mechanism, [self.output]), input_unit(mechanism, self.input))
         outputs = (Weighted(self.output),)
         return Question(outputs, Combination.PEAK_GAIN, OneInput(self.input), unit, self.filter, self.amplitude)
 
 
 def _over(top: str, bottom: str) -> str:
-    """A unit over another one."""
+    """A unit over another one; empty for a ratio, and where one is not known."""
+    if top == bottom or not (top and bottom):
+        return ""
     return f"{f'({top})' if '/' in top else top}/{f'({bottom})' if '/' in bottom or ' ' in bottom else bottom}"

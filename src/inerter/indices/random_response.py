@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
+from inerter.fields import formed
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.indices.question import Combination, Given, Question
 from inerter.signals.road import Road
@@ -35,13 +36,26 @@ class RandomResponse:
     5.0
     """
 
-    outputs: Weights
-    excitation: Road | Excitation
-    filter: Given = None
+    outputs: Weights = field(
+        metadata=formed("outputs", "What responds: outputs with their weights.", "{ tyre_load = 1 }")
+    )
+    excitation: Road | Excitation = field(
+        metadata=formed(
+            "excitation",
+            "What excites the vehicle; the road of the study if left out.",
+            '{ ground_acceleration = "0.01 (m/s^2)^2/Hz" }',
+        )
+    )
+    filter: Given = field(
+        default=None,
+        metadata=formed(
+            "filter", "On every output; none if left out.", "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }"
+        ),
+    )
     symbol = "random-response"
     title = "random response"
     unit = ""  # that of its outputs
-    response = "outputs per root of the intensity"
+    response = "gain from excitation"
 
     def __post_init__(self) -> None:
         if not isinstance(self.outputs, Mapping) or not self.outputs:
@@ -51,7 +65,7 @@ class RandomResponse:
         for name, weight in self.outputs.items():
             if not isinstance(name, str) or not is_number(weight) or weight == 0.0:
                 raise PerformanceIndexError(f"The weight of output {name!r} is a number other than 0, got {weight!r}.")
-        object.__setattr__(self, "outputs", _Fixed(self.outputs))
+        object.__setattr__(self, "outputs", FixedWeights(self.outputs))
         object.__setattr__(self, "excitation", as_excitation(self.excitation, "A random response"))
         object.__setattr__(self, "filter", as_filter(self.filter))
 
@@ -65,7 +79,7 @@ class RandomResponse:
         return Question(outputs, Combination.SUM_OF_RMS, drive, unit, self.filter)
 
 
-class _Fixed(dict[str, float]):
+class FixedWeights(dict[str, float]):
     """A mapping that is the same for good, so that an index can be a key."""
 
     def __hash__(self) -> int:  # type: ignore[override]

@@ -7,13 +7,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from inerter.errors import PerformanceIndexError, RowError
-from inerter.fields import Field, TextChoice, choices_of, fields_of
+from inerter.fields import Field, Formed, TextChoice, choices_of, fields_of, formed_of
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce
 from inerter.indices.element_stroke import ElementStroke
 from inerter.indices.element_velocity import ElementVelocity
 from inerter.indices.load_carrying import LoadCarrying
+from inerter.indices.peak_response import PeakResponse
 from inerter.indices.question import Index
+from inerter.indices.random_response import RandomResponse
 from inerter.indices.ride_comfort import RideComfort
 from inerter.indices.suspension_travel import SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad
@@ -33,9 +35,19 @@ INDICES: Rows[type[Index]] = Rows(
         ElementForce,
         ElementStroke,
         ElementVelocity,
+        RandomResponse,
+        PeakResponse,
     ),
 )
-_AMPLITUDE = "amplitude"  # the setting that says how large a sinusoidal force is
+_AMPLITUDE = "amplitude"  # the setting that says how large a sinusoidal input is
+_ROAD, _EXCITATION = "road", "excitation"
+_EXCITED = Formed(
+    _ROAD,
+    _EXCITATION,
+    "What excites the vehicle; the road of the study if left out.",
+    '{ force = "sprung_force", intensity = "1 N^2/Hz" }',
+    _EXCITATION,
+)
 
 
 @made_of_rows
@@ -60,29 +72,53 @@ def index_choices(symbol: str) -> tuple[TextChoice, ...]:
     return choices_of(INDICES[symbol])
 
 
-def amplitude_of(symbol: str) -> Field | None:
-    """The setting of an index that is the amplitude of its sinusoidal force; None if it has none."""
-    return next((field for field in fields_of(INDICES[symbol]) if field.name == _AMPLITUDE), None)
+def index_forms(symbol: str) -> tuple[Formed, ...]:
+    """The settings of an index that have a form of their own; one that is `needed` must be given.
 
-
-def is_on_road(symbol: str) -> bool:
-    """Whether the index is asked on a road."""
+    An index on a road has its excitation among them, which is the road if nothing else is given.
+    """
     kind: Any = INDICES[symbol]
-    return "road" in {field.name for field in dataclasses.fields(kind)}
+    stated = formed_of(kind)
+    if _ROAD in {field.name for field in dataclasses.fields(kind)}:
+        stated += (_EXCITED,)
+    return tuple(dataclasses.replace(one, needed=one.needed and one.form != _EXCITATION) for one in stated)
+
+
+def needed_settings(symbol: str) -> tuple[TextChoice | Formed, ...]:
+    """The settings of an index that must be given."""
+    stated: list[TextChoice | Formed] = [*index_choices(symbol), *index_forms(symbol)]
+    return tuple(one for one in stated if one.needed)
+
+
+def amplitude_of(symbol: str) -> Field | Formed | None:
+    """The setting of an index that is the amplitude of its sinusoidal input; None if it has none."""
+    stated: list[Field | Formed] = [*fields_of(INDICES[symbol]), *index_forms(symbol)]
+    return next((one for one in stated if one.name == _AMPLITUDE), None)
+
+
+def excitation_of(symbol: str) -> Formed | None:
+    """The setting of an index that is its excitation, the road if it is not given; None if it has none."""
+    return next((one for one in index_forms(symbol) if one.form == _EXCITATION), None)
 
 
 def make_index(symbol: str, road: Road | None, settings: Mapping[str, Any]) -> Index:
-    """The index of that symbol, on `road` if it is asked on one, with those of the settings that are its own.
+    """The index of that symbol with those of the settings that are its own, on `road` if nothing else excites it.
 
     Raises `PerformanceIndexError` if one is missing that it cannot do without.
     """
     kind: Any = INDICES[symbol]
-    for text in index_choices(symbol):
-        if text.needed and text.key not in settings:
-            raise PerformanceIndexError(
-                f'{symbol} needs its {text.key}, such as {text.key} = "{text.example}": {text.sentence}'
-            )
-    own = {field.name: field.key for field in fields_of(kind)} | {text.name: text.key for text in choices_of(kind)}
-    given = {name: settings[key] for name, key in own.items() if key in settings}
-    index: Index = kind(**({"road": road} if is_on_road(symbol) else {}), **given)
+    for one in needed_settings(symbol):
+        if one.key not in settings:
+            raise PerformanceIndexError(f"{symbol} needs its {one.key}, such as {as_line(one)}: {one.sentence}")
+    stated: list[Any] = [*fields_of(kind), *index_choices(symbol), *index_forms(symbol)]
+    given = {one.name: settings[one.key] for one in stated if one.key in settings}
+    if (excitation := excitation_of(symbol)) is not None:
+        given = {excitation.name: road, **given}
+    index: Index = kind(**given)
     return index
+
+
+def as_line(setting: Field | TextChoice | Formed) -> str:
+    """A setting with its example, as a line of a file."""
+    value = setting.example if isinstance(setting, Formed) else f'"{setting.example}"'
+    return f"{setting.key} = {value}"

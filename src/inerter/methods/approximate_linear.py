@@ -300,8 +300,8 @@ def _check_gains(arrivals: Sequence[Arrival]) -> None:
     """Raises `PerformanceIndexError` for what is no single source with one filter: gains are from one signal."""
     if len({(a.source, a.lever, a.filter) for a in arrivals}) > 1 or arrivals[0].lever != 1.0:
         raise PerformanceIndexError(
-            "ApproximateLinear() takes gains from one signal, and here several arrive, each by a way of its own. "
-            "Use Norm(), StatisticalLinearisation() or ExpectedValue()."
+            "Method approximate-linear takes gains from one signal, and here several arrive, each by a way of its own. "
+            "Use norm, statistical-linearisation or expected-value."
         )
 
 

@@ -160,8 +160,7 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
     check_peak_gain(question)
     if question.amplitude is None:
         raise PerformanceIndexError(
-            "A peak gain with friction depends on the amplitude of the force. Give it, as in "
-            "LoadCarrying(amplitude=1000.0), in N."
+            "A peak gain with friction depends on the amplitude of the force. Give it, such as 1000 N."
         )
     parts = equivalent(mechanism)
     arrivals = question.arrivals(parts.mechanism)

@@ -31,7 +31,7 @@ from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 Array = NDArray[np.float64]
 GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
 POORLY = (
-    "is poorly represented by one damper: the value may be off by more than 3 %. Simulate it, as ExpectedValue() does"
+    "is poorly represented by one damper: the value may be off by more than 3 %. Simulate it, as expected-value does"
 )
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 
@@ -87,7 +87,7 @@ def check_gaps(mechanism: Mechanism) -> None:
             if element.statistical is Statistical.REFUSED and element.value != 0.0:
                 raise PerformanceIndexError(
                     f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is a "
-                    f"{element.key} with play. Use ExpectedValue() or ApproximateLinear(), which simulate it, or give "
+                    f"{element.key} with play. Use expected-value or approximate-linear, which simulate it, or give "
                     f"the gap a half-width of 0."
                 )
 
@@ -101,7 +101,7 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
         if name in told:
             raise PerformanceIndexError(
                 f"Statistical linearisation does not give {name!r}: it puts a damper in the place of the friction. "
-                f"Use ExpectedValue() or ApproximateLinear(), which simulate it."
+                f"Use expected-value or approximate-linear, which simulate it."
             )
 
 

@@ -188,7 +188,7 @@ class ExpectedValue:
         if question.amplitude is None:
             raise PerformanceIndexError(
                 "What a design with friction or gaps carries depends on the size of the force. Give its amplitude, "
-                "such as LoadCarrying(amplitude=1000.0)."
+                "such as 1000 N."
             )
         (output,) = question.outputs
         (arrival,) = question.arrivals(system.mechanism)

@@ -84,7 +84,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
 
 def _what(results: xr.Dataset, unit: Scale) -> str:
     if not swept_places(results):
-        return f"by each method, in {unit.unit}"
+        return f"by each method{f', in {unit.unit}' if unit.unit else ''}"
     return "by each method, at its best" + (f" compared with {results.attrs['baseline']}" if compared(results) else "")
 
 

@@ -9,7 +9,7 @@ from math import isclose, pi
 import numpy as np
 import xarray as xr
 
-from inerter.fields import fields_of
+from inerter.fields import Field, fields_of
 from inerter.figures.labels import capital, index_title, indices, infeasible, listed, titled
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.conditions import OVER
@@ -59,17 +59,30 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _roughness(study))]
         rows += [] if study.line is None else [("Road measured in", study.line.source)]
         rows += list(_coherence_rows(study))
-    for name in study.indices:
+    limited = [limit.of for limit in study.limits if study.knows(limit.of)]
+    for name in dict.fromkeys([*study.indices, *study.trade_off, *limited]):
         symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
         rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
         texts = [one for one in index_choices(symbol) if one.key in settings]
         rows += [(f"{capital(one.key.replace('_', ' '))} of {name}", settings[one.key]) for one in texts]
+        rows += list(_formed_rows(study, name))
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
         rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
     return rows
+
+
+def _formed_rows(study: Study, name: str) -> Iterator[tuple[str, str]]:
+    """What an index of the file's own is about and what excites it, by the forms of its settings."""
+    known = places(study)
+    for key, form, value in study.own_indices[name].formed if name in study.own_indices else ():
+        for words, text in form.told(value):
+            yield f"{words} of {name}", text
+        for part in form.numbers(value):
+            place = ".".join(filter(None, ("indices", name, key, part)))
+            yield capital(known[place].words), _told(study, place)
 
 
 def _roughness(study: Study) -> str:
@@ -177,11 +190,11 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
             "one standard error, for an improvement that of the difference on the same inputs where they are kept."
         )
-    amplitudes = [symbol for symbol in INDICES if amplitude_of(symbol)]
+    amplitudes = [symbol for symbol in INDICES if isinstance(amplitude_of(symbol), Field)]
     asked = [name for name in study.indices if study.symbol(name) in amplitudes]
     for name in asked or amplitudes:
         field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
-        if field is not None and field.key in settings:
+        if isinstance(field, Field) and field.key in settings:
             amplitude = _given(study, settings[field.key], field.unit)
             yield f"The sinusoidal force of {name} has an amplitude of {amplitude}."
 

@@ -155,20 +155,28 @@ def _chosen(
             alike = [channel for channel in left if _is_called(channel.name, words)]
             if len(alike) > 1:
                 names = " and ".join(channel.label for channel in alike[:3])
-                raise RecordError(f"{source}: {names} may both be the {role}. Name it: {role}={alike[0].name!r}.")
+                raise RecordError(
+                    f"{source}: {names} may both be the {role}. Leave that name to one of them in the file, or in "
+                    f"Python name it: {role}={alike[0].name!r}."
+                )
             chosen |= {role: alike[0]} if alike else {}
     if chosen == asked and not any(channel.unit for channel in channels):  # no header, or a remark taken for one
         chosen |= _by_order(source, values, chosen, spaced)
     for role in ("distance", "height"):
         if role not in chosen and not (role == "distance" and spaced):
-            there = ", ".join(channel.label for channel in channels[:12])
-            raise RecordError(
-                f"{source}: no column has an obvious name for the {role}; there are {there}. Name it, such as "
-                f"{role}={channels[-1].name!r}{', or give the interval' if role == 'distance' else ''}."
-            )
+            raise _unnamed(source, role, [channel for channel in channels if channel not in chosen.values()], channels)
     if len(set(chosen.values())) < len(chosen):
         raise RecordError(f"{source}: one column is named for two of {', '.join(chosen)}. Name another one.")
     return chosen
+
+
+def _unnamed(source: str, role: str, left: Sequence[Channel], channels: Sequence[Channel]) -> RecordError:
+    there = ", ".join(channel.label for channel in channels[:12])
+    spaced = ", or give the interval" * (role == "distance")
+    return RecordError(
+        f'{source}: no column has an obvious name for the {role}; there are {there}. Write "{role}" over it in the '
+        f"file, or in Python name it, such as {role}={(left or channels)[0].name!r}{spaced}."
+    )
 
 
 def _is_called(name: str, words: str) -> bool:
@@ -187,8 +195,8 @@ def _by_order(
         if len(rising) != 1:
             which = "no column increases" if not rising else "several columns increase"
             raise RecordError(
-                f"{source} has no header, and {which} throughout, so that the distance is not known. Name it by its "
-                f"number, such as distance=0."
+                f"{source} has no header, and {which} throughout, so that the distance is not known. Write names "
+                f'over the columns, such as "distance [m], height [mm]", or in Python name it by number, distance=0.'
             )
         found["distance"] = rising[0]
         left.remove(rising[0])
@@ -215,15 +223,15 @@ def _scale(source: str, role: str, channel: Channel, units: Mapping[str, str]) -
     example = {"distance": "m", "height": "mm"}[kind]
     if not isinstance(unit, str) or not unit.strip():
         raise RecordError(
-            f'{source}: {channel.name!r} has no unit. Name the unit of the {kind}, such as units={{"{kind}": '
-            f'"{example}"}}.'
+            f'{source}: {channel.name!r} has no unit. Write it behind the name, such as "{kind} [{example}]", or in '
+            f'Python name it: units={{"{kind}": "{example}"}}.'
         )
     try:
         worth = parse_quantity(f"1 {unit.strip()}", "m")
     except UnitError:
         raise RecordError(
-            f"{source}: the unit {shown(unit)} of {channel.name!r} is none of length. Name the unit of the {kind}, "
-            f'such as units={{"{kind}": "{example}"}}.'
+            f"{source}: the unit {shown(unit)} of {channel.name!r} is none of length. Write another behind the "
+            f'name, such as "{kind} [{example}]", or in Python name it: units={{"{kind}": "{example}"}}.'
         ) from None
     return worth
 

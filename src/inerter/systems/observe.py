@@ -98,7 +98,7 @@ def _found(frame: Frame, name: str) -> Output:
     find(outputs(frame.mechanism, full_graph(frame.mechanism)), name, LinearSystemError)
     raise LinearSystemError(
         f"There is no output named {name!r} in linear analysis, which leaves friction out and closes gaps. "
-        f"Simulate the design: simulate(...), ExpectedValue() or ApproximateLinear()."
+        f"Simulate the design: inerter simulate, or by expected-value or approximate-linear."
     )
 
 

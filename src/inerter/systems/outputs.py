@@ -6,6 +6,7 @@ ask for, and how what they may ask for is called.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -230,10 +231,22 @@ def check_inputs(
 
 
 def unit_of(mechanism: Mechanism, names: Sequence[str]) -> str:
-    """The unit that these outputs have; empty for unlike ones, which weights make alike, and for unknown ones."""
+    """The unit that these outputs have; empty for unlike ones, which weights make alike, and for unknown ones.
+
+    Beside motions in m, those of angles are weighted by levers in m.
+    """
     known = outputs(mechanism, full_graph(mechanism))
     units = {known[name].unit if name in known else "" for name in names}
+    if len(units) > 1:
+        units = {re.sub(r"^rad(?![^/])", "m", unit) for unit in units}
     return units.pop() if len(units) == 1 else ""
+
+
+def input_unit(mechanism: Mechanism, name: str) -> str:
+    """The unit of an input: of a force, of a road's displacement, or of `<road>_velocity`; empty for an unknown one."""
+    if any(name == velocity_of(road.name) for road in mechanism.roads):
+        return "m/s"
+    return unit_of(mechanism, [name]) if name in input_names(mechanism) else ""
 
 
 def check_bounded(mechanism: Mechanism, driven: Mechanism, name: str) -> None:

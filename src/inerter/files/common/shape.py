@@ -161,21 +161,12 @@ class WithVehicle(Shape):
         if not isinstance(vehicle, dict):
             return tables
         found, given = dict(tables), tables.get("layouts")
-        if not _needs_road(vehicle):
-            found.setdefault("road", None)
         if isinstance(given, dict) and (SEAT in vehicle or vehicle.get("model") == MECHANISM):
             found["layouts"] = {n: _Mounted(entry) if isinstance(entry, dict) else entry for n, entry in given.items()}
         signal = tables.get("signal")
         if isinstance(signal, dict):
             found["signal"] = Driving(signal, _units(vehicle))
         return found
-
-
-def _needs_road(vehicle: Mapping[str, Any]) -> bool:
-    """Whether a road must be given; of a model that is not known, it is."""
-    model = vehicle.get("model")
-    row = VEHICLES.get(model) if isinstance(model, str) else None
-    return model != MECHANISM and (row is None or row.moved == "road")
 
 
 def _units(vehicle: Mapping[str, Any]) -> dict[str | None, str]:

@@ -18,6 +18,7 @@ from inerter.files.study.ways import ways
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
 from inerter.trade_off.pareto import pareto
+from inerter.units import headed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -157,7 +158,7 @@ def fronts_csv(study: Study, found: Sequence[FrontOutcome]) -> str:
     names = [name for name in free if any(name in design for front in found for design in front.parameters)]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    indices = [f"{name} [{study.unit(name)}]" for name in study.trade_off]
+    indices = [headed(name, study.unit(name)) for name in study.trade_off]
     parameters = [f"{name} [{free[name]}]" for name in names]
     writer.writerow(["layout", "point", *indices, *parameters, "knee", "jump_after", "status"])
     for front in found:

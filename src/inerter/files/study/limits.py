@@ -20,7 +20,7 @@ from inerter.methods.method import asked_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.held import Held
 from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each
-from inerter.units import PURE, are_alike, format_quantity, parse_quantity, shown
+from inerter.units import PURE, are_alike, format_quantity, parse_quantity, shown, unit_in
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class StudyLimit:
 
     def entry(self) -> str | float:
         """How a file says its value."""
-        return self.value if self.unit == PURE else f"{self.value!r} {self.unit}"
+        return self.value if are_alike(self.unit, PURE) else f"{self.value!r} {self.unit}"
 
 
 def _limit_text(value: Any) -> str | float:
@@ -107,10 +107,17 @@ def limits_of(study: Study, entries: Mapping[str, LimitShape]) -> tuple[tuple[St
 
 def _value(text: str | float, unit: str) -> float:
     pure = isinstance(text, float) and are_alike(unit, PURE)
+    if not unit and not pure and not _is_ratio(text):
+        raise EntryError(got=shown(text), fault="a ratio has no unit", expected="a number without quotes, such as 0.3")
     value = float(text) if pure else parse_quantity(text, unit)  # type: ignore[arg-type]  # refused there
     if value <= 0.0:
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}".strip())
     return value
+
+
+def _is_ratio(text: str | float) -> bool:
+    """Whether the unit of a quantity is none, as that of 0.3 N/N."""
+    return isinstance(text, str) and are_alike(unit_in(text), PURE)
 
 
 def _unit(study: Study, of: str) -> str:

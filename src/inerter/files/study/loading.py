@@ -18,13 +18,14 @@ from inerter.files.common.vehicles import tracks, values_of, vehicle_problems
 from inerter.files.study.conditions import OVER
 from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
-from inerter.files.study.own_indices import own_index, own_index_problems
+from inerter.files.study.named import name_problems
+from inerter.files.study.own_indices import bare_index_problems, own_index, own_index_problems
 from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, shapes
 from inerter.files.study.study import POINTS, Study, elements_used
 from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.files.study.tolerances import tolerance_of
 from inerter.files.study.written import texts_of
-from inerter.indices.registry import index_settings, is_on_road
+from inerter.indices.registry import index_settings
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Free
 from inerter.signals.road import Road
@@ -57,8 +58,11 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
         *vehicle_problems(study.model, study.vehicle),
         *layout_problems(study.model, study.vehicle, study.elements, study.layouts),
         *line_problems,
-        *_road_problems(study, shape),
+        *_road_problems(study),
     ]
+    unclear = [*_index_problems(study, shape), *(() if problems else name_problems(study))]
+    if unclear:  # what is asked is not known yet, and so what may be wrong with the rest
+        raise refusal(path, [*problems, *unclear])
     limits, limit_problems = limits_of(study, shape.study.subject_to or {})
     study = replace(study, limits=limits)
     swept, sweep_problems = ((), []) if shape.study.sweep is None else sweeps_of(study, shape.study.sweep)
@@ -127,13 +131,20 @@ def _road(shape: StudyFile, line: MeasuredLine | None) -> Road | None:
     return Road(roughness, shape.road.speed, coherence_of(coherence_values(shape.road)))
 
 
-def _road_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+def _road_problems(study: Study) -> Iterator[Problem]:
     if study.coherence:
         yield from track_problems(("road", "coherence"), tracks(study.model, study.vehicle))
-    asked = [*study.indices, *study.trade_off, *(name for name in shape.study.subject_to or {} if study.knows(name))]
-    on_roads = [name for name in dict.fromkeys(asked) if is_on_road(study.symbol(name))]
+
+
+def _index_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+    """What indices lack that cannot be without it: settings, a road."""
+    limited = [name for name in shape.study.subject_to or {} if study.knows(name)]
+    asked = list(dict.fromkeys([*study.indices, *study.trade_off, *limited]))
+    yield from bare_index_problems(asked)
+    on_roads = [name for name in asked if study.needs_road(name)]
     if study.road is None and on_roads:
-        yield at(("road",), fault=f"missing, but {some(on_roads)} needs it", expected=ROAD_EXAMPLE)
+        need = "needs" if len(on_roads) == 1 else "need"
+        yield at(("road",), fault=f"missing, but {some(on_roads)} {need} it", expected=ROAD_EXAMPLE)
 
 
 def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
@@ -168,7 +179,7 @@ def _front_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
         yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
     if not study.trade_off:
         return
-    several = len({study.index(name) for name in study.trade_off})
+    several = len({study.index(name) for name in study.trade_off})  # which may be one by two names
     if several not in (2, 3) or several < len(study.trade_off):
         got = f"{len(study.trade_off)} indices" if several == len(study.trade_off) else "the same index twice"
         yield at(place, got=got, expected="two or three that differ")

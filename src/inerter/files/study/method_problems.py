@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from inerter.fields import fields_of
+from inerter.fields import Field, fields_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.study import Study, elements_used
-from inerter.indices.registry import INDICES, amplitude_of, index_settings
+from inerter.indices.registry import INDICES, amplitude_of, as_line, index_settings
 from inerter.methods.registry import (
     METHODS,
     averages,
@@ -58,7 +58,7 @@ def _road_problems(study: Study) -> Iterator[Problem]:
 
 def _index_problems(study: Study) -> Iterator[Problem]:
     """Settings of indices that nothing asks for."""
-    amplitudes = {field.key for symbol in INDICES if (field := amplitude_of(symbol)) is not None}
+    amplitudes = {field.key for symbol in INDICES if isinstance(field := amplitude_of(symbol), Field)}
     for key in study.settings:
         field, owners = index_settings()[key], [symbol for symbol in INDICES if key in _keys(symbol)]
         asked = set(owners) & set(map(study.symbol, study.indices))
@@ -101,10 +101,10 @@ def _force_problems(study: Study) -> Iterator[Problem]:
         field = amplitude_of(study.symbol(symbol))
         if field is not None and field.key not in study.settings_of(symbol):
             yield at(
-                ("study", field.key),
+                ("study", field.key) if isinstance(field, Field) else ("indices", symbol, field.key),
                 fault=f"missing, but {concerned[0]} takes {symbol} of {some(nonlinear)}, where friction or gaps make "
-                f"it depend on the size of the force",
-                expected=f'its amplitude, such as {field.key} = "{field.example}"',
+                f"it depend on the size of the {'force' if isinstance(field, Field) else 'input'}",
+                expected=f"its amplitude, such as {as_line(field)}",
             )
 
 

@@ -13,9 +13,11 @@ from inerter.fields import Field, fields_of
 from inerter.files.common.roads import COHERENCE, coherence_of
 from inerter.files.common.shape import ROAD
 from inerter.files.common.vehicle_shapes import SEAT, Inertia
-from inerter.indices.registry import INDICES, index_settings
+from inerter.files.study.forms import form_of
+from inerter.files.study.number import Number
+from inerter.indices.registry import INDICES, index_forms, index_settings
 from inerter.methods.registry import method_settings
-from inerter.networks.elements import Element, Free, Value
+from inerter.networks.elements import Element, Free
 from inerter.vehicle.registry import VEHICLES
 
 if TYPE_CHECKING:
@@ -36,16 +38,6 @@ class Place:
     def label(self) -> str:
         """What it is called in results and in files: an element by its name alone."""
         return self.key if self.section == _ELEMENTS and "." not in self.key else f"{self.section}.{self.key}"
-
-
-@dataclass(frozen=True)
-class Number:
-    """The number at a place, in its SI unit; None where the file leaves it out."""
-
-    unit: str
-    words: str  # what it is, in sentences and on axes
-    value: Value | None
-    may_vanish: bool = False
 
 
 def place_of(text: str) -> Place:
@@ -230,17 +222,24 @@ def _put_setting(study: Study, key: str, number: float) -> Study:
 
 
 def _index_numbers(study: Study) -> dict[str, Number]:
-    return {
-        f"{name}.{f.key}": Number(f.unit, f"{f.in_words} of {name}", own.settings.get(f.key))
-        for name, own in study.own_indices.items()
-        for f in fields_of(INDICES[own.symbol])
-    }
+    found = {}
+    for name, own in study.own_indices.items():
+        for f in fields_of(INDICES[own.symbol]):
+            found[f"{name}.{f.key}"] = Number(f.unit, f"{f.in_words} of {name}", own.settings.get(f.key))
+        for one in index_forms(own.symbol):
+            numbers = form_of(one).numbers(own.settings[one.key]) if one.key in own.settings else {}
+            for key, number in numbers.items():
+                place = f"{name}.{one.key}.{key}" if key else f"{name}.{one.key}"
+                found[place] = replace(number, words=f"{number.words} for {name}")
+    return found
 
 
 def _put_index(study: Study, key: str, number: float) -> Study:
-    name, _, setting = key.partition(".")
+    name, setting, *further = key.split(".")
     own = study.own_indices[name]
-    changed = replace(own, settings={**own.settings, setting: number})
+    form = next((form_of(one) for one in index_forms(own.symbol) if one.key == setting), None)
+    value = number if form is None else form.put(own.settings[setting], ".".join(further), number)
+    changed = replace(own, settings={**own.settings, setting: value})
     return replace(study, own_indices={**study.own_indices, name: changed})
 
 

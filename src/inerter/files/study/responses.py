@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
+from inerter.indices.question import Question
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
-from inerter.systems.outputs import unit_of
+from inerter.systems.outputs import input_unit, unit_of
 from inerter.units import format_quantity
-from inerter.vehicle.mechanism import Weighted
+from inerter.vehicle.mechanism import Mechanism, Weighted
 
 Array = NDArray[np.float64]
 
@@ -52,22 +53,43 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
                 sizes = np.abs(frequency_response(system, omega, problem.pade_order))
             together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
             gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
-        own = f"({question.unit})" if "/" in question.unit else question.unit
-        per = question.drive.unit
-        unit = question.unit if not per else f"{own}/({per})" if "/" in per else f"{own}/{per}"
-        attributes = {"units": unit, "long_name": study.index(index).response}
+        mechanism = designs[next(iter(mine)), index].mechanism()
+        attributes = {
+            "units": _per(question.unit, _source_unit(mechanism, question)),
+            "long_name": _words(study, index),
+        }
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
-        units = [unit_of(designs[next(iter(mine)), index].mechanism(), [o.output]) for o in question.outputs]
+        units = [unit_of(mechanism, [o.output]) for o in question.outputs]
         names = [_weighted(o, own, question.unit) for o, own in zip(question.outputs, units, strict=True)]
         data = data.assign_coords({f"output_{index}": names})
     return data
+
+
+def _per(unit: str, per: str) -> str:
+    """A unit over that of what excites, if that has one of its own."""
+    top, bottom = (f"({one})" if brackets & {*one} else one for one, brackets in ((unit, {"/"}), (per, {"/", " "})))
+    return f"{top or 1}/{bottom}" if per else unit
+
+
+def _source_unit(mechanism: Mechanism, question: Question) -> str:
+    """The unit of a source; empty for one input, whose unit that of its gain has in it already."""
+    if question.drive.unit or not question.drive.is_random:
+        return question.drive.unit
+    return input_unit(mechanism, question.arrivals(mechanism)[0].input)
+
+
+def _words(study: Study, index: str) -> str:
+    """What the frequency response of an index is, in words; from what excites it, if the file says so."""
+    own = study.own_indices.get(index)
+    source = own.excited_by if own else ""
+    return f"gain from {source}" if source else study.index(index).response
 
 
 def _weighted(output: Weighted, own: str, unit: str) -> str:
     """An output, of the unit `own`, as it enters an index of that `unit`: times a lever, or over what it is part of."""
     if output.weight == 1.0:
         return output.output
-    if own and unit == f"{own}/{own}":
+    if own and not unit:
         return f"{output.output} over {format_quantity(1.0 / output.weight, own)}"
     return f"{output.output} x {output.weight:g}{' m' if own.startswith('rad') else ''}"
 

@@ -228,7 +228,6 @@ _AnyElement = Annotated[
 class StudyFile(WithVehicle):
     """The whole file, but for what is made of quantities and rows."""
 
-    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("road"))  # where it needs none
     title: Annotated[str | None, TEXT] = Field(
         default=None, description="A line for reports; the name of the file if left out.", examples=['title = "My car"']
     )
@@ -280,7 +279,7 @@ def shapes() -> tuple[type[StudyFile], Shapes]:
         ),
         road=(
             some_road,
-            Field(description="What the vehicle drives on, and how fast.", examples=[ROAD_EXAMPLE]),
+            Field(default=None, description="What the vehicle drives on, and how fast.", examples=[ROAD_EXAMPLE]),
         ),
         elements=(
             elements,

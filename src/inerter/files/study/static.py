@@ -27,13 +27,13 @@ def at_static_limit(study: Study, results: xr.Dataset) -> frozenset[tuple[str, s
             design = results.sel(layout=layout, index=index)
             value = float(values.sel(layout=layout, index=index))
             static = _static_gain(study, layout, index, design) if np.isfinite(value) else np.nan
-            if abs(value - static) <= 2.0 * ACCURACY * abs(static):
+            if np.isfinite(static) and abs(value - static) <= 2.0 * ACCURACY * abs(static):
                 found.add((index, layout))
     return frozenset(found)
 
 
 def _static_gain(study: Study, layout: str, index: str, design: xr.Dataset) -> float:
-    """The gain at frequency zero of an index that is a largest gain; nan for another."""
+    """The gain at frequency zero of an index that is a largest gain; nan for another, infinite where motions drift."""
     numbers = zip(design["parameter"].values.tolist(), design["parameter_value"].values.tolist(), strict=True)
     try:
         vehicle = study.design(layout)

@@ -23,7 +23,7 @@ from inerter.files.study.own_indices import OwnIndex
 from inerter.files.study.places import Place, element_at, place_of, with_numbers
 from inerter.indices.names import index_names
 from inerter.indices.question import Index
-from inerter.indices.registry import index_settings, make_index
+from inerter.indices.registry import INDICES, excitation_of, index_settings, make_index
 from inerter.methods.asking import Asked
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
@@ -110,7 +110,14 @@ class Study:
 
     def index(self, name: str) -> Index:
         """The index that the study calls so, as it asks it."""
-        return make_index(self.symbol(name), self.road, self.settings_of(name))
+        own = self.own_indices.get(name)
+        given = {**self.settings_of(name), **own.made(self.road)} if own else self.settings_of(name)
+        return make_index(self.symbol(name), self.road, given)
+
+    def needs_road(self, name: str) -> bool:
+        """Whether that index is asked on the road of the study."""
+        own = self.own_indices.get(name)
+        return own.needs_road if own else excitation_of(self.symbol(name)) is not None
 
     def asked(self, name: str, layout: str) -> Asked:
         """What is asked of a layout for that index: it over the conditions, at its quantile if there is one."""
@@ -149,9 +156,10 @@ class Study:
         return index.unit or index.question(self.design(next(iter(self.layouts))).mechanism()).unit
 
     def settings_of(self, name: str) -> dict[str, Any]:
-        """The settings of that index by their keys: its own, else those of the study; others are among them."""
-        own = self.own_indices.get(name)
-        return {**self.settings, **own.settings} if own else self.settings
+        """The settings of that index by their keys: its own, else those of the study."""
+        own, keys = self.own_indices.get(name), {field.key for field in fields_of(INDICES[self.symbol(name)])}
+        shared = {key: value for key, value in self.settings.items() if key in keys}
+        return {**shared, **own.settings} if own else shared
 
     def method(self, name: str, threads: int = 1) -> Method:
         """The method of that name as the study asks it; one that simulates shares its roads over `threads`, which

@@ -12,6 +12,7 @@ import xarray as xr
 from inerter.files.study.cases import cases
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
+from inerter.units import headed
 from inerter.writing import lines_of_text
 
 _AT_ONCE = 10_000  # designs that are made plain numbers together
@@ -30,16 +31,16 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
     units = zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True)
     return [
         *("layout", "index", "method"),
-        *(f"{sweep.label} [{sweep.unit}]" for sweep in study.sweeps),
+        *(headed(sweep.label, sweep.unit) for sweep in study.sweeps),
         *("value", "unit", "improvement_percent", "standard_error", "status"),
         *(f"{name}_percent" if name in PERCENT else name for name in _more(study)),
-        *(f"{name} [{unit}]" for name, unit in parameters),
+        *(headed(name, unit) for name, unit in parameters),
         *("at_bound", "starts", "agreed"),
-        *(f"{name} of this design [{unit}]" for name, unit in units),
+        *(headed(f"{name} of this design", unit) for name, unit in units),
         *(
             text
             for limit in study.limits
-            for text in (f"{limit.words} [{limit.unit}]", f"cost of {limit.words}_percent")
+            for text in (headed(limit.words, limit.unit), f"cost of {limit.words}_percent")
         ),
     ]
 

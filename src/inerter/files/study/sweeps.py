@@ -14,7 +14,8 @@ from inerter.files.common.entries import MOST_POINTS, quantity_text
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.conditions import StudyCondition, following, what_of
-from inerter.files.study.places import Number, Place, element_at, number_at, place_of, places, with_numbers
+from inerter.files.study.number import Number
+from inerter.files.study.places import Place, element_at, number_at, place_of, places, with_numbers
 from inerter.files.study.shape import SweepRange
 from inerter.files.study.study import Study, Sweep, elements_used
 from inerter.networks.elements import Free, Tied

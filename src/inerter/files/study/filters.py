@@ -1,0 +1,75 @@
+"""A filter in a study file: the coefficients of its transfer function."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
+
+from inerter.checks import is_number
+from inerter.files.common.problem import EntryError
+from inerter.files.common.schema import checked
+from inerter.files.common.tables import Shape
+from inerter.systems.filters import Filter
+from inerter.units import shown
+
+
+def _coefficients(value: Any) -> tuple[float, ...]:
+    if not isinstance(value, list) or not value or not all(map(is_number, value)):
+        raise EntryError(
+            got=shown(value) if not isinstance(value, list) or value else "an empty list",
+            expected="a list of numbers without quotes, the highest power of s first, such as [1.0, 0.5]",
+        )
+    return tuple(map(float, value))
+
+
+_COEFFICIENTS = checked(_coefficients, lambda: {"type": "array", "items": {"type": "number"}, "minItems": 1})
+
+
+class FilterTable(Shape):
+    """A transfer function in s, s in rad/s."""
+
+    numerator: Annotated[tuple[float, ...], _COEFFICIENTS] = Field(
+        description="Coefficients of s, the highest power first.", examples=["numerator = [1.0, 0.0]"]
+    )
+    denominator: Annotated[tuple[float, ...], _COEFFICIENTS] = Field(
+        description="Coefficients of s, the highest power first; all poles are stable.",
+        examples=["denominator = [1.0, 0.5]"],
+    )
+
+
+def _filter(table: FilterTable) -> Filter:
+    return Filter(table.numerator, table.denominator)  # which says what is wrong with it
+
+
+FILTER: Any = Annotated[FilterTable, AfterValidator(_filter)]
+
+
+def filter_entry(value: Filter) -> dict[str, list[float]]:
+    """How a file says a filter."""
+    return {name: [float(c) for c in getattr(value, name)] for name in FilterTable.model_fields}
+
+
+def in_s(value: Filter) -> str:
+    """A filter as it is read.
+
+    >>> in_s(Filter([-1.0, 2.0], [1.0, 0.5, 2.5])), in_s(Filter([3.0], [1.0, 3.0]))
+    ('(-s + 2) / (s^2 + 0.5 s + 2.5)', '3 / (s + 3)')
+    """
+    top, bottom = (_polynomial([float(c) for c in part]) for part in (value.numerator, value.denominator))
+    return f"{_bracketed(top)} / {_bracketed(bottom)}"
+
+
+def _polynomial(coefficients: list[float]) -> str:
+    """A sum of powers of s, the highest first."""
+    text = ""
+    for power, c in zip(reversed(range(len(coefficients))), coefficients, strict=True):
+        s = ("", "s")[power] if power < 2 else f"s^{power}"
+        size = "" if s and abs(c) == 1.0 else f"{abs(c):.6g}"
+        sign = "-" if c < 0.0 else "+"
+        text += f" {sign} {' '.join(filter(None, (size, s)))}" if c else ""
+    return text.removeprefix(" + ") if text.startswith(" + ") else f"-{text.removeprefix(' - ')}"
+
+
+def _bracketed(text: str) -> str:
+    return f"({text})" if " " in text else text

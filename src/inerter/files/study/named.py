@@ -1,0 +1,82 @@
+"""What is wrong with names that settings of indices have, and with units that follow from what they name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from inerter.errors import InerterError
+from inerter.files.common.problem import Problem, at
+from inerter.files.common.suggest import nearest, some
+from inerter.files.study.excitations import Named, Sized
+from inerter.files.study.study import Study
+from inerter.indices.question import Question
+from inerter.systems.graph import full_graph
+from inerter.systems.outputs import check_bounded, input_names, input_unit, main_outputs, outputs, velocity_of
+from inerter.units import are_alike, shown
+from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
+
+
+def name_problems(study: Study) -> Iterator[Problem]:
+    """One line for each name that no layout has, and for each unit that is another than its input has."""
+    for name, own in study.own_indices.items():
+        formed = own.formed
+        named = [((key, *one.keys), one) for key, form, value in formed for one in form.named(value)]
+        sized = [((key, *one.keys), one) for key, form, value in formed for one in form.sized(value)]
+        asked = _asked(study, name) if named or sized else []
+        if not asked:
+            continue
+        for keys, one in named:
+            problems = [_of_name(("indices", name, *keys), one, *case) for case in asked]
+            if None not in problems:
+                yield from filter(None, problems[:1])
+        for keys, size in sized:
+            yield from _of_size(("indices", name, *keys), size, *asked[0])
+
+
+def _asked(study: Study, name: str) -> list[tuple[Mechanism, Question]]:
+    """What an index asks of each layout; nothing where that cannot be told, which is reported with the layout."""
+    try:
+        mechanisms = [study.design(layout).mechanism() for layout in study.layouts]
+        return [(mechanism, study.index(name).question(mechanism)) for mechanism in mechanisms]
+    except InerterError:
+        return []
+
+
+def _of_name(place: Sequence[str], named: Named, mechanism: Mechanism, question: Question) -> Problem | None:
+    """What is wrong with a name where the index is asked of a mechanism."""
+    driven = question.drive.driven(mechanism)
+    forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
+    told: Sequence[str]
+    if named.what == "output":
+        known = told = list(outputs(driven, full_graph(driven)))
+        told = main_outputs(driven)
+    else:
+        moved = [velocity_of(road.name) for road in mechanism.roads]
+        known = told = forces if named.what == "force" else [*input_names(mechanism), *moved]
+    if named.name in known:
+        return None
+    try:
+        check_bounded(mechanism, driven, named.name)
+    except InerterError as error:
+        return at(place, str(error))
+    close = nearest(named.name, known)
+    fault = f"{'an' if named.what[0] in 'aeiou' else 'a'} {named.what} that this vehicle does not have"
+    others = "" if close else f"one of {some(told)}" if told else "another excitation, as it has none"
+    return at(place, got=shown(named.name), fault=fault, expected=others, hint=close)
+
+
+def _of_size(place: Sequence[str], size: Sized, mechanism: Mechanism, question: Question) -> Iterator[Problem]:
+    """Why the unit of a size is none of the input that it is of."""
+    (arrival, *_) = _inputs(mechanism, question) or ("",)
+    unit = input_unit(mechanism, arrival)
+    if unit and not are_alike(size.unit, size.expected(unit)):
+        fault = f"{arrival} is in {unit}"
+        yield at(place, got=f"a size in {size.unit}", fault=fault, expected=f"one in {size.expected(unit)}")
+
+
+def _inputs(mechanism: Mechanism, question: Question) -> list[str]:
+    """The inputs that are reached, as they are asked for."""
+    try:
+        return [arrival.source for arrival in question.arrivals(mechanism)]
+    except InerterError:  # no such input, which is told with its name
+        return []

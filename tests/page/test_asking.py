@@ -272,6 +272,10 @@ def test_results_of_a_simulation_are_dropped(visitor: Visitor, tmp_path: Path) -
     assert page.locator(".problem").count() == 0
 
 
+BEGIN = """() => {
+  document.activeElement.blur();
+  for (const each of document.querySelectorAll("[data-walked]")) delete each.dataset.walked;
+}"""
 WALK = """() => {
   const active = document.activeElement;
   const drawn = active.matches(".element, .point");
@@ -292,23 +296,23 @@ TABBABLE = """() => [
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("tab", ["response", "history", "compare", "tolerance", "work", "rig"])
 @pytest.mark.parametrize("backwards", [False, True])
-def test_the_keyboard_reaches_all_and_is_nowhere_trapped(tab: str, backwards: bool, visitor: Visitor) -> None:
+def test_the_keyboard_reaches_all_and_is_nowhere_trapped(backwards: bool, visitor: Visitor) -> None:
     page = visitor.page
-    page.click(f"#tab-{tab}")
-    visitor.settled()
-    visitor.drawn()
-    page.evaluate("() => document.activeElement.blur()")
-    page.mouse.click(2, 400)
-    steps = []
-    for _ in range(200):
-        page.keyboard.press("Shift+Tab" if backwards else "Tab")
-        steps.append(page.evaluate(WALK))
-        if not page.evaluate(TABBABLE):
-            break
-    assert page.evaluate(TABBABLE) == []
-    assert [step["what"] for step in steps if step["what"] and not (step["seen"] and step["inside"])] == []
+    for tab in ("response", "history", "compare", "tolerance", "work", "rig"):
+        page.click(f"#tab-{tab}")
+        visitor.settled()
+        visitor.drawn()
+        page.evaluate(BEGIN)
+        page.mouse.click(2, 400)
+        steps = []
+        for _ in range(200):
+            page.keyboard.press("Shift+Tab" if backwards else "Tab")
+            steps.append(page.evaluate(WALK))
+            if not page.evaluate(TABBABLE):
+                break
+        assert page.evaluate(TABBABLE) == [], tab
+        assert [step["what"] for step in steps if step["what"] and not (step["seen"] and step["inside"])] == [], tab
 
 
 @pytest.mark.campaign

@@ -18,6 +18,7 @@ from study_text import PAPER_CAR, study_text
 AXE = pytest.importorskip("axe_playwright_python.sync_playwright")
 SERIOUS = ("serious", "critical")
 SIZES = {"wide": (1280, 800), "narrow": (420, 800), "projector": (1920, 1080)}
+THEMES = {"light": SIZES, "dark": {"wide": SIZES["wide"]}}  # whose layout is the same
 TABS = ("response", "history", "compare", "tolerance", "work", "rig")
 DOCUMENTED = {("quarter-car", "wide", "light", "response"), ("ball_screw", "wide", "dark", "history")}
 INDICES = 'indices = ["J1", "J3", "J5"]'
@@ -83,9 +84,11 @@ def _picture(visitor: Visitor, folder: Path, what: tuple[str, ...]) -> None:
             visitor.page.screenshot(path=Path(wanted) / f"workbench-{what[-1]}.png", full_page=True)
 
 
-def _looked_at(visitor: Visitor, tabs: tuple[str, ...]) -> Iterator[tuple[str, str, tuple[list[str], int]]]:
+def _looked_at(
+    visitor: Visitor, sizes: dict[str, tuple[int, int]], tabs: tuple[str, ...]
+) -> Iterator[tuple[str, str, tuple[list[str], int]]]:
     """Each size and tab with what is wrong; of the tabs after the first, in what turning to them changes."""
-    for size, (width, height) in SIZES.items():
+    for size, (width, height) in sizes.items():
         visitor.page.set_viewport_size({"width": width, "height": height})
         for tab in tabs:
             if tab != "none":
@@ -101,7 +104,7 @@ def test_looks(name: str, visitors: Any, serve: Callable[..., Served], served: S
     make = STUDIES[name]
     here = served if make else serve(None)
     faults: dict[tuple[str, ...], Any] = {}
-    for theme in ("light", "dark"):
+    for theme, sizes in THEMES.items():
         visitor = visitors(here, color_scheme=theme).visit()
         page = visitor.page
         if make:
@@ -111,7 +114,7 @@ def test_looks(name: str, visitors: Any, serve: Callable[..., Served], served: S
             page.wait_for_selector(".notice")
             page.get_by_role("button", name="Close the message").click()
             visitor.settled()
-        for size, tab, found in _looked_at(visitor, TABS if make else ("none",)):
+        for size, tab, found in _looked_at(visitor, sizes, TABS if make else ("none",)):
             what = (name, size, theme, tab)
             _picture(visitor, tmp_path, what)
             if found != ([], 0):

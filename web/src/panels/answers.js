@@ -4,7 +4,7 @@ import { kindOf } from "../kinds.js";
 import { isQuick, judging, methodsOf, quickMethod } from "../methods.js";
 import { baselineOf, designOf } from "../questions.js";
 import { namesIn } from "../state/document.js";
-import { estimated, shown } from "../state/scale.js";
+import { estimated, printed, shown, withUnit } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { AskedPanel } from "./asked.js";
@@ -64,7 +64,7 @@ function Indices({ value, layout, baseline, stale }) {
     <tbody>${design.results.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${result.title} [${result.unit}]</span> <${Notes} result=${result} /></th>
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}</span> <${Notes} result=${result} /></th>
         <td class="number" data-index=${result.index} data-value=${result.value}><${Measured} result=${result} /></td>
         ${!alone && html`<td class="number">${reference ? html`<${Measured} result=${reference} />` : "–"}</td><td class=${`number ${better(result)}`}><${Improvement} result=${result} />${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
       </tr>`;
@@ -177,7 +177,7 @@ function seeing(state) {
 function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
   if (typeof value !== "number") return message || "There is no such value.";
   const error = standard_error ? ` ± ${shown(standard_error, 2)}` : "";
-  return `At ${parameter} = ${shown(value)}${error} ${unit}, ${layout} is as good as ${baseline}.${status === "ok" ? "" : ` ${message}`}`;
+  return `At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.${status === "ok" ? "" : ` ${message}`}`;
 }
 
 /** What is wrong with the study at places that have no field on the page. @param {{state: State}} props */

@@ -1,5 +1,6 @@
 // Two to four designs side by side: layouts of the study, and designs that were kept.
 
+import { withUnit } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { choicesOf, comparedOf } from "../questions.js";
 import { textsOf } from "../state/document.js";
@@ -47,7 +48,7 @@ function Table({ state }) {
     <tbody>
       <tr><th scope="row">network</th>${columns.map((/** @type {any} */ { network }, /** @type {number} */ i) => html`<td key=${i}><code>${[...new Set(textsOf(network))].join("; ")}</code></td>`)}</tr>
       ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>${columns.map((/** @type {any} */ { numbers }, /** @type {number} */ i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
-      ${columns[0].results.map((/** @type {any} */ first, /** @type {number} */ row) => html`<tr key=${first.index}><th scope="row"><b>${first.index}</b> <span class="quiet">${first.title} [${first.unit}]</span></th>
+      ${columns[0].results.map((/** @type {any} */ first, /** @type {number} */ row) => html`<tr key=${first.index}><th scope="row"><b>${first.index}</b> <span class="quiet">${withUnit(first.title, first.unit)}</span></th>
         ${columns.map((/** @type {any} */ { results }, /** @type {number} */ i) => html`<${Value} key=${i} result=${results[row]} first=${i === 0} />`)}</tr>`)}
     </tbody>
   </table></div>

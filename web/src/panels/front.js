@@ -1,7 +1,7 @@
 // A trade-off front: its points in a picture, each of which can be taken into the editor.
 
 import { html } from "../parts/html.js";
-import { shown } from "../state/scale.js";
+import { shown, withUnit } from "../state/scale.js";
 import { takeOptima } from "../working.js";
 import { indicesOf } from "./answers.js";
 
@@ -35,8 +35,8 @@ export function FrontResult({ store, job }) {
   };
   return html`<svg class="front" viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} role="group" aria-label=${`${first} against ${second}`}>
       <path class="wire" d=${`M${EDGE} 16V${HEIGHT - EDGE}H${WIDTH - 16}`} />
-      <text x=${WIDTH / 2} y=${HEIGHT - 12} text-anchor="middle">${first} [${indices[0].unit}]: ${shown(across.from, 4)} to ${shown(across.to, 4)}</text>
-      <text x="16" y=${HEIGHT / 2} text-anchor="middle" transform=${`rotate(-90 16 ${HEIGHT / 2})`}>${second} [${indices[1].unit}]: ${shown(up.from, 4)} to ${shown(up.to, 4)}</text>
+      <text x=${WIDTH / 2} y=${HEIGHT - 12} text-anchor="middle">${withUnit(first, indices[0].unit)}: ${shown(across.from, 4)} to ${shown(across.to, 4)}</text>
+      <text x="16" y=${HEIGHT / 2} text-anchor="middle" transform=${`rotate(-90 16 ${HEIGHT / 2})`}>${withUnit(second, indices[1].unit)}: ${shown(up.from, 4)} to ${shown(up.to, 4)}</text>
       ${points.map((/** @type {any} */ each) => {
         const label = `${each.layout}${each.knee ? ", the knee" : ""}: ${first} ${shown(each.x)}, ${second} ${shown(each.y)}; take it into the editor`;
         return html`<circle class="point" style=${{ fill: `var(--curve-${(each.number % 6) + 1})` }} cx=${across.at(each.x)} cy=${up.at(each.y)} r=${each.knee ? 8 : 5} tabindex="0" role="button" aria-label=${label}

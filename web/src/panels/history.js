@@ -4,7 +4,7 @@ import { Plot } from "../plot.js";
 import { Field } from "../parts/field.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { Motion } from "./motion.js";
-import { shown } from "../state/scale.js";
+import { shown, withUnit } from "../state/scale.js";
 
 const SHADED = ["stick", "open"];
 
@@ -41,7 +41,7 @@ export function HistoryPanel({ store }) {
     ${sentence && html`<p class="problem">${faulty ? "These curves are those of before: see what is wrong with the study." : sentence}</p>`}
     ${value?.message && value.status !== "ok" && html`<p class="problem" role="alert">${value.message}</p>`}
     ${signal &&
-    html`<${Plot} x=${signal.time} curves=${curves} bands=${bands} xLabel="time [s]" yLabel=${`${signal.label} [${signal.unit}]`} title=${`${signal.label} over time`} theme=${state.view.theme} />
+    html`<${Plot} x=${signal.time} curves=${curves} bands=${bands} xLabel="time [s]" yLabel=${withUnit(signal.label, signal.unit)} title=${`${signal.label} over time`} theme=${state.view.theme} />
       <p class="quiet">r.m.s. ${shown(value.rms?.[signal.name])} ${signal.unit}, peak ${shown(value.peaks?.[signal.name])} ${signal.unit}.
         ${bands.length > 0 && html` <span class="key stick"></span> friction sticks, <span class="key open"></span> a gap is open.`}</p>`}
     ${value?.motion && mechanism && isOf(value.motion, mechanism) && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}

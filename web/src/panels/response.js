@@ -1,4 +1,5 @@
 // Frequency responses of the strut (solid) and of the baseline (dashed).
+import { withUnit } from "../state/scale.js";
 import { Plot } from "../plot.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
@@ -18,7 +19,7 @@ export function ResponsePanel({ store }) {
   return html`<div>
     ${sentence && html`<p class="problem">${faulty ? "These curves are those of before: see what is wrong with the study." : sentence}</p>`}
     <div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(String(each))}>${each}</button>`)}</div>
-    ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]" yLabel=${`gain [${first.unit ?? ""}]`} log=${true} logY=${true} title=${`Frequency response of ${index}`} theme=${state.view.theme} />
+    ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]" yLabel=${withUnit("gain", first.unit)} log=${true} logY=${true} title=${`Frequency response of ${index}`} theme=${state.view.theme} />
       <p class="quiet">${first.title}: solid ${layout}, dashed the baseline.</p>`}
   </div>`;
 }

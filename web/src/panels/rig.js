@@ -3,7 +3,7 @@
 import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { shown } from "../state/scale.js";
+import { shown, withUnit } from "../state/scale.js";
 import { Files } from "./files.js";
 import { begin, stop, takeDevice } from "../working.js";
 
@@ -51,7 +51,7 @@ function RecordRow({ store, api, record }) {
       <button type="button" aria-label=${`Remove ${record.name}`} onClick=${() => forget(store, api, record.id)}>Remove</button></div>
     <ul>${(record.findings ?? []).map((/** @type {any} */ { severity, about, sentence }) => html`<li key=${`${about} ${sentence}`} class="finding" data-severity=${severity}>${sentence}</li>`)}
       ${(record.notes ?? []).map((/** @type {string} */ note) => html`<li key=${note} class="quiet">${note}</li>`)}</ul>
-    ${channel && html`<${Plot} x=${channel.time} curves=${curves} xLabel="time [s]" yLabel=${`${channel.name} [${channel.unit}]`} title=${`${channel.name} of ${record.name} over time`} theme=${store.get().view.theme} />`}</li>`;
+    ${channel && html`<${Plot} x=${channel.time} curves=${curves} xLabel="time [s]" yLabel=${withUnit(channel.name, channel.unit)} title=${`${channel.name} of ${record.name} over time`} theme=${store.get().view.theme} />`}</li>`;
 }
 
 /** @param {Store} store @param {Api} api @param {string} id */

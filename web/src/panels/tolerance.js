@@ -4,7 +4,7 @@ import { isQuick, judging } from "../methods.js";
 import { designOf } from "../questions.js";
 import { html, useState } from "../parts/html.js";
 import { namesIn } from "../state/document.js";
-import { shown } from "../state/scale.js";
+import { shown, withUnit } from "../state/scale.js";
 import { indicesOf, percent } from "./answers.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -74,7 +74,7 @@ function Scattered({ value }) {
   return html`${value.status !== "ok" && value.message && html`<p class="problem" role="alert">${value.message}</p>`}
     <div class="scattered">
       <div class="scroll" tabindex="0" role="region" aria-label="Distribution"><table data-scatter=${value.index}>
-        <thead><tr><th scope="col">${value.index} [${value.unit}], ${value.method.replaceAll("-", " ")}</th><th scope="col">value</th></tr></thead>
+        <thead><tr><th scope="col">${withUnit(value.index, value.unit)}, ${value.method.replaceAll("-", " ")}</th><th scope="col">value</th></tr></thead>
         <tbody>${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th><td class="number" data-value=${number}>${shown(number)}</td></tr>`)}</tbody>
       </table></div>
       <${Histogram} histogram=${value.histogram} title=${`Distribution of ${value.index}`} />

@@ -5,7 +5,7 @@ import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody } from "./front.js";
 import { Plot } from "../plot.js";
 import { html, useState } from "../parts/html.js";
-import { shown, takenApart, quantity } from "../state/scale.js";
+import { quantity, shown, takenApart, withUnit } from "../state/scale.js";
 import { begin, stop, takeOptima } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -144,7 +144,7 @@ function SweepResult({ store, api, job }) {
     values: x.map((at) => shownRows.find((row) => row.layout === layout && swept(row) === at)?.value ?? null),
   }));
   return html`<div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(each)}>${each}</button>`)}</div>
-    <${Plot} x=${x} curves=${curves} xLabel="swept value, in SI" yLabel=${`${index} [${shownRows[0]?.unit ?? ""}]`} title=${`${index} over the swept value`} theme=${store.get().view.theme} />
+    <${Plot} x=${x} curves=${curves} xLabel="swept value, in SI" yLabel=${withUnit(index, shownRows[0]?.unit)} title=${`${index} over the swept value`} theme=${store.get().view.theme} />
     <${Files} api=${api} job=${job} />`;
 }
 

@@ -64,3 +64,11 @@ const minus = (number) => String(number).replace("-", "−");
 
 /** @param {number} power */
 const superscript = (power) => [...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("");
+
+const RAISED = /** @type {{[digit: string]: string}} */ ({ "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" });
+
+/** A unit as a person writes it. @param {string} unit */
+export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => [...power].map((digit) => RAISED[digit]).join(""));
+
+/** What a number is, with its unit in brackets if it has one. @param {string} what @param {string | null | undefined} unit */
+export const withUnit = (what, unit) => (unit ? `${what} [${printed(unit)}]` : what);

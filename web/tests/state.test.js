@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { after, empty, namesIn, textOf } from "../src/state/document.js";
-import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated } from "../src/state/scale.js";
+import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated, withUnit } from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited, limitsIn } from "../src/panels/asked.js";
 import { judging, quickMethod } from "../src/methods.js";
@@ -249,4 +249,10 @@ test("methods are told apart by their rows, whatever they are called", () => {
   const judged = (/** @type {string} */ method) => judging({ ...state, view: { ...state.view, method } })?.name;
   assert.deepEqual([quickMethod(state)?.name, judged(""), judged("first"), judged("of another version")], ["quick", "quick", "first", "quick"]);
   assert.equal(quickMethod(initial()), undefined);
+});
+
+test("a unit stands in brackets as a person writes it, and a ratio has none", () => {
+  assert.equal(withUnit("ride comfort", "m/s^2"), "ride comfort [m/s²]");
+  assert.equal(withUnit("roughness", "m^3/cycle"), "roughness [m³/cycle]");
+  assert.equal(withUnit("load coefficient", ""), "load coefficient");
 });

@@ -24,7 +24,7 @@ def sampled(
     members = list(members)
     assert all(member in members for member in [*always, *seldom, *often])
     others = [member for member in members if member not in [*always, *seldom, *often]]
-    spread = others if kept is None else others[:: -(-len(others) // kept)]
+    spread = others if kept is None else [others[i * len(others) // kept] for i in range(kept)]
     campaign = [*often, *spread]
     return [
         pytest.param(

@@ -211,7 +211,7 @@ def test_processes_that_die_cost_what_they_did(tmp_path: Path) -> None:
         with httpx.Client(base_url=base, headers={"Authorization": f"Bearer {token}"}, timeout=60.0) as client:
             wanted = client.post("/api/panel/indices", json=body).json()["designs"]
             client.post("/api/panel/optimise", json=body).raise_for_status()
-            for _ in range(6):
+            for _ in range(3):
                 work = client.post("/api/work", json={"kind": "run", "study": DOCUMENT}).json()["id"]
                 time.sleep(float(random.uniform(0.0, 1.0)))
                 os.kill(int(random.choice(children_of(process))), signal.SIGKILL)

@@ -123,7 +123,15 @@ BRIEF = [
 ]
 
 
-SELDOM = [WHOLE, FITTED, SLOW]  # whose parts, or what is much the same, is a campaign
+SELDOM = [  # those that take long, and of which a part, or what is much the same, is a campaign
+    WHOLE,
+    "inerter reproduce wang-su-2008 --only linear",
+    "inerter reproduce wang-su-2008 --only rig",
+    FITTED,
+    SLOW,
+    "inerter identify bench.csv --model ball-screw",
+    'inerter identify fit.csv --model choose --force-bandwidth "300 Hz" --trim 0:2',
+]
 
 
 def test_every_command_of_the_pages_is_run() -> None:
@@ -133,12 +141,7 @@ def test_every_command_of_the_pages_is_run() -> None:
 
 
 @pytest.mark.timeout(1200)
-@pytest.mark.parametrize(
-    "command",
-    [
-        *sampled(COMMANDS, BRIEF, SELDOM),
-    ],
-)
+@pytest.mark.parametrize("command", sampled(COMMANDS, BRIEF, SELDOM))
 def test_a_command_does_what_the_page_shows(command: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     COMMANDS[command](folder)
     capsys.readouterr()
@@ -152,7 +155,7 @@ def test_a_command_does_what_the_page_shows(command: str, folder: Path, capsys: 
                 assert rounds_to(float(found), expected, 2.0), f"{page}: {expected}, now {found}"
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_what_a_slow_record_tells(folder: Path) -> None:
     """The friction to so many per cent, of the inertance its order of magnitude only."""
     words = r"identifies\s+f to ([\d.]+) %, but of b only the order of magnitude"

@@ -83,7 +83,10 @@ def without_words(data: Any) -> Any:
     return [without_words(value) for value in data] if isinstance(data, list) else data
 
 
-@pytest.fixture(scope="module", params=sampled(["late", "late-few", "sound", "saturated"], ["late-few"], ["late"]))
+RECORDS = ["late", "late-few", "sound", "saturated", "saturated-few"]
+
+
+@pytest.fixture(scope="module", params=sampled(RECORDS, seldom=["late", "saturated"]))
 def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A record: of sensors without fault, of a late displacement, or of a load cell at its limit.
 
@@ -93,14 +96,13 @@ def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     sensors = Sensors(cell=300.0, displacement_late=4e-3 if request.param.startswith("late") else 0.0)
     device = Device(b=113.0, f=10.0, ks=1e6, cs=3200.0)
     time, displacement, force = measured(device, Tones((1e-3, 3e-4), (4.0, 9.0), (0.0, 1.0)), sensors, 1.0, 1)
-    if request.param == "saturated":
+    if request.param.startswith("saturated"):
         force = np.clip(force, -70.0, 70.0)
     write_record(it.Record(time, displacement, force), folder / "bench.csv")
     (folder / "rig.toml").write_text(CONFIG, encoding="utf-8")
     return folder
 
 
-@pytest.mark.campaign
 def test_an_identification_is_the_same_with_tokens_for_words(bench: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ran = []
     for name in ("sentences", "tokens"):

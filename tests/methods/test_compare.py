@@ -53,7 +53,7 @@ def half_car(friction):
 HELD = ExpectedValue(realisations=ROADS, seed=11, conventions="paper2008")  # quick, and its scatter is the same
 
 
-@pytest.fixture(scope="module", params=sampled([100, 200], ()))
+@pytest.fixture(scope="module", params=sampled([100, 200], seldom=[200]))
 def pools(request):
     """J1 and J3 of S2 and S3 with 100 N on 500 roads, (designs, roads, indices), and J3's first-order changes there.
 

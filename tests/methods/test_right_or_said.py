@@ -6,9 +6,11 @@ Infinite means infinite, and zero means zero.
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from random_mechanisms import FAMILIES, mechanisms
 from strategies import paper_quarter_car
 
@@ -76,10 +78,10 @@ def test_a_sample_of_each_family(family, extremes):
     assert_right(tally(family, seed=1, count=8, extremes=extremes))
 
 
-@pytest.mark.campaign
 @pytest.mark.timeout(3600)
-@pytest.mark.parametrize("extremes", [1.0, 1e2, 1e4])
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize(
+    ("family", "extremes"), sampled(product(FAMILIES, [1.0, 1e2, 1e4]), seldom=list(product(FAMILIES, [1.0, 1e2])))
+)
 def test_many_of_each_family(family, extremes):
     assert_right(tally(family, seed=2, count=40, extremes=extremes))
 
@@ -150,10 +152,10 @@ def test_many_designs_at_once():
     check_many(seed=3, count=12, designs=8)
 
 
-@pytest.mark.campaign
 @pytest.mark.timeout(3600)
-def test_very_many_designs_at_once():
-    check_many(seed=4, count=150, designs=20)
+@pytest.mark.parametrize("count", sampled([20, 150], seldom=[150]))
+def test_very_many_designs_at_once(count):
+    check_many(seed=4, count=count, designs=20)
 
 
 def check_gradients(seed: int, count: int) -> None:
@@ -181,10 +183,10 @@ def test_gradients():
     check_gradients(seed=5, count=10)
 
 
-@pytest.mark.campaign
 @pytest.mark.timeout(3600)
-def test_many_gradients():
-    check_gradients(seed=6, count=300)
+@pytest.mark.parametrize("count", sampled([40, 300], seldom=[300]))
+def test_many_gradients(count):
+    check_gradients(seed=6, count=count)
 
 
 def check_searches(seed: int, count: int) -> None:
@@ -203,7 +205,7 @@ def test_searches():
     check_searches(seed=7, count=4)
 
 
-@pytest.mark.campaign
 @pytest.mark.timeout(3600)
-def test_many_searches():
-    check_searches(seed=8, count=60)
+@pytest.mark.parametrize("count", sampled([12, 60], seldom=[60]))
+def test_many_searches(count):
+    check_searches(seed=8, count=count)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import sampled
 
 import inerter as it
 from inerter.methods.compiled_norm import CompiledQuestion
@@ -59,12 +60,11 @@ def test_halves_have_the_norms_of_the_whole(seed):
     assert sure or seed % 3 == 2
 
 
-@pytest.mark.campaign
-def test_halves_of_many_cars():
-    sure = sum(check(seed)[2] for seed in range(3, 90) if seed % 3 < 2)
-    assert sure >= 50
-    for seed in range(5, 60, 3):
-        check(seed)
+@pytest.mark.parametrize("chunk", sampled(range(5), kept=1))
+def test_halves_of_many_cars(chunk):
+    seeds = range(3 + 18 * chunk, 21 + 18 * chunk)
+    sure = [check(seed)[2] for seed in seeds]
+    assert sum(sure[i] for i, seed in enumerate(seeds) if seed % 3 < 2) >= 9  # of twelve
 
 
 def test_slopes_of_halves_are_those_of_the_whole():

@@ -72,7 +72,7 @@ def test_a_row_of_the_approximated_linear_model() -> None:
     assert abs(row.improvement - float(row.row.improvement)) < 1.5
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(1200)
 def test_how_far_method_1_is_from_the_printed_table() -> None:
     """As docs/methods.md tells."""

@@ -94,7 +94,7 @@ def test_two_parts_are_the_whole(chunk: int) -> None:
     assert sum(f is not None for f in found.values()) >= 6
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), kept=10))
+@pytest.mark.parametrize("chunk", sampled(range(20), kept=4))
 def test_two_parts_are_the_whole_in_many_members(chunk: int) -> None:
     found = {seed: joined(seed) for seed in range(1000 * chunk, 1000 * chunk + 11)}
     print("worst", max(f for f in found.values() if f is not None))

@@ -103,7 +103,7 @@ def test_a_rig_at_rest_is_the_same_in_every_frame(chunk: int) -> None:
     assert sum(f is not None for f in found) > 8
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), kept=10))
+@pytest.mark.parametrize("chunk", sampled(range(20), kept=4))
 def test_two_thousand_rigs_at_rest_are_the_same_in_every_frame(chunk: int) -> None:
     found = [frames(seed) for seed in range(10_000 * chunk, 10_000 * chunk + 250)]
     assert max(f for f in found if f is not None) < CLOSE

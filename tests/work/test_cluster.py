@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,6 @@ import inerter as it
 from inerter.cli.cluster import connected
 from inerter.cli.main import call
 from inerter.errors import WorkError
-from inerter.files.rig.loading import load_rig
 from inerter.work.pool import Pool
 from inerter.work.processes import Processes
 
@@ -211,14 +209,12 @@ def test_values_an_identification_and_a_table_are_the_same(tmp_path: Path, there
     k, c, b = it.Spring(120e3), it.Damper(4000.0), it.Inerter(366.0)
     strut = k | c - (b | it.Friction(30.0))
     car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
-    comfort, roads = it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.ExpectedValue(realisations=64)
-    record = replace(load_rig(EXAMPLES / "rig_fit.toml"), duration=0.6).run()
+    comfort, roads = it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.ExpectedValue(realisations=16)
+    record = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=1).run(it.cosine(1e-3, 3.0), 1.0)
     with connected(there.address, None, {}) as workers, Processes(2) as processes:
         there.start_worker()
         values = [it.evaluate(car, comfort, roads, executor=executor) for executor in (None, processes, workers)]
-        fits = [
-            it.identify(record, "ball-screw", starts=8, executor=executor) for executor in (None, processes, workers)
-        ]
+        fits = [it.identify(record, "friction", starts=8, executor=executor) for executor in (None, processes, workers)]
     assert values[0] == values[1] == values[2]
     assert repr(fits[0].parameters) == repr(fits[1].parameters) == repr(fits[2].parameters)
     assert fits[0].simulations == fits[1].simulations == fits[2].simulations

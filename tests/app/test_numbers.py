@@ -264,12 +264,15 @@ def test_a_design_of_another_study_is_judged_on_the_road_of_this_one(client: Tes
 
 def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient) -> None:
     body = {"kind": "front", "study": DOCUMENT, "layouts": ["S3"], "points": 4, "wait": 30}
-    told = client.post("/api/work", json=body).json()["result"]
-    study = study_from(DOCUMENT)
+    work = client.post("/api/work", json=body).json()
+    told, study = work["result"], study_from(DOCUMENT)
     found = it.pareto(study.design("S3"), [study.index("J1"), study.index("J3")], it.Norm(), points=4, seed=0)
     (front,) = told["fronts"]
     assert [list(point["values"].values()) for point in front["points"]] == found.values.tolist()
     assert front["knee"] == found.knee
+    table = client.get(f"/api/work/{work['id']}/files/fronts.csv").text
+    rows = [[row["J1 [m/s^2]"], row["J3 [N]"]] for row in csv.DictReader(io.StringIO(table))]
+    assert [[float(value) for value in row] for row in rows] == found.values.tolist()
     point = front["points"][front["knee"]]
     answer = client.post(
         "/api/panel/indices", json={"study": DOCUMENT, "layouts": ["S3"], "values": {"S3": point["texts"]}}
@@ -288,6 +291,10 @@ def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
     assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total)
     assert told["quantiles"]["0.95"] == found.quantile(0.95)
     assert sum(told["histogram"]["counts"]) == found.values.size
+    table = client.post("/api/export/csv", json={"panel": "tolerance", "request": body}).text
+    rows = dict(list(csv.reader(io.StringIO(table)))[1:])
+    assert (float(rows["mean"]), float(rows["quantile 0.95"])) == (found.mean, found.quantile(0.95))
+    assert float(rows["variance from c, in all"]) == found.total["c"]
 
 
 def test_tables_read_back_as_the_same(client: TestClient) -> None:

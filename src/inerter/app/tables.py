@@ -71,9 +71,21 @@ def _history(answer: Mapping[str, Any]) -> Rows:
             yield [signal["name"], time, value, signal["unit"]]
 
 
+def _tolerance(answer: Mapping[str, Any]) -> Rows:
+    """What the distribution is, then what each value that scatters makes of its variance, by itself and in all."""
+    yield [headed(answer["index"], answer["unit"]), "value"]
+    for name in ("nominal", "mean", "standard_deviation"):
+        yield [name, answer[name]]
+    yield from ([f"quantile {share}", value] for share, value in answer["quantiles"].items())
+    yield ["worst", answer["worst"]]
+    yield from ([f"variance from {name}, by itself", share] for name, share in answer["main"].items())
+    yield from ([f"variance from {name}, in all", share] for name, share in answer["total"].items())
+
+
 _TABLES: dict[str, Callable[[Mapping[str, Any]], Rows]] = {
     "indices": _indices,
     "compare": _indices,
     "response": _response,
     "history": _history,
+    "tolerance": _tolerance,
 }

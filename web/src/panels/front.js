@@ -4,6 +4,7 @@ import { html } from "../parts/html.js";
 import { shown, withUnit } from "../state/scale.js";
 import { takeOptima } from "../working.js";
 import { indicesOf } from "./answers.js";
+import { Files } from "./files.js";
 
 const [WIDTH, HEIGHT, EDGE] = [640, 300, 56];
 
@@ -19,8 +20,8 @@ export function FrontForm({ state }) {
 /** @param {import("../state/store.js").State} _ @param {FormData} form */
 export const frontBody = (_, form) => ({ indices: [form.get("first"), form.get("second")], points: Number(form.get("points")) });
 
-/** @param {{store: import("../state/store.js").Store, job: import("../state/store.js").Job}} props */
-export function FrontResult({ store, job }) {
+/** @param {{store: import("../state/store.js").Store, api: import("../api.js").Api, job: import("../state/store.js").Job}} props */
+export function FrontResult({ store, api, job }) {
   const { indices, fronts } = job.result;
   const [first, second] = indices.map((/** @type {any} */ { index }) => index);
   const points = fronts.flatMap((/** @type {any} */ front, /** @type {number} */ number) =>
@@ -43,7 +44,8 @@ export function FrontResult({ store, job }) {
           onClick=${() => take(each)} onKeyDown=${(/** @type {KeyboardEvent} */ event) => event.key === "Enter" && take(each)}><title>${label}</title></circle>`;
       })}
     </svg>
-    <p class="row quiet">${fronts.map((/** @type {any} */ front, /** @type {number} */ i) => html`<span key=${front.layout}><span class="swatch" style=${{ background: `var(--curve-${(i % 6) + 1})` }}></span> ${front.layout}${front.message ? `: ${front.message}` : ""}</span>`)} Click on a point to take it; the large ones are the knees.</p>`;
+    <p class="row quiet">${fronts.map((/** @type {any} */ front, /** @type {number} */ i) => html`<span key=${front.layout}><span class="swatch" style=${{ background: `var(--curve-${(i % 6) + 1})` }}></span> ${front.layout}${front.message ? `: ${front.message}` : ""}</span>`)} Click on a point to take it; the large ones are the knees.</p>
+    <${Files} api=${api} job=${job} />`;
 }
 
 /** @param {number[]} values @param {number} begin @param {number} end */

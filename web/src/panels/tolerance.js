@@ -3,6 +3,7 @@
 import { isQuick, judging } from "../methods.js";
 import { designOf } from "../questions.js";
 import { html, useState } from "../parts/html.js";
+import { download } from "../remembering.js";
 import { namesIn } from "../state/document.js";
 import { shown, withUnit } from "../state/scale.js";
 import { indicesOf, percent } from "./answers.js";
@@ -19,7 +20,7 @@ const [FEWEST, MOST] = [64, 1024]; // samples, a power of two
 export function TolerancePanel({ store, api }) {
   const state = store.get();
   const document = state.history.present;
-  const [found, setFound] = useState(/** @type {{of: string, value: any} | null} */ (null));
+  const [found, setFound] = useState(/** @type {{of: string, body: object, value: any} | null} */ (null));
   const [told, setTold] = useState("");
   const indices = indicesOf(state);
   const names = namesIn(document.study, document.layout);
@@ -32,7 +33,7 @@ export function TolerancePanel({ store, api }) {
     const body = { study: document.study, design: designOf(document), index: form.get("index"), spread, ...effortOf(state, Object.keys(spread).length) };
     setTold("Under way…");
     try {
-      setFound({ of, value: await api.post("panel/tolerance", { ...body, client: "page.tolerance", sequence: Date.now() }) });
+      setFound({ of, body, value: await api.post("panel/tolerance", { ...body, client: "page.tolerance", sequence: Date.now() }) });
       setTold("");
     } catch (error) {
       setTold(/** @type {Error} */ (error).message);
@@ -44,7 +45,9 @@ export function TolerancePanel({ store, api }) {
     <p role="status">${told}</p>
   </form>
   ${found && found.of !== of && html`<p class="quiet">These are the values of the design before it was changed.</p>`}
-  ${found && html`<${Scattered} value=${found.value} />`}`;
+  ${found &&
+    html`<${Scattered} value=${found.value} />
+    <p class="row"><button type="button" onClick=${async () => download(await api.blob("export/csv", { panel: "tolerance", request: found.body }), `tolerance-${found.value.index}.csv`)}>Save (CSV)</button></p>`}`;
 }
 
 /** By what part of themselves values scatter. @param {string[]} names @param {FormData} form */

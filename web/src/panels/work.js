@@ -5,7 +5,7 @@ import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody } from "./front.js";
 import { Plot } from "../plot.js";
 import { html, useState } from "../parts/html.js";
-import { quantity, shown, takenApart, withUnit } from "../state/scale.js";
+import { printed, quantity, shown, takenApart, withUnit } from "../state/scale.js";
 import { begin, stop, takeOptima } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -97,7 +97,7 @@ function RunResult({ store, api, job }) {
   const many = 60;
   return html`<div class="scroll" tabindex="0" role="region" aria-label="Results"><table>
     <thead><tr><th scope="col">layout</th><th scope="col">index</th><th scope="col">method</th><th scope="col">value</th><th scope="col">better by</th><th scope="col"></th></tr></thead>
-    <tbody>${rows.slice(0, many).map((row, i) => html`<tr key=${i}><td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td><td class="number">${shown(row.value)} <span class="unit">${row.unit ?? ""}</span></td><td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
+    <tbody>${rows.slice(0, many).map((row, i) => html`<tr key=${i}><td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td><td class="number">${shown(row.value)} <span class="unit">${printed(row.unit ?? "")}</span></td><td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
       <td>${row.parameters && Object.keys(row.parameters).length > 0 && html`<button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptima(store, [row]) })}>Take</button>`}</td></tr>`)}</tbody>
   </table></div>
   ${rows.length > many && html`<p class="quiet">${rows.length} rows in all: they are in summary.csv.</p>`}

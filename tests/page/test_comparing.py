@@ -7,36 +7,19 @@ from typing import Any
 
 import pytest
 from browser import Visitor, wait_until
+from study_text import PAPER_CAR, study_text
 
 import inerter as it
 from inerter.app.designs import design_of
 from inerter.app.documents import study_from
 
-STUDY = """title = "Four struts"
-[vehicle]
-model = "quarter-car"
-sprung_mass = "181.75 kg"
-unsprung_mass = "25 kg"
-tyre_stiffness = "120 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "120 kN/m"
-c = "5 kN s/m"
-b = "100 kg"
-f = "10 N"
-[layouts]
-S1 = "k | c"
-S2 = "k | c | b"
-S3 = "k | c - (b | f)"
-S4 = "k | c - (f | b)"
-S5 = "k | c - b"
-[study]
-indices = ["J1", "J3"]
-evaluate = ["norm", "expected-value"]
-realisations = 4
-"""
+STUDY = study_text(
+    'indices = ["J1", "J3"]\nevaluate = ["norm", "expected-value"]\nrealisations = 4',
+    vehicle=PAPER_CAR,
+    elements='k = "120 kN/m"\nc = "5 kN s/m"\nb = "100 kg"\nf = "10 N"',
+    layouts='S1 = "k | c"\nS2 = "k | c | b"\nS3 = "k | c - (b | f)"\nS4 = "k | c - (f | b)"\nS5 = "k | c - b"',
+    title='title = "Four struts"',
+)
 
 
 def _choose_by_mouse(visitor: Visitor, name: str) -> None:

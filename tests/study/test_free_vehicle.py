@@ -24,12 +24,11 @@ FIXED = {"unsprung_mass": '"35 kg"', "sprung_mass": '"250 kg"', "tyre_stiffness"
 
 
 def text_of(vehicle: dict[str, str], settings: str = ASK) -> str:
-    text = study_text(settings, elements='k = "20 kN/m"\nc = { from = "100 N s/m", to = "10 kN s/m" }\nb = "30 kg"')
-    for key, entry in vehicle.items():
-        old = f"{key} = {FIXED[key]}"
-        assert old in text
-        text = text.replace(old, f"{key} = {entry}")
-    return text
+    return study_text(
+        settings,
+        vehicle="\n".join(f"{key} = {entry}" for key, entry in {**FIXED, **vehicle}.items()),
+        elements='k = "20 kN/m"\nc = { from = "100 N s/m", to = "10 kN s/m" }\nb = "30 kg"',
+    )
 
 
 def study_of(folder: Path, vehicle: dict[str, str], settings: str = ASK) -> Study:

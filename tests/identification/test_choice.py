@@ -121,6 +121,7 @@ def coulomb_laws():
     return result
 
 
+@pytest.mark.campaign
 def test_coulomb_friction_shows_no_dependence_on_speed_and_intervals_are_what_they_say():
     laws = coulomb_laws()
     assert sum(law.law == "coulomb" for law in laws) >= 57

@@ -104,6 +104,7 @@ def test_a_reversed_load_cell_is_noticed():
     assert turned.parameters["b"].value == pytest.approx(113.0, rel=0.02)
 
 
+@pytest.mark.campaign
 def test_a_record_that_begins_in_motion():
     """The start of the device is then unknown, and is left out for as long as it matters."""
     rig = it.VirtualRig((it.Spring(1e6) | it.Damper(3200.0)) - (it.Inerter(113.0) | it.Friction(10.0)), seed=7)
@@ -127,6 +128,7 @@ def test_what_is_not_identifiable_gets_no_number():
     assert fit.parameters["b"].interval[0] <= 5.0 <= fit.parameters["b"].interval[1]
 
 
+@pytest.mark.campaign
 def test_a_model_that_is_not_the_device_says_so():
     record = fit_test(seed=9, duration=1.5)
     fit = it.identify(

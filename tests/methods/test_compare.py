@@ -190,6 +190,7 @@ def test_with_a_gap_differences_are_taken_road_by_road():
     )
 
 
+@pytest.mark.campaign
 def test_a_design_that_needs_longer_roads_gives_them_to_the_other():
     ringing = paper_quarter_car(k | Damper(300.0) | Friction(20.0))
     found = it.compare(ringing, series(10.0), J3, ExpectedValue(realisations=3))

@@ -183,6 +183,7 @@ def test_friction_as_the_only_damping_is_simulated():
         assert value == pytest.approx(run["sprung_acceleration"][:-1].std(), rel=1e-3)
 
 
+@pytest.mark.campaign
 def test_a_strut_that_sticks_on_an_undamped_tyre_has_no_steady_state():
     for strut in (
         k | Damper(500.0) | Friction(1e5),

@@ -53,6 +53,7 @@ def test_friction_moves_the_optimum_and_no_simplex_finds_less():
     assert best.evaluations > best.starts
 
 
+@pytest.mark.campaign
 def test_a_gap_is_searched_without_statistical_linearisation():
     car = paper_quarter_car(k | c - shaft - Gap(5e-4) - Inerter(300.0))
     method = ExpectedValue(realisations=2, seed=0)

@@ -43,6 +43,7 @@ def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, 
     page.wait_for_function("text => document.getElementById('entry elements.c').title === text", arg=before)
 
 
+@pytest.mark.campaign
 def test_a_number_of_the_vehicle_is_freed_searched_and_saved(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     visitor.settled()

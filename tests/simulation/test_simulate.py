@@ -233,6 +233,7 @@ def test_what_is_far_faster_than_the_step_is_told_and_not_waited_for():
     assert run["device_force"].shape == run.time.shape
 
 
+@pytest.mark.campaign
 def test_a_changed_kernel_is_compiled_again(tmp_path):
     """A copy of the package whose flow kernel is changed must not run what the cache holds of the original."""
     probe = textwrap.dedent(

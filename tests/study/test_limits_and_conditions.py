@@ -108,6 +108,7 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert "the nearest design" in report(result.data, study, tmp_path)
 
 
+@pytest.mark.campaign
 def test_a_limit_is_swept_by_its_place(load: Callable[..., Study], tmp_path: Path) -> None:
     """Tighter limits never give a better index, and each point is the study with that limit."""
     limit = 'subject_to = { J3 = { at_most = "650 N" } }'

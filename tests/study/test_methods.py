@@ -131,6 +131,7 @@ def test_a_budget_without_a_value_has_no_better_side(at_most: bool) -> None:
     assert told[1]["status"] == "unbounded: the design is better for no h from 1 N to 2 N"
 
 
+@pytest.mark.campaign
 def test_budgets_and_outcomes_survive_the_journal_and_are_not_computed_again(budgeted: StudyResult) -> None:
     for found in budgeted.budgets:
         again = BudgetOutcome(**json.loads(json.dumps(found.to_json())))

@@ -64,7 +64,7 @@ def test_a_fault_is_named_and_no_wrong_interval_is_given_without_a_warning(numbe
     assert missed(fit, case.truth) == []
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(1800)
 def test_faults_of_some_kinds() -> None:
     said = [judged(number) for number in (1, 4, 7, 10)]
@@ -82,7 +82,7 @@ def test_a_sound_rig_is_not_warned_of_and_its_intervals_hold_the_truth(number: i
     assert missed(fit, case.truth) == []
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(1800)
 def test_sound_rigs_are_not_warned_of_and_intervals_miss_no_more_often_than_they_say() -> None:
     given, lost = 0, []

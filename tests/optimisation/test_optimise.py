@@ -73,7 +73,7 @@ def grid_search(car, index, method):
     return best
 
 
-@family(STRUTS, ("S1", J3), ("S2", J5), kept=5)
+@family(STRUTS, ("S1", J3), ("S2", J5), kept=3)
 def test_no_grid_finds_less(name, index):
     car, method = unknown_car(STRUTS[name]), Norm()
     best = optimise(car, index, method, seed=1)

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 from browser import EXAMPLES, Visitor, drop, wait_until
+from campaigns import sampled
 from study_text import PAPER_CAR, study_text
 
 import inerter as it
@@ -60,8 +61,7 @@ _STEP = """each => {
 }"""
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("name", examples())
+@pytest.mark.parametrize("name", sampled(examples(), often=["full-car", "train"], kept=1))
 def test_every_number_of_an_example_can_be_changed(name: str, visitor: Visitor) -> None:
     """Each has a slider, an entry and bounds; a step of the slider, up or down, keeps sign and unit."""
     page = visitor.page
@@ -295,8 +295,7 @@ TABBABLE = """() => [
   .map(each => each.outerHTML.slice(0, 90))"""
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("backwards", sampled([False, True], seldom=[False]))
 def test_the_keyboard_reaches_all_and_is_nowhere_trapped(backwards: bool, visitor: Visitor) -> None:
     page = visitor.page
     for tab in ("response", "history", "compare", "tolerance", "work", "rig"):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import pytest
 from browser import Visitor, wait_until
+from campaigns import sampled
 from study_text import PAPER_CAR, study_text
 
 import inerter as it
@@ -81,9 +83,7 @@ def _said(two: it.Comparison, scatters: bool) -> tuple[str, ...]:
     return (*words, "±") if scatters and not (two.is_tie and two.percent_error == 0.0) else words
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("count", [3, 4])
+@pytest.mark.parametrize(("count", "way"), sampled(product([3, 4], WAYS), seldom=[(3, "keyboard"), (4, "mouse")]))
 def test_designs_stand_side_by_side(way: str, count: int, visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     (tmp_path / "study.toml").write_text(STUDY)

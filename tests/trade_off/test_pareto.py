@@ -88,7 +88,7 @@ def test_an_end_that_leaves_the_other_criterion_open_is_the_best_in_that_too(oth
 
 @pytest.mark.parametrize(
     ("kind", "pair", "number", "count"),
-    sampled(MEMBERS, [("S3", 0, 0, 20_000)], seldom=[member for member in MEMBERS if member[-1] > 20_000], kept=6),
+    sampled(MEMBERS, [("S3", 0, 0, 20_000)], seldom=[member for member in MEMBERS if member[-1] > 20_000], kept=3),
 )
 def test_no_random_design_dominates_a_point(kind, pair, number, count):
     car, indices = random_quarter_car(np.random.default_rng([number, 77]), strut(kind)), list(TWO[pair])
@@ -111,7 +111,7 @@ def test_no_random_design_dominates_a_point(kind, pair, number, count):
 HARD = [83, 89, 93, 95]  # fronts that had gaps, as 16
 
 
-@pytest.mark.parametrize("number", sampled(range(120), [16], often=HARD, kept=4))
+@pytest.mark.parametrize("number", sampled(range(120), [16], often=HARD, kept=2))
 def test_fronts_of_a_force_have_no_gaps_that_are_not_told(number):
     """Many designs may have the least force of a damper: the best of them in the other criterion is the end."""
     rng = np.random.default_rng([number, 818])
@@ -304,7 +304,7 @@ def test_a_front_without_gradients_is_the_same():
     assert found.values == pytest.approx(exact.values, rel=2e-3)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_front_of_what_is_simulated_on_roads():
     screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
     car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - screw)

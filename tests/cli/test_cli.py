@@ -166,7 +166,7 @@ def test_what_check_says_fits_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys
         assert max(map(len, out.splitlines())) <= 80
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (EXAMPLES / "ball_screw.toml").read_text(encoding="utf-8")
     study, folder = tmp_path / "screw.toml", tmp_path / "out"

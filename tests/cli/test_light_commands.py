@@ -74,7 +74,7 @@ def test_check_loads_nothing_that_only_the_work_needs(study: str) -> None:
     assert not loaded_by("check", str(EXAMPLES / study)) & HEAVY
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_run_loads_no_distributions(tmp_path: Path) -> None:
     assert "scipy.stats" not in loaded_by("run", str(EXAMPLES / "quarter-car.toml"), "-o", str(tmp_path / "out"))
 

@@ -37,7 +37,7 @@ CHOICES = [
 ]
 
 
-@pytest.mark.parametrize(("truth", "seed", "others"), sampled(CHOICES, CHOICES[:1], kept=1))
+@pytest.mark.parametrize(("truth", "seed", "others"), sampled(CHOICES, CHOICES[:1], seldom=CHOICES[1:]))
 def test_the_right_elements_and_no_others(truth, seed, others):
     found = it.choose(record_of(TRUTHS[truth], seed), [*others, truth], starts=8)
     assert found.name == truth

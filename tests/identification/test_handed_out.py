@@ -32,7 +32,7 @@ def problem(record: Record) -> FitProblem:
     return solution_of(record, MODELS["ball-screw"], FitOptions(starts=8), None).problem
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_an_identification_on_other_processes_is_the_same(record: Record) -> None:
     with Processes(2) as processes:
         there = it.identify(record, "friction", starts=8, executor=processes)

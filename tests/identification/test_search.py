@@ -37,7 +37,7 @@ def problem_of(record: it.Record, model: it.Network) -> FitProblem:
     return FitProblem(rig, space_of(rig), [experiment], [plain(experiment.kept, 0.12)])
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_the_right_valley_of_a_rattling_device() -> None:
     fit = it.identify(rattle(), BALL_SCREW, seed=0)
     assert fit.status.ok

@@ -104,7 +104,7 @@ RIGID = Case(
 )
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_rigid_device_is_fitted_down_to_the_noise_of_the_cell() -> None:
     """Its force is that of the motion itself, so least squares on the true motion is a second way."""
     fit = fitted(RIGID, 1)

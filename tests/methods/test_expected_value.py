@@ -219,7 +219,7 @@ def test_what_cannot_be_simulated_says_so():
     assert TWO.objective(free, J1).values(np.array([[4e3]])) == math.inf
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_gap_that_springs_alone_close_is_marginal_or_rattles():
     gap = paper_quarter_car(k | shaft - Gap(1e-3) - Spring(1e4))
     assert it.evaluate(paper_quarter_car(k | Gap(1e-3) - Spring(1e4)), J1, TWO).status.kind == "marginal"

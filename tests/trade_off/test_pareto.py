@@ -238,7 +238,7 @@ def test_a_front_that_no_design_reaches():
         _ = front.knee
 
 
-@pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], seldom=["S3", "S3 k"]))
+@pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], seldom=["S3 k", "four"]))
 def test_three_criteria(kind):
     car = paper_quarter_car(strut(kind))
     front = it.pareto(car, [J1, J3, J5], NORM, points=15)

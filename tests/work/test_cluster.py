@@ -142,7 +142,7 @@ def test_a_cluster_that_cannot_be_is_told(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_no_scheduler_answers(tmp_path: Path) -> None:
     words = ("-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:9")
     errors = done(inerter("run", EXAMPLES / "quarter-car.toml", *words), 1)
@@ -203,7 +203,7 @@ def test_what_one_executor_began_another_ends(alone: Mapping[str, bytes], tmp_pa
     assert all(later.startswith(earlier) for earlier, later in pairwise(kept))  # nothing was done again
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(900)
 def test_values_an_identification_and_a_table_are_the_same(tmp_path: Path, there: Cluster) -> None:
     k, c, b = it.Spring(120e3), it.Damper(4000.0), it.Inerter(366.0)

@@ -74,7 +74,7 @@ def test_processes_stay_for_the_next_list_and_end_with_the_crew() -> None:
     assert none_left()
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_the_first_are_worked_on_here_until_processes_would_be_there() -> None:
     slow = f"__import__('time').sleep(0.9) or {PROCESS}"
     with Pool(2) as pool:

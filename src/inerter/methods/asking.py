@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from inerter.indices.question import Index
 from inerter.methods.combined import ObjectivePart, combined
-from inerter.networks.elements import Element, Free, Tied
+from inerter.networks.elements import Element, Free, Tied, middle
 from inerter.vehicle.changed import mounted, with_elements
 from inerter.vehicle.vehicle import Vehicle
 
@@ -148,12 +148,12 @@ def without_tied_values(vehicle: Vehicle) -> Loose | None:
     free = vehicle.free_values()
     found: dict[str, Tied] = {}
     names = (name for i in count(1) if (name := f"tied{i}") not in free)
-    middle = {name: (value.lower * value.upper) ** 0.5 or value.upper for name, value in free.items()}
+    halfway = {name: middle(value) for name, value in free.items()}
 
     def loosened(element: Element) -> Element:
         if not isinstance(element.value, Tied):
             return element
-        size = float(element.value.slopes(middle)[0])
+        size = float(element.value.slopes(halfway)[0])
         name = next(names)
         found[name] = element.value
         like = Free(0.5 * size, 2.0 * size, name) if 0.0 < size < math.inf else Free(0.5, 2.0, name)

@@ -20,6 +20,7 @@ from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.methods.method import Estimate
+from inerter.networks.elements import middle
 from inerter.norms.delay import pade
 from inerter.norms.exact import h2_exactly
 from inerter.norms.h2 import drift_covariance, h2
@@ -118,8 +119,8 @@ class CompiledQuestion:
     @cached_property
     def _special(self) -> Array:
         """A design beside the middle of the bounds."""
-        middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in self._free.items()}
-        return np.asarray(np.array(list(middle.values())) * (1.0 + _ASIDE * np.arange(1, len(middle) + 1)))
+        halfway = np.array([middle(free) for free in self._free.values()])
+        return np.asarray(halfway * (1.0 + _ASIDE * np.arange(1, halfway.size + 1)))
 
     @property
     def _free(self) -> dict[str, Any]:

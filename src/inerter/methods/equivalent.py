@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, PerformanceIndexError
 from inerter.indices.question import Question
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value
+from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
 from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
 from inerter.systems.arrivals import Arrival, fed, inputs_of
@@ -187,8 +187,8 @@ def _reachable(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> list[Strut 
 
 def _reached_directly(descriptor: Descriptor) -> list[int]:
     """Numbers of the outputs that white noise passes straight to."""
-    middle = {name: (free.lower * free.upper) ** 0.5 or free.upper for name, free in descriptor.free.items()}
-    return [int(i) for i in np.flatnonzero(np.any(close(descriptor, middle).D != 0.0, axis=1))]
+    halfway = {name: middle(free) for name, free in descriptor.free.items()}
+    return [int(i) for i in np.flatnonzero(np.any(close(descriptor, halfway).D != 0.0, axis=1))]
 
 
 def acts(element: Element) -> bool:

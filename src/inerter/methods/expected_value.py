@@ -23,6 +23,7 @@ from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds, worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.networks.elements import middle
 from inerter.simulation.event_driven import KERNELS
 from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
@@ -129,8 +130,8 @@ class ExpectedValue:
         """
         fixed = self
         if self.relative_error is not None:
-            middle = {name: (free.lower * free.upper) ** 0.5 for name, free in vehicle.free_values().items()}
-            roads = self.estimate(vehicle.with_values(middle), index).realisations
+            halfway = {name: middle(free) for name, free in vehicle.free_values().items()}
+            roads = self.estimate(vehicle.with_values(halfway), index).realisations
             fixed = self.fixed(max(roads, 2))
         return SampledObjective(fixed.estimate, vehicle, index)
 

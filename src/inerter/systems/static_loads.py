@@ -9,7 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
-from inerter.networks.elements import Free, middle
+from inerter.networks.elements import Free
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.graph import full_graph
 from inerter.units import STANDARD_GRAVITY
@@ -68,7 +68,7 @@ def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
     ]
     rows = np.array([[*b.nodes, *b.roads[len(mechanism.roads) :]] for b in carrying])
     ways = scipy.linalg.null_space(rows.reshape(len(carrying), -1), rcond=_BALANCED)
-    weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * middle(c.inertia) for c in mechanism.coordinates])
+    weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * c.element.coefficient for c in mechanism.coordinates])
     return ways[: len(graph.nodes)], ways[len(graph.nodes) :], weight
 
 

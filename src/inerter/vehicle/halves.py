@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 
-from inerter.networks.elements import Free, middle
+from inerter.networks.elements import Free
 from inerter.vehicle.mechanism import Coordinate, Mechanism, Point, Port, Strut, Tyre
 
 
@@ -66,7 +66,7 @@ def _folded(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
     struts = [replace(s, upper=folded(s.upper), lower=folded(s.lower)) for s in mechanism.struts]
     still = tuple(strut for strut in struts if strut.upper == strut.lower)
     coordinates = (
-        replace(c, inertia=2.0 * middle(c.inertia)) if c.name in doubled else c for c in mechanism.coordinates
+        replace(c, inertia=2.0 * c.element.coefficient) if c.name in doubled else c for c in mechanism.coordinates
     )
     gone = (Point(c.name, follows[c.name], c.angle) for c in mechanism.coordinates if c.name in follows)
     return replace(

@@ -194,7 +194,7 @@ class Mechanism:
         """The unit of each free value."""
         elements = (element for mount in self.mounts() for element in mount.network.elements())
         values = [*((e.value, e.unit) for e in elements), *((c.inertia, c.unit) for c in self.coordinates)]
-        return {str(value.name): unit for value, unit in reversed(values) if isinstance(value, Free)}
+        return {str(value.name): unit for value, unit in values if isinstance(value, Free)}
 
     def with_values(self, values: Mapping[str, float]) -> Mechanism:
         """The same mechanism with the named free values fixed.

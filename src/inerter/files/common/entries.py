@@ -9,7 +9,7 @@ from pydantic import PlainValidator, ValidationInfo
 
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
-from inerter.files.common.schema import checked, list_schema, quantity_schema, words_schema
+from inerter.files.common.schema import checked, list_schema, or_range_schema, quantity_schema, words_schema
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
@@ -75,13 +75,9 @@ def or_free(unit: str, name: str, *, may_vanish: bool) -> PlainValidator:
         check_order(lower, upper)
         return Free(lower.value, upper.value, name)
 
-    return checked(check, lambda: _or_range(unit, may_vanish))
-
-
-def _or_range(unit: str, may_vanish: bool) -> dict[str, Any]:
-    one, end = (quantity_schema(unit, least="not negative" if zero else "positive") for zero in (may_vanish, False))
-    table = {"type": "object", "properties": {"from": end, "to": end}, "required": ["from", "to"]}
-    return {"anyOf": [one, {**table, "additionalProperties": False}]}
+    return checked(
+        check, lambda: or_range_schema(quantity_schema(unit, least="not negative" if may_vanish else "positive"))
+    )
 
 
 def positive_in(text: Any, unit: str) -> float:

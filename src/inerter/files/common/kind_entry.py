@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from inerter.errors import UnitError
 from inerter.fields import Field
 from inerter.files.common.problem import EntryError
-from inerter.files.common.schema import quantity_schema
+from inerter.files.common.schema import or_range_schema, quantity_schema
 from inerter.files.common.suggest import nearest
 from inerter.files.common.ties import TIED, tie_text
 from inerter.networks.elements import Element, Free, Tied
@@ -78,13 +78,12 @@ def _schema_of(name: str, kind: type[Element]) -> dict[str, Any]:
     least = "not negative" if kind.may_vanish else "positive"
     value, *more = kind.fields()
     one = quantity_schema(value.unit, least=least)
-    ends = {"type": "object", "properties": {"from": one, "to": one}, "required": ["from", "to"]}
     texts = {
         field.name: {**quantity_schema(field.unit, least="positive"), "description": field.sentence} for field in more
     }
     keys = {
         KIND: {"const": name, "description": "What it is, where its unit does not tell."},
-        value.name: {"anyOf": [one, {**ends, "additionalProperties": False}], "description": value.sentence},
+        value.name: {**or_range_schema(one), "description": value.sentence},
         **texts,
     }
     return {"type": "object", "properties": keys, "required": list(keys), "additionalProperties": False}

@@ -21,6 +21,7 @@ from inerter.methods.asking import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Compiled, asked_of
 from inerter.methods.registry import is_blind
+from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
@@ -77,8 +78,7 @@ def _check_design(study: Study, layout: str) -> None:
         for mechanism, question in questions:
             linear_problem(mechanism, question, CONVENTIONS[study.conventions])
     else:
-        free = vehicle.free_values().items()
-        piecewise(vehicle.with_values({name: (value.lower * value.upper) ** 0.5 for name, value in free}))
+        piecewise(vehicle.with_values({name: middle(value) for name, value in vehicle.free_values().items()}))
     if study.optimise is not None and vehicle.free_values():
         check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations

@@ -256,6 +256,21 @@ print(len(found[0]), np.abs(found[0]).max() > 100.0, np.array_equal(*found))
     assert session.python(program, tmp_path) == "1001 True True\n"
 
 
+def test_a_bump_stop_is_met_in_compression_alone(session: Session, tmp_path: Path) -> None:
+    """A car that is let down on it, and drawn up: on two springs, and on one, as closed forms say."""
+    program = """
+import inerter as it
+stop = it.ELEMENTS["bump stop"](9e4, 0.02, "kb")
+car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(10e3) | it.Damper(1e3) | stop)
+for force in (-1000.0, 1000.0):
+    held = it.Signal.sampled([0.0, 9.0], [force, force], "linear")
+    run = it.simulate(car, forces={"sprung_force": held}, initial="preload", duration=1.0, step=1e-3)
+    print(round(float(run["strut_travel"][-1]), 9), [name for name in run.states if run.intervals(name, "contact")])
+"""
+    squeezed = -(1000.0 + 9e4 * 0.02) / (10e3 + 9e4)
+    assert session.python(program, tmp_path) == f"{squeezed:.9g} ['kb_stop']\n0.1 []\n"
+
+
 def test_a_simulation_file_knows_the_vehicle_the_element_and_the_signal(session: Session, tmp_path: Path) -> None:
     text = BASE[: BASE.index("[methods")].replace("{ from", '"2 kN s/m" # { from', 1)
     text = text.replace('{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }', '"1e-3 kg m^2"')
@@ -413,7 +428,7 @@ def test_the_page_shows_every_file_whole() -> None:
     page = (HERE.parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
     shown = {block.partition("\n")[2] for block in page.split("```")[1::2]}
     files = [path for path in (HERE / "src").rglob("*.py") if path.name != "__init__.py"]
-    assert len(files) == 7
+    assert len(files) == 8
     for path in (HERE / "pyproject.toml", *files):
         assert path.read_text(encoding="utf-8") in shown, path.name
 

@@ -19,6 +19,7 @@ FIRST = (0, 12, 18)
 OTHERS = [n for n in range(CHUNKS) if n not in FIRST]
 DURATION, SAMPLING = 0.6, 2e-4
 STEPS = (4e-5, 1e-5, 2.5e-6, 1e-6)
+_STILL = 1e-5  # [m, m/s, N] what moves less, does so by rounding
 
 
 def compared(vehicle) -> list[str]:
@@ -53,7 +54,7 @@ def differences(vehicle, inputs: dict) -> list[float]:
     (signal,) = inputs.values()
     names, largest = compared(vehicle), dict[str, float]()
     for name in names:
-        largest[run.unit(name)] = max(largest.get(run.unit(name), 1e-9), run.rms(name))
+        largest[run.unit(name)] = max(largest.get(run.unit(name), _STILL), run.rms(name))
     kept, found = away_from_jumps(run, signal), []
     for step in STEPS:
         every = round(SAMPLING / step)

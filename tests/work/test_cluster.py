@@ -82,7 +82,10 @@ def study_file(folder: Path, points: int, roads: int) -> Path:
 
 def finished(folder: Path) -> int:
     """How many cases are in the journal of a run that is under way."""
-    lines = [path.read_bytes().count(b"\n") for path in folder.rglob("journal.jsonl")]
+    try:
+        lines = [path.read_bytes().count(b"\n") for path in folder.rglob("journal.jsonl")]
+    except FileNotFoundError:  # a draft came or went meanwhile
+        return 0
     return max(lines, default=1) - 1
 
 

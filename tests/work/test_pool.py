@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import subprocess
 import sys
@@ -20,6 +21,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.errors import WorkError
+from inerter.work import cluster
 from inerter.work.pieces import WORTH, Cutter, Worked
 from inerter.work.pool import KILLS, Pool, _Start, pooled
 from inerter.work.processes import Processes, is_started
@@ -44,6 +46,29 @@ def none_left() -> bool:
     while active_children() and time.monotonic() < deadline:
         time.sleep(0.01)
     return not active_children()
+
+
+def test_a_result_whose_process_ended_just_after_it_is_asked_for_again() -> None:
+    """Dask's executor takes it for an error that it cannot take apart; an error of the work's own is none of that."""
+    cfexecutor = pytest.importorskip("distributed.cfexecutor")
+
+    class Lost:
+        status = "lost"
+
+        async def _result(self, raiseit: bool) -> Worked[int]:
+            return Worked((1,), 0.0, "")
+
+    async def cascade() -> None:
+        await cfexecutor._cascade_future(Lost(), future)
+
+    future: Future[Worked[int]] = Future()
+    asyncio.run(cascade())
+    error = future.exception()
+    assert isinstance(error, TypeError)
+    assert cluster.deaths(error) == 1
+    with pytest.raises(TypeError) as raised:
+        int([])  # type: ignore[call-overload]
+    assert cluster.deaths(raised.value) == 0
 
 
 def test_one_process_is_this_one() -> None:

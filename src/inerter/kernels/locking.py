@@ -86,6 +86,25 @@ def is_locked(kind: int, state: int) -> bool:
     return (state == 0) == (kind == FRICTION)
 
 
+@part(typed=True, borrowing=True)
+def may_be(limits: Matrix, e: int, state: int) -> bool:
+    """Whether an element can be in a state: in its middle one between two limits, in another where that limit is met.
+
+    What has one limit alone is always there, in state 1.
+    """
+    if not limits[e, 0] < limits[e, 1]:
+        return state == 1
+    return state == 0 or abs(limit_of(limits, e, state)) < np.inf
+
+
+@part(typed=True, borrowing=True)
+def limit_of(limits: Matrix, e: int, state: int) -> float:
+    """The force or elongation of an element in state -1 or 1; zero in its middle state."""
+    if state == 0:
+        return 0.0
+    return float(limits[e, 1] if state > 0 else limits[e, 0])
+
+
 @part(typed=True, apart=True)
 def adds_to(row: Floats, basis: Matrix, count: int, rest: Floats) -> bool:
     """Whether a row is independent of the first `count` orthonormal ones; `rest` is then the unit vector it adds."""

@@ -22,7 +22,7 @@ import numpy as np
 
 from inerter.kernels.arrays import FRICTION, GAP, Flags, Ints, MapRows, Matrix, Mechanics, Mode, Sizes
 from inerter.kernels.declare import kernel, part
-from inerter.kernels.locking import Bases, Locks, Rates, bases_of, is_locked, locks_of, rates_of
+from inerter.kernels.locking import Bases, Locks, Rates, bases_of, is_locked, limit_of, locks_of, may_be, rates_of
 from inerter.kernels.matrices import (
     add,
     block,
@@ -89,7 +89,7 @@ def balance_of(mechanics: Mechanics, state: Ints, rates: Rates, locks: Locks, ba
     for e in range(sizes.elements):
         if mechanics.kind[e] == FRICTION:
             for j in range(nv):
-                sides[j, sides.shape[1] - 1] -= state[e] * mechanics.limit[e] * rates.locks[e, j]
+                sides[j, sides.shape[1] - 1] -= limit_of(mechanics.limits, e, state[e]) * rates.locks[e, j]
     spring_rate = product(inner(bases.sprung, block(sides, na, nv, na, n)), rates.positions)
     add(spring_rate, 0, nv, inner(bases.sprung, block(sides, na, nv, n, n + nr)), 1.0)
     on_w = block(sides, na, nv, 0, sides.shape[1])
@@ -209,9 +209,9 @@ def fill_guards(mechanics: Mechanics, mode: Mode, locks: Matrix, still: Flags, s
         if still[e] and own >= 0:
             for j in range(width):
                 maps[na + own, j] = 0.0
-        limit_guard(mode.limits, e, state, mechanics.limit[e])
+        limit_guard(mode.limits, e, state, mechanics.limits)
         if mechanics.kind[e] == FRICTION:
-            maps[force, width - 1] += state * mechanics.limit[e]
+            maps[force, width - 1] += limit_of(mechanics.limits, e, state)
         if is_locked(mechanics.kind[e], state):  # its force
             add(maps, row, 0, block(maps, force, force + 1, 0, width), 1.0)
         elif mechanics.kind[e] == GAP:  # open: its elongation
@@ -235,12 +235,12 @@ def slip_of(sizes: Sizes, lock: Matrix, solution: Solution) -> Matrix:
 
 
 @part(typed=True, apart=True)
-def limit_guard(limits: Matrix, e: int, state: int, limit: float) -> None:
+def limit_guard(guards: Matrix, e: int, state: int, limits: Matrix) -> None:
     """A lock's force stays within its limits, what slips or is open on its side."""
-    limits[e, 0], limits[e, 1] = -np.inf, np.inf
-    if limit > 0.0:
-        limits[e, 0] = -limit if state == 0 else (0.0 if state > 0 else -np.inf)
-        limits[e, 1] = limit if state == 0 else (0.0 if state < 0 else np.inf)
+    guards[e, 0], guards[e, 1] = -np.inf, np.inf
+    if may_be(limits, e, 0):
+        guards[e, 0] = limits[e, 0] if state == 0 else (0.0 if state > 0 else -np.inf)
+        guards[e, 1] = limits[e, 1] if state == 0 else (0.0 if state < 0 else np.inf)
 
 
 @part(typed=True, apart=True)
@@ -321,7 +321,7 @@ def watch_what_moves(mechanics: Mechanics, mode: Mode, still: Flags) -> None:
     drop_rounding(change, product(sizes_of(guards), sizes_of(rates)))
     for e in range(k):
         state = mode.state[e]
-        slips = mechanics.kind[e] == FRICTION and state != 0 and not still[e] and mechanics.limit[e] > 0.0
+        slips = mechanics.kind[e] == FRICTION and state != 0 and not still[e] and may_be(mechanics.limits, e, 0)
         if slips and is_zero(maps, guard + e):
             limits[e, 0 if state > 0 else 1] = state
         mode.entry_limits[e, 0], mode.entry_limits[e, 1] = limits[e, 0], limits[e, 1]

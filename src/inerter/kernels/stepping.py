@@ -4,9 +4,10 @@ A step starts from what is known: (displacements, momenta, inputs, 1). One produ
 reactions; the reactions of frictions and gaps then follow from a small complementarity problem with a constant matrix:
 
     rate = drift - G force, where
-    a friction has |force| <= size, force = +-size while it slides with rate above or below its aim;
-    a gap has aim - size <= rate <= aim + size, force >= 0 at the upper bound, <= 0 at the lower one, else zero;
-    a tied reaction has rate = aim, whatever its force.
+    a friction has lower <= force <= upper, one of these while it slides with rate below or above its aim;
+    a gap has aim + lower <= rate <= aim + upper, force >= 0 at the upper bound, <= 0 at the lower one, else zero;
+    a tied reaction has rate = aim + upper, whatever its force;
+    a constant one has force = upper, whatever its rate.
 
 All that is about reactions stands in one array with a column each, because a call costs time for each array. It is
 cheap if the function has one loop nest only and no loop under a condition; others count references at each call.
@@ -20,9 +21,9 @@ from inerter.kernels.declare import kernel, part
 
 Array = Any  # compiled code is typed when it is compiled
 
-ROWS = 8  # of the array of reactions; side is -1, 0 or 1: sliding or touching there, or neither
-KIND, SIZE, DRIFT, AIM, SIDE, SPEED, BETTER, HELD = 0, 1, 2, 3, 4, 5, 6, 7
-FRICTION, GAP, TIED = 0.0, 1.0, 2.0  # tied: a gap of no width, or the motion of a loose node
+ROWS = 9  # of the array of reactions; side is -1, 0 or 1: sliding or touching there, or neither
+KIND, LOWER, UPPER, DRIFT, AIM, SIDE, SPEED, BETTER, HELD = 0, 1, 2, 3, 4, 5, 6, 7, 8
+FRICTION, GAP, TIED, CONSTANT = 0.0, 1.0, 2.0, 3.0  # tied: a gap of no width, or the motion of a loose node
 DONE, STUCK, INFINITE = 0, 1, 2  # how a march ended: as it should, without reactions that fit, with nonsense
 LIMIT = 400  # solutions tried before a complementarity problem is given up
 PATIENCE = 8  # block changes without progress, before only one reaction is changed at a time
@@ -185,15 +186,18 @@ def hold(law: Array, force: Array) -> bool:
     changed = False
     for i in range(force.shape[0]):
         kind, side = law[KIND, i], law[SIDE, i]
-        reach, holds = side * law[SIZE, i], 0.0
-        if kind == TIED or (side == 0.0) == (kind == FRICTION):
+        reach, holds = law[UPPER, i], 0.0
+        if side < 0.0:
+            reach = law[LOWER, i]
+        if kind == TIED or (kind == GAP and side != 0.0):
+            holds = 1.0
+            force[i] = law[DRIFT, i] - law[AIM, i] - reach
+        elif kind == FRICTION and side == 0.0:
             holds = 1.0
             force[i] = law[DRIFT, i] - law[AIM, i]
-            if kind == GAP:
-                force[i] -= reach
         else:
             force[i] = 0.0
-            if kind == FRICTION:
+            if kind != GAP:
                 force[i] = reach
         if law[HELD, i] != holds:
             changed = True
@@ -215,21 +219,25 @@ def misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
     """How many reactions do not fit their side, and the last of them; notes on which side each should be."""
     count, last = 0, -1
     for i in range(G.shape[0]):
-        kind, side, size = law[KIND, i], law[SIDE, i], law[SIZE, i]
+        kind, side, lower, upper = law[KIND, i], law[SIDE, i], law[LOWER, i], law[UPPER, i]
         rate = law[DRIFT, i]
         for j in range(G.shape[0]):
             rate -= G[i, j] * force[j]
         law[SPEED, i] = abs(rate)
         above, better = rate - law[AIM, i], side
         if kind == FRICTION and side == 0.0:
-            if abs(force[i]) > size:
-                better = 1.0 if force[i] > 0.0 else -1.0
+            if force[i] > upper:
+                better = 1.0
+            elif force[i] < lower:
+                better = -1.0
         elif kind == FRICTION:
             if side * above < -slack:
                 better = 0.0
         elif kind == GAP and side == 0.0:
-            if abs(above) > size + slack:
-                better = 1.0 if above > 0.0 else -1.0
+            if above > upper + slack:
+                better = 1.0
+            elif above < lower - slack:
+                better = -1.0
         elif kind == GAP and side * force[i] < 0.0:
             better = 0.0
         law[BETTER, i] = better

@@ -10,6 +10,7 @@ from inerter.kernels.arrays import FRICTION, NONE, Array, Floats, Matrix, Run
 from inerter.kernels.crossing import MET, ORDERS, ROUNDING
 from inerter.kernels.declare import part
 from inerter.kernels.flow import input_sizes, inputs_from, over_columns
+from inerter.kernels.locking import limit_of, may_be
 
 DONE, PAUSED, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(9)
 ACCEPTED, STRUCK, STRANDED = -1, -2, -3  # verdicts on a mode; another one is the element that must change its state
@@ -60,8 +61,7 @@ def _first_trial(run: Run, who: int) -> None:
     """The present states, with that changed whose guard was crossed; before there is a mode, all at rest."""
     before, watch = run.motion.place[0].mode, run.motion.watch
     for e in range(run.mechanics.sizes.elements):
-        free = run.mechanics.limit[e] > 0.0
-        watch[e].trial = run.modes.state[before, e] if before >= 0 else (0 if free else 1)
+        watch[e].trial = run.modes.state[before, e] if before >= 0 else (0 if may_be(run.mechanics.limits, e, 0) else 1)
     if who >= 0 and watch[who].crossed != 0:
         watch[who].trial = watch[who].crossed if watch[who].trial == 0 else 0
 
@@ -74,7 +74,7 @@ def _nth_trial(run: Run, code: int) -> bool:
         watch = run.motion.watch[e]
         watch.trial = code % 3 - 1
         code //= 3
-        possible = possible and (run.mechanics.limit[e] > 0.0 or watch.trial == 1)
+        possible = possible and may_be(run.mechanics.limits, e, watch.trial)
     return possible
 
 
@@ -179,10 +179,10 @@ def _guess(run: Run) -> float:
 def _is_apart(run: Run, e: int, length_scale: float) -> bool:
     """Whether a gap that is to touch is not at its limit; if it is, its elongation becomes the limit."""
     mechanics, sizes, trial = run.mechanics, run.mechanics.sizes, run.motion.watch[e].trial
-    limit, own = mechanics.limit[e], mechanics.own_position[e]
-    if mechanics.kind[e] == FRICTION or trial == 0 or not limit > 0.0:
+    if mechanics.kind[e] == FRICTION or trial == 0 or not may_be(mechanics.limits, e, 0):
         return False
-    beyond, size = -trial * limit, limit
+    limit, own = limit_of(mechanics.limits, e, trial), mechanics.own_position[e]
+    beyond, size = -limit, abs(limit)
     for j in range(mechanics.lengths.shape[1]):
         at = j + sizes.inertial
         inside = at < sizes.states
@@ -192,7 +192,7 @@ def _is_apart(run: Run, e: int, length_scale: float) -> bool:
     if abs(beyond) > MET * size + ROUNDING * length_scale:
         return True
     if own >= 0:
-        run.room.guess[sizes.inertial + own] = trial * limit
+        run.room.guess[sizes.inertial + own] = limit
     return False
 
 
@@ -219,11 +219,12 @@ def _blame(run: Run, m: int, first: int, last: int, group: int) -> int:
     for e in range(mechanics.sizes.elements):
         trial = run.motion.watch[e].trial
         s = _asked(reaction, n + e, residual, first, last)
-        if mechanics.limit[e] == 0.0 or abs(s) <= 1e-9 * largest:
+        if not may_be(mechanics.limits, e, 0) or abs(s) <= 1e-9 * largest:
             continue
         if trial == 0 and group == VELOCITY and mechanics.kind[e] == FRICTION:
             place.wanted = 1 if s > 0.0 else -1
-            return e
+            if may_be(mechanics.limits, e, place.wanted):
+                return e
         if trial * s < 0.0:
             place.wanted = 0
             return e

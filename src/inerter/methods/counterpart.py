@@ -17,7 +17,7 @@ from inerter.errors import LinearSystemError, MechanismError
 from inerter.indices.question import Question
 from inerter.methods.equivalent import GAUSSIAN, Equivalent, acts, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
-from inerter.networks.elements.roles import Guard
+from inerter.networks.elements.roles import Statistical
 from inerter.norms.h2 import h2
 from inerter.norms.stability import balance
 from inerter.systems.arrivals import inputs_of
@@ -45,8 +45,9 @@ def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str
 
 
 def has_play(system: PiecewiseSystem) -> bool:
-    """Whether a gap is not zero, so that no linear design need resemble the motion."""
-    return any(b.element.switches_by(Guard.ELONGATION) and b.element.acts for b in system.graph.branches)
+    """Whether something switches that no damper stands for, as a gap, so that no linear design need resemble it."""
+    elements = (b.element for b in system.graph.branches)
+    return any(e.acts and e.statistical is Statistical.REFUSED for e in elements)
 
 
 @dataclass(frozen=True, eq=False)

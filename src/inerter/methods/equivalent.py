@@ -81,14 +81,14 @@ class Equivalent:
 
 
 def check_gaps(mechanism: Mechanism) -> None:
-    """Raises `PerformanceIndexError` for a gap with play."""
+    """Raises `PerformanceIndexError` for what switches and is no dry friction, such as a gap with play."""
     for mount in switching(mechanism).mounts():
         for element in mount.network.elements():
-            if element.statistical is Statistical.REFUSED and element.value != 0.0:
+            if element.statistical is Statistical.REFUSED and element.acts:
+                zero = f", or give it a {element.quantity.replace('_', ' ')} of 0" if element.may_vanish else ""
                 raise PerformanceIndexError(
                     f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is a "
-                    f"{element.key} with play. Use expected-value or approximate-linear, which simulate it, or give "
-                    f"the gap a half-width of 0."
+                    f"{element.key}. Use expected-value or approximate-linear, which simulate it{zero}."
                 )
 
 

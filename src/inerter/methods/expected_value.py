@@ -222,8 +222,8 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
 
 
 def is_nonlinear(system: PiecewiseSystem) -> bool:
-    """Whether a friction or gap that is not zero is there."""
-    return bool(np.any(system.mechanics.limit > 0.0))
+    """Whether something that switches is there, or pushes all the time."""
+    return bool(np.any(system.mechanics.limits != 0.0))
 
 
 def _is_held(system: PiecewiseSystem, question: Question, conventions: Conventions) -> bool:

@@ -72,12 +72,15 @@ def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
 def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> FirstOrder | None:
     """The first-order effect of every friction.
 
-    None if a gap is there, if a part is loose without friction, or if what moves is not one road alone.
+    None if a gap is there, if a part is loose without friction, if what moves is not one road alone, or if a friction
+    differs by its direction.
     """
-    limit, kinds = system.mechanics.limit, system.mechanics.elements[:, KIND]
-    if way.delays is None or not np.any(limit > 0.0) or np.any(limit[kinds != FRICTION] > 0.0):
+    kinds, (lower, upper) = system.mechanics.elements[:, KIND], system.mechanics.limits.T
+    if way.delays is None or not np.any(lower < upper) or np.any(lower != -upper):
         return None
-    count, n, nu = limit.size, system.order, system.inputs
+    if np.any(upper[kinds != FRICTION] > 0.0):
+        return None
+    count, n, nu = upper.size, system.order, system.inputs
     integration = event_driven.start(system, table(way, 0), np.zeros(n))
     slip, forces = _slipping(integration)
     signal = way.signal(0)

@@ -244,8 +244,8 @@ def start(
         record=record,
         account=_account(system, account),
     )
-    if sizes.elements == 1 and mechanics.limit[0] > 0.0:  # all three will be met: save the ways back to have them built
-        for s in (0, 1, -1):
+    if sizes.elements == 1 and np.isfinite(mechanics.limits).all() and mechanics.limits[0, 0] < mechanics.limits[0, 1]:
+        for s in (0, 1, -1):  # all three will be met: save the ways back to have them built
             integration.build(np.array([s]))
     if after is not None and after.mechanism == system.mechanism:
         integration.go_on_from(after)
@@ -267,7 +267,7 @@ def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]
         lengths=constants.lengths,
         kind=np.ascontiguousarray(constants.elements[:, KIND]),
         own_position=np.ascontiguousarray(constants.elements[:, OWN_POSITION]),
-        limit=constants.limit,
+        limits=constants.limits,
         over=np.array([np.concatenate(row) for row in rows]) if rows else np.zeros((0, width)),
     )
 

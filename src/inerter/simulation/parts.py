@@ -28,7 +28,8 @@ class Reaction:
     """A gap, or all frictions side by side as one, with the share of its force that each of its branches has."""
 
     gap: bool
-    size: float  # half width [m] or force [N]
+    lower: float  # end of the gap [m], or force [N]
+    upper: float
     nodes: Matrix
     roads: Matrix
     shares: dict[int, float]
@@ -37,6 +38,16 @@ class Reaction:
     def branch(self) -> int:
         """The first of its branches."""
         return next(iter(self.shares))
+
+    @property
+    def even(self) -> bool:
+        """Whether it is a friction of one size in both directions."""
+        return not self.gap and -self.lower == self.upper
+
+    @property
+    def acts(self) -> bool:
+        """Whether it has play, or can stick."""
+        return self.lower < self.upper
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,21 +142,24 @@ def _stack(rows: tuple[Branch, ...] | tuple[Reaction, ...], nodes: int, roads: i
 
 
 def _reactions(branches: tuple[Branch, ...]) -> tuple[Reaction, ...]:
-    """One for each gap, and one for each set of frictions between the same two ends; none for a friction of zero."""
+    """One for each gap, and one for each set of even frictions between the same ends; none for a friction of zero."""
     found: list[Reaction] = []
     for i, branch in enumerate(branches):
-        if branch.element.switches_by(Guard.ELONGATION):
-            found.append(Reaction(True, branch.element.coefficient, branch.nodes, branch.roads, {i: 1.0}))
-        elif branch.element.switches_by(Guard.FORCE):
-            size = branch.element.coefficient
-            beside = [j for j, other in enumerate(found) if not other.gap and _sense(branch, other)]
-            if beside:
-                other = found[beside[0]]
-                shares = {**other.shares, i: _sense(branch, other) * size}
-                found[beside[0]] = replace(other, size=other.size + size, shares=shares)
-            elif size > 0.0:
-                found.append(Reaction(False, size, branch.nodes, branch.roads, {i: size}))
-    return tuple(r if r.gap else replace(r, shares={i: f / r.size for i, f in r.shares.items()}) for r in found)
+        if branch.element.switch is None:
+            continue
+        lower, upper = branch.element.limits
+        even, gap = -lower == upper, branch.element.switches_by(Guard.ELONGATION)
+        beside = [j for j, other in enumerate(found) if even and other.even and _sense(branch, other)]
+        if gap or not even:
+            found.append(Reaction(gap, lower, upper, branch.nodes, branch.roads, {i: 1.0}))
+        elif beside:
+            other = found[beside[0]]
+            shares = {**other.shares, i: _sense(branch, other) * upper}
+            whole = other.upper + upper
+            found[beside[0]] = replace(other, lower=-whole, upper=whole, shares=shares)
+        elif upper > 0.0:
+            found.append(Reaction(False, lower, upper, branch.nodes, branch.roads, {i: upper}))
+    return tuple(replace(r, shares={i: f / r.upper for i, f in r.shares.items()}) if r.even else r for r in found)
 
 
 def _sense(branch: Branch, other: Reaction) -> float:
@@ -159,7 +173,7 @@ def check_gaps(parts: Parts) -> None:
     massless = parts.inertia.massless
     E, R = parts.reaction_rows
     gaps = np.array([r.gap for r in parts.reactions], dtype=bool)
-    closed = gaps & np.array([r.size == 0.0 for r in parts.reactions], dtype=bool)
+    closed = gaps & np.array([not r.acts for r in parts.reactions], dtype=bool)
 
     def rigid(chosen: NDArray[np.bool_], rows: Matrix) -> int:
         impulses = range_and_null(massless.T @ E[chosen].T)[1]

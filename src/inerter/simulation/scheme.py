@@ -19,13 +19,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
-from inerter.kernels.stepping import FRICTION, GAP, HELD, KIND, ROWS, SIZE, TIED
-from inerter.simulation.parts import SAME, Parts, range_and_null, rank, unit_rows
+from inerter.kernels.stepping import CONSTANT, FRICTION, GAP, HELD, KIND, LOWER, ROWS, TIED, UPPER
+from inerter.simulation.parts import SAME, Parts, Reaction, range_and_null, rank, unit_rows
 
 Matrix = NDArray[np.float64]
 
@@ -176,7 +177,7 @@ def _reaction_matrix(parts: Parts, inverse: Matrix, loose: Matrix) -> Matrix:
     G[:count, :count] = E @ inverse @ E.T
     G[:count, count:] = -E @ loose
     G[count:, :count] = (E @ loose).T
-    G[count:, count:] = np.eye(free) * 1e-10 * (sum(r.size for r in parts.reactions if not r.gap) or 1.0)
+    G[count:, count:] = np.eye(free) * 1e-10 * (sum(_friction(r) for r in parts.reactions) or 1.0)
     if rank(unit_rows(E)) < count:
         give = np.diag(G)[:count]
         G[range(count), range(count)] += 1e-10 * np.maximum(give, 1e-6 * max(give.max(), 1e-6))
@@ -201,7 +202,7 @@ def _aims(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, 
             mixed.append(i)
         elif np.linalg.norm(E[i] @ inertia.massless) <= SAME * np.linalg.norm(E[i]):
             aims[i] = half[i]
-        else:
+        elif reaction.acts:
             mixed.append(i)
     Z = np.zeros((0, len(parts.reactions)))
     if not all(parts.reactions[i].gap for i in mixed):
@@ -230,11 +231,19 @@ def _observed(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matr
 
 
 def _law(parts: Parts, loose: Matrix, h: float) -> Matrix:
-    """Kind and size of each reaction; a gap's as the rate that crosses half of it in one step."""
+    """Kind and limits of each reaction; a gap's as the rates at which it is crossed from zero in one step."""
     law = np.zeros((ROWS, len(parts.reactions) + loose.shape[1]))
     law[KIND], law[HELD] = TIED, -1.0
     for i, reaction in enumerate(parts.reactions):
-        law[SIZE, i] = reaction.size / h if reaction.gap else reaction.size
-        if not reaction.gap or reaction.size > 0.0:
+        law[[LOWER, UPPER], i] = np.array([reaction.lower, reaction.upper]) / (h if reaction.gap else 1.0)
+        if reaction.acts:
             law[KIND, i] = GAP if reaction.gap else FRICTION
+        elif not reaction.gap:
+            law[KIND, i] = CONSTANT
     return law
+
+
+def _friction(reaction: Reaction) -> float:
+    """The larger of the two forces of a friction, if it is finite; zero for a gap."""
+    forces = [abs(force) for force in (reaction.lower, reaction.upper) if isfinite(force)]
+    return 0.0 if reaction.gap else max(forces, default=0.0)

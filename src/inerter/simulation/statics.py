@@ -27,7 +27,7 @@ _ROUNDING = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """Where everything is at rest; friction carries nothing."""
+    """Where everything is at rest; friction carries nothing, or as little as it can."""
 
     elongation: Matrix  # (branches,) of springs and gaps [m]; zero for others
     displacement: Matrix  # (nodes,) [m]
@@ -42,14 +42,16 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Equilib
     Raises `SimulationError` if the springs cannot carry the load.
     """
     parts = _parts(system, road, force)
-    loose = np.flatnonzero(parts.half_width > 0.0)
-    for sides in sorted(product((0, 1, -1), repeat=loose.size), key=lambda sides: sum(map(abs, sides))):
+    loose = np.flatnonzero(parts.ends[:, 0] < parts.ends[:, 1])
+    ways = [[side for side in (0, 1, -1) if not side or np.isfinite(_end(parts, int(i), side))] for i in loose]
+    for sides in sorted(product(*ways), key=lambda sides: sum(map(abs, sides))):
         found = _touching(parts, {int(i): side for i, side in zip(loose, sides, strict=True) if side})
         if found is not None:
             return found
+    way = "Start from a state of your own" if np.any(own_forces(system)) else "Start at rest"
     raise SimulationError(
         "The static load is not carried by springs: some part of it rests on dampers, inerters or friction alone, "
-        "which give way. Start at rest, or add a spring where the load passes."
+        f"which give way. {way}, or add a spring where the load passes."
     )
 
 
@@ -61,7 +63,7 @@ class _Parts:
     offset: Matrix  # [m]
     load: Matrix  # [N]
     compliance: Matrix  # [m/N] of springs; zero for others
-    half_width: Matrix  # [m] of gaps; zero for others
+    ends: Matrix  # (branches, 2) of gaps [m]; zero for others
     springs: list[int]
     gaps: list[int]
     others: list[int]
@@ -71,27 +73,41 @@ def _parts(system: PiecewiseSystem, road: Matrix, force: Matrix) -> _Parts:
     branches = system.graph.branches
     springs = [i for i, b in enumerate(branches) if b.element.linear is Linear.STIFFNESS]
     gaps = [i for i, b in enumerate(branches) if b.element.switches_by(Guard.ELONGATION)]
-    values = np.array([b.element.coefficient for b in branches])
-    compliance, half_width = np.zeros((2, values.size))
-    compliance[springs], half_width[gaps] = 1.0 / values[springs], values[gaps]
+    rows = np.array([b.nodes for b in branches]).reshape(len(branches), len(system.graph.nodes))
+    compliance, ends = np.zeros(len(branches)), np.zeros((len(branches), 2))
+    for i in springs:
+        compliance[i] = 1.0 / branches[i].element.coefficient
+    for i in gaps:
+        ends[i] = branches[i].element.limits
     return _Parts(
-        rows=np.array([b.nodes for b in branches]).reshape(len(branches), len(system.graph.nodes)),
+        rows=rows,
         offset=np.array([b.roads for b in branches]).reshape(len(branches), road.size) @ road,
-        load=force @ system.kinematics.ports,
+        load=force @ system.kinematics.ports - own_forces(system) @ rows,
         compliance=compliance,
-        half_width=half_width,
+        ends=ends,
         springs=springs,
         gaps=gaps,
         others=[i for i in range(len(branches)) if i not in springs and i not in gaps],
     )
 
 
+def own_forces(system: PiecewiseSystem) -> Matrix:
+    """The forces of all branches that act also at rest [N]: of a friction that cannot be without one, the smallest."""
+    elements = [b.element for b in system.graph.branches]
+    return np.array([np.clip(0.0, *e.limits) if e.switches_by(Guard.FORCE) else 0.0 for e in elements])
+
+
+def _end(parts: _Parts, gap: int, side: int) -> float:
+    """Elongation of a gap at one of its ends; of one without play, that which it has."""
+    return float(parts.ends[gap, 0 if side < 0 else 1])
+
+
 def _touching(parts: _Parts, closed: dict[int, int]) -> Equilibrium | None:
     """The equilibrium with these gaps, and no others, at their upper (1) or lower (-1) ends; None if there is none."""
-    rigid = [i for i in parts.gaps if i in closed or parts.half_width[i] == 0.0]
+    rigid = [i for i in parts.gaps if i in closed or not parts.ends[i, 0] < parts.ends[i, 1]]
     held, open_ = [*parts.springs, *rigid], [i for i in parts.gaps if i not in rigid]
     elongation = np.zeros(parts.offset.size)
-    elongation[rigid] = [closed.get(i, 0) * parts.half_width[i] for i in rigid]
+    elongation[rigid] = [_end(parts, i, closed.get(i, 0)) for i in rigid]
     force = _forces(parts, held, parts.load, elongation[held] - parts.offset[held])
     if force is None:
         return None
@@ -101,7 +117,10 @@ def _touching(parts: _Parts, closed: dict[int, int]) -> Equilibrium | None:
     for branches in (open_, parts.others):
         displacement, ways = _drawn_in(parts, branches, displacement, ways)
     elongation[open_] = _sum(parts.rows[open_], displacement, parts.offset[open_])
-    if np.any(np.abs(elongation[open_]) > parts.half_width[open_] * (1.0 + _BALANCED)):
+    lower, upper = parts.ends[open_].T
+    if np.any(elongation[open_] < lower - _BALANCED * np.abs(lower)):
+        return None
+    if np.any(elongation[open_] > upper + _BALANCED * np.abs(upper)):
         return None
     # what does not press is at its end only if others would otherwise be further out
     toward = _forces(parts, held, -parts.rows[open_].T @ elongation[open_], np.zeros(len(held)))

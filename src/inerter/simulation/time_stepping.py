@@ -12,6 +12,7 @@ The force of a damper on a road that jumps contains the jump, spread over a step
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 from time import perf_counter
 
 import numpy as np
@@ -175,7 +176,8 @@ def _settled(parts: Parts, table: StepTable, start: Start, offsets: Matrix) -> M
     held = np.vstack([masses, parts.E[parts.c + parts.b > 0.0], _touching(parts, elongation)])
     free = range_and_null(unit_rows(held))[1]
     stiffness = free.T @ parts.nodal(parts.k, parts.E) @ free
-    unbalanced = free.T @ (parts.E.T @ (parts.k * elongation))
+    constant = [r.upper * r.nodes for r in parts.reactions if not r.gap and not r.acts]
+    unbalanced = free.T @ (parts.E.T @ (parts.k * elongation) + sum(constant, np.zeros(parts.nodes)))
     return start.displacement - free @ (np.linalg.pinv(stiffness, rcond=1e-12, hermitian=True) @ unbalanced)
 
 
@@ -187,12 +189,14 @@ def _touching(parts: Parts, elongation: Matrix) -> Matrix:
     rows = [np.zeros((0, parts.nodes))]
     for reaction in parts.reactions:
         at = elongation[reaction.branch]
-        if reaction.gap and abs(at) > reaction.size * (1.0 + SAME) + 1e-12:
+        least, inside = (SAME * np.abs([reaction.lower, reaction.upper])).tolist()
+        if reaction.gap and not reaction.lower - least - 1e-12 <= at <= reaction.upper + inside + 1e-12:
+            branch = parts.branches[reaction.branch]
             raise SimulationError(
-                f"Gap {parts.branches[reaction.branch].label!r} starts at {at:g} m, beyond its half width of "
-                f"{reaction.size:g} m. Start within it."
+                f"{branch.element.key.capitalize()} {branch.label!r} starts at {at:g} m, beyond where it is met, at "
+                f"{' and '.join(f'{end:g} m' for end in (reaction.lower, reaction.upper) if isfinite(end))}."
             )
-        if not reaction.gap or abs(at) > (1.0 - SAME) * reaction.size:
+        if reaction.acts if not reaction.gap else not reaction.lower + least < at < reaction.upper - inside:
             rows.append(reaction.nodes[None])
     return np.vstack(rows)
 

@@ -162,8 +162,8 @@ def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
 
 
 def _turned(first: Branch, other: Branch) -> int:
-    """1 or -1 if two frictions that hold are between the same two ends, in the same order or the other one; else 0."""
-    if not all(b.element.switches_by(Guard.FORCE) and b.element.acts for b in (first, other)):
+    """1 or -1 if two even frictions that hold are between the same ends, in the same order or the other one; else 0."""
+    if not all(b.element.switches_by(Guard.FORCE) and b.element.acts and b.element.even for b in (first, other)):
         return 0
     row, beside = (np.concatenate([b.nodes, b.roads]) for b in (first, other))
     return next((turn for turn in (1, -1) if np.allclose(turn * row, beside, rtol=RANK_TOLERANCE, atol=0.0)), 0)
@@ -249,7 +249,7 @@ def _velocities(graph: Graph, inertia: _Inertia, pushed: Matrix, roads: int) -> 
     """
     count = len(graph.nodes)
     others = [b for b in graph.branches if b.element.linear is not Linear.MASS]
-    holding = [b for b in others if b.element.switch is None or b.element.switch.always_holds(b.element.coefficient)]
+    holding = [b for b in others if b.element.switch is None or b.element.always_holds]
     loose = null_space(np.vstack([inertia.nodes, stacked(holding, graph)[0]]))
     if loose.shape[1]:
         node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]

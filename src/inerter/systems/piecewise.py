@@ -39,7 +39,7 @@ class ConstantMatrices:
     rates: Matrix
     lengths: Matrix
     elements: NDArray[np.int64]
-    limit: Matrix
+    limits: Matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +210,7 @@ def _mechanics(
         rates=known.moving,
         lengths=known.lengths,
         elements=known.elements,
-        limit=np.array([sum(known.graph.branches[i].element.coefficient for i in group) for group in known.nonlinear]),
+        limits=np.array([_limits(known.graph, group) for group in known.nonlinear]).reshape(-1, 2),
     )
 
 
@@ -219,6 +219,11 @@ def _shares(graph: Graph, group: dict[int, int]) -> dict[int, float]:
     sizes = {i: graph.branches[i].element.coefficient for i in group}
     whole = sum(sizes.values())
     return {i: turned * (sizes[i] / whole if len(group) > 1 else 1.0) for i, turned in group.items()}
+
+
+def _limits(graph: Graph, group: dict[int, int]) -> list[float]:
+    """Between which forces or elongations the guard of a group stays in its middle state; those of several are even."""
+    return [sum(ends) for ends in zip(*(graph.branches[i].element.limits for i in group), strict=True)]
 
 
 def _weighted(graph: Graph, law: Linear, left: Matrix, right: Matrix) -> Matrix:

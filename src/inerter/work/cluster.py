@@ -54,7 +54,20 @@ def deaths(error: Exception) -> int:
     if isinstance(error, BrokenExecutor):
         return 1
     killed = getattr(sys.modules.get("distributed"), "KilledWorker", None)
-    return int(error.allowed_failures) + 1 if killed and isinstance(error, killed) else 0
+    if killed and isinstance(error, killed):
+        return int(error.allowed_failures) + 1
+    return int(isinstance(error, TypeError) and _raised_in(error) == "distributed.cfexecutor")
+
+
+def _raised_in(error: Exception) -> str:
+    """The module that raised an error.
+
+    Dask's executor takes the result of a process that ended just after it for an error, and fails to take it apart.
+    """
+    frame = error.__traceback__
+    while frame is not None and frame.tb_next is not None:
+        frame = frame.tb_next
+    return "" if frame is None else str(frame.tb_frame.f_globals.get("__name__"))
 
 
 def check(executor: Executor) -> None:

@@ -109,9 +109,35 @@ class Element(Network):
         return value * self.gain
 
     @property
+    def limits(self) -> tuple[float, float]:
+        """Between which forces [N], or elongations [m], what switches is in its middle state: plus and minus its value.
+
+        A kind whose law is not even in both directions has others. One that is infinite is never met; where both are
+        the same, the force, or the length, is always that one.
+        """
+        return -self.coefficient, self.coefficient
+
+    @property
+    def even(self) -> bool:
+        """Whether its limits are as far from zero in both directions."""
+        lower, upper = self.limits
+        return -lower == upper
+
+    @property
     def acts(self) -> bool:
-        """Whether it switches, by a value that is not zero or still to be chosen."""
-        return self.switch is not None and self.value != 0.0
+        """Whether it switches, by limits that are apart or still to be chosen."""
+        if self.switch is None or isinstance(self.value, Free | Tied):
+            return self.switch is not None
+        lower, upper = self.limits
+        return lower < upper
+
+    @property
+    def always_holds(self) -> bool:
+        """Whether what switches holds its length when nothing forces it: friction with a force, a closed gap."""
+        if self.switches_by(Guard.FORCE):
+            lower, upper = self.limits
+            return lower < 0.0 < upper
+        return not self.acts
 
     def switches_by(self, guard: Guard) -> bool:
         """Whether it switches under this guard."""

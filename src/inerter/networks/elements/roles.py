@@ -29,8 +29,8 @@ class Linear(Enum):
 class Guard(Enum):
     """What a switching element is watched by while it holds, or is loose."""
 
-    FORCE = "force"  # holds its length in state 0 within plus and minus its value; moves against that force else
-    ELONGATION = "elongation"  # loose in state 0 within plus and minus its value; holds at these ends else
+    FORCE = "force"  # holds its length in state 0 while its force is between its limits; moves against one of them else
+    ELONGATION = "elongation"  # loose in state 0 between its limits; holds at one of them else
 
 
 class Statistical(Enum):
@@ -54,10 +54,6 @@ class Switch:
     def said(self, name: str) -> str:
         """That an element of this name is in its middle state."""
         return f"{name} {self.at_middle or f'is {self.middle}'}"
-
-    def always_holds(self, value: float) -> bool:
-        """Whether an element of this value holds its length whenever nothing forces it: with a gap, if it is closed."""
-        return value > 0.0 if self.guard is Guard.FORCE else value == 0.0
 
     @property
     def states(self) -> dict[int, str]:

@@ -6,12 +6,14 @@ import csv
 import io
 import json
 import tomllib
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from app.conftest import DOCUMENT, EXAMPLES, changed
+from campaigns import sampled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -226,8 +228,9 @@ COMPARED: list[dict[str, Any]] = [
 ]
 
 
-@pytest.mark.parametrize("count", [2, 3, 4])
-@pytest.mark.parametrize("method", ["norm", "expected-value"])
+@pytest.mark.parametrize(
+    ("count", "method"), sampled(product([2, 3, 4], ["norm", "expected-value"]), [(2, "norm"), (3, "expected-value")])
+)
 def test_comparisons_are_those_of_python(client: TestClient, count: int, method: str) -> None:
     """Each beside the first on the same roads, also one of another study; a tie is told as one."""
     document = changed(study={"evaluate": ["norm", "expected-value"], "realisations": 4}, elements={"f": "100 N"})
@@ -341,7 +344,7 @@ def test_pictures(client: TestClient, kind: str) -> None:
     assert client.post("/api/figure", json=body).content.startswith(b"<?xml")
 
 
-@pytest.mark.parametrize("seed", [0, pytest.param(5, marks=pytest.mark.campaign)])
+@pytest.mark.parametrize("seed", sampled([0, 5], seldom=[5]))
 def test_a_picture_of_the_motion_is_that_of_a_simulation_file(client: TestClient, tmp_path: Path, seed: int) -> None:
     """The file that says the same, drawn by the command line's functions; friction sticks in it."""
     document = {**changed(elements={"c": "3 kN s/m", "b": "60 kg", "f": "200 N"}), "study": {"indices": ["J1"]}}

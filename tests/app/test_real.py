@@ -199,7 +199,7 @@ def test_the_command_line_loads_none_of_it() -> None:
     assert json.loads(found.stdout.splitlines()[-1]) == []
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_processes_that_die_cost_what_they_did(tmp_path: Path) -> None:
     """Whichever process of a server is killed, at random times: it answers again, and what was done says so."""
     random = np.random.default_rng(0)

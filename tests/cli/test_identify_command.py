@@ -210,7 +210,7 @@ def test_a_faulty_sensor_is_named_in_the_first_line(
     assert data["misfit"]["fitted"] > 1.5
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_known_mass_in_front_of_the_cell_is_an_option(rattled: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = [str(rattled / "heavy.csv"), "--config", str(rattled / "rig.toml"), "-o", str(rattled / "heavy")]
     sensors = ["--fixture-mass", "6 kg", "--force-noise", "0.15 N", "--displacement-noise", "0.42 um"]

@@ -132,6 +132,7 @@ def test_what_touches_in_the_drawing_is_the_network(network, s):
     assert conductance(schematic(network), s) == pytest.approx(network.admittance(s).real, rel=1e-6)
 
 
+@pytest.mark.campaign
 def test_a_hundred_levels():
     check_places(schematic(nest(100)))
 

@@ -132,6 +132,7 @@ def test_many_samples_are_drawn_as_few_points():
     assert line.get_ydata().max() == long.run["device_force"].max()
 
 
+@pytest.mark.campaign
 def test_the_same_run_gives_the_same_bytes(tmp_path):
     first, second = (draw_simulation(case_of("rig"), tmp_path / name) for name in "12")
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]

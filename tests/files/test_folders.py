@@ -95,7 +95,7 @@ def test_a_folder_that_is_not_ours_is_refused_whatever_is_asked(
         assert "--resume" not in message or "--resume" in option
 
 
-@pytest.mark.parametrize("command", [RUN, SIMULATE, REPRODUCE], ids=lambda c: c[0])
+@pytest.mark.parametrize("command", sampled([RUN, SIMULATE, REPRODUCE], [RUN]), ids=lambda c: c[0])
 def test_what_a_user_changed_or_added_is_not_replaced(
     command: list[str], home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -250,7 +250,7 @@ def test_no_right_to_write_is_a_wrong_request(home: Path, capsys: pytest.Capture
 
 @pytest.mark.parametrize(
     ("command", "again"),
-    sampled(product([RUN, SIMULATE, REPRODUCE], [False, True]), [(RUN, True), (SIMULATE, False)]),
+    sampled(product([RUN, SIMULATE, REPRODUCE], [False, True]), [(RUN, True), (SIMULATE, False)], kept=2),
     ids=lambda value: value[0] if isinstance(value, list) else ("new", "force")[value],
 )
 def test_a_full_disk_is_one_sentence_and_old_results_stay(
@@ -350,8 +350,9 @@ EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=LONG)]
 
 
 def kills(first: list[str], *others: list[str]) -> pytest.MarkDecorator:
-    """Some steps of the first command always, of the others in a campaign, and every step of all in a marathon."""
-    some = [pytest.param(first, False), *(pytest.param(c, False, marks=pytest.mark.campaign) for c in others)]
+    """Some steps of the first command always, of the second in a campaign; of others, and every step, in a marathon."""
+    some = [(command, False) for command in (first, *others)]
+    some = sampled(some, some[:1], some[2:])
     parts = [*some, *(pytest.param(c, True, marks=LONG) for c in (first, *others))]
     return pytest.mark.parametrize(
         ("command", "every"), parts, ids=lambda value: value[0] if isinstance(value, list) else ("some", "every")[value]

@@ -85,7 +85,7 @@ def test_models_by_name() -> None:
             it.identify(recorded(1), strange)  # type: ignore[arg-type]
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_model_by_name_is_fitted_as_the_model_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("inerter.identification.concluding.explanations", lambda *arguments: [])  # which take long
     named, given = (it.identify(recorded(1), model, starts=8) for model in ("ideal", MODELS["ideal"]))

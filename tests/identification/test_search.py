@@ -120,7 +120,7 @@ def test_a_motion_repeats_only_without_tones_between_its_harmonics() -> None:
     assert np.array_equal(repeated(mixed), mixed.motion.displacement)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_device_that_nobody_can_predict_has_no_parameters() -> None:
     """Hardly damped, it rattles chaotically: errors of the encoder alone change much of its force."""
     command = it.cosine(amplitude=2e-3, frequency=4.0) + it.cosine(amplitude=3e-4, frequency=23.0)

@@ -54,7 +54,7 @@ def test_the_papers_experiment():
     assert np.std(found.friction["force"] - found.friction["model"]) < 0.3
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_with_the_inertance_of_the_geometry_and_a_model_without_backlash(slow, fast):
     model = (it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100.0, 2e4, name="cs"))) - (
         it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f"))
@@ -72,7 +72,7 @@ def test_with_the_inertance_of_the_geometry_and_a_model_without_backlash(slow, f
     assert found.friction.law.interval[0] * 0.998 <= inner[0] <= inner[1] <= found.friction.law.interval[1] * 1.002
 
 
-@pytest.mark.parametrize("saturated", sampled([True, False], ()))
+@pytest.mark.parametrize("saturated", sampled([True, False], kept=1))
 def test_a_check_that_does_not_agree_is_told(slow, fast, saturated):
     """Another flywheel in the check, with a saturated load cell or without."""
     model = SHAFT - (it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f")))

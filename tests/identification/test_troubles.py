@@ -128,7 +128,7 @@ def test_a_rigid_device_is_fitted_down_to_the_noise_of_the_cell() -> None:
 HEAVY = replace(RIGID, sensors=replace(RIGID.sensors, fixture=4.0))
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_known_fixture_is_taken_away() -> None:
     known = fitted(HEAVY, 2)
     assert known.status.ok
@@ -144,7 +144,7 @@ def test_an_unknown_fixture_is_spoken_of() -> None:
     assert any(note.startswith("b: holds what moves with the table") for note in unknown.notes)
 
 
-@pytest.mark.parametrize("duration", sampled([1.0, 2.0], seldom=[2.0]))
+@pytest.mark.parametrize("duration", sampled([1.0, 2.0], kept=0))
 def test_known_noise_is_what_a_residual_is_judged_by(duration: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a load cell that is said to be much better than it is, a right model leaves too much."""
     monkeypatch.setattr("inerter.identification.concluding.explanations", lambda *arguments: [])  # which take long

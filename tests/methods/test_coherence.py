@@ -89,17 +89,18 @@ def check_one(seed):
         assert found.value == pytest.approx(value, rel=2e-5 + rough), output
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", sampled(range(3), [0]))
 def test_norms_by_quadrature(seed):
     check_one(seed)
 
 
-@pytest.mark.parametrize("chunk", sampled(range(5), kept=1))
+@pytest.mark.parametrize("chunk", sampled(range(5), kept=0))
 def test_many_norms_by_quadrature(chunk):
     for seed in range(3 + 12 * chunk, 15 + 12 * chunk):
         check_one(seed)
 
 
+@pytest.mark.campaign
 def test_searches_with_a_constant_coherence_are_compiled(monkeypatch):
     """Values and slopes against quadrature, and none of them from fractions, which take a thousand times as long."""
     vehicle, road = car(np.random.default_rng(1)), it.Road(5e-7, 22.0, coherence=it.Coherence.constant(0.6))

@@ -87,7 +87,7 @@ def test_compiled_norms_and_gradients_with_random_filters(seed):
     assert checked >= 3
 
 
-@pytest.mark.parametrize("case", sampled(["Wk", "one each", "late axle"], ["Wk"]))
+@pytest.mark.parametrize("case", sampled(["Wk", "one each", "late axle"], ["Wk"], kept=1))
 def test_the_norm_is_the_integral_of_both_responses(case):
     """By quadrature of |H|^2 |F|^2 over frequency, with dynamic stiffness in place of states; and the gradient."""
     c, b = Damper(free(1e3, 1e5, "c")), Inerter(free(10.0, 2e3, "b"))

@@ -92,7 +92,7 @@ def misspelt(rng, name):
     return [*ways, name[:i] + name[i + 1] + name[i] + name[i + 2 :]][int(rng.integers(4))]
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), [1, 3, 4, 8]))
+@pytest.mark.parametrize("seed", sampled(range(12), [1, 3, 4, 8], kept=3))
 def test_a_name_that_is_not_there_gets_the_same_sentence_everywhere(seed):
     rng = np.random.default_rng(seed)
     strut = [*STRUTS.values()][seed % 2]

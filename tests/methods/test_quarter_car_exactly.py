@@ -120,6 +120,7 @@ def test_an_explicit_filter_is_the_convention_s_filter():
     assert evaluate(car, explicit, Norm()).value < evaluate(car, J3, Norm()).value
 
 
+@pytest.mark.campaign
 @given(logarithmic(1e-9, 1e-3), logarithmic(1.0, 100.0))
 def test_indices_grow_with_the_root_of_roughness_and_speed(roughness, speed):
     car, road = paper_quarter_car(LAYOUTS["S2"](120e3, 3e3, 200.0)), Road(roughness, speed)

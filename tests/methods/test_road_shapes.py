@@ -113,7 +113,8 @@ USUAL = {
 
 
 @pytest.mark.parametrize(
-    ("index", "conventions"), sampled(product(INDICES, USUAL), seldom=[("J1", "exact"), ("J3", "paper2008")])
+    ("index", "conventions"),
+    sampled(product(INDICES, USUAL), seldom=[("J1", "exact"), ("J3", "paper2008"), ("J3", "exact")]),
 )
 def test_compiled_norms_are_those_without_rounding(index, conventions):
     assert check_family(21, 8, conventions, index) >= USUAL[conventions]
@@ -145,7 +146,7 @@ def test_gradients_are_the_slopes_of_values(index, conventions):
     assert checked >= 10
 
 
-@pytest.mark.parametrize(("axles", "twins"), sampled([(3, 0), (2, 1)], [(2, 1)]))
+@pytest.mark.parametrize(("axles", "twins"), sampled([(3, 0), (2, 1)], [(2, 1)], kept=0))
 def test_the_norm_is_the_integral_of_the_frequency_response(axles, twins):
     """By quadrature along the frequency axis: no states, and so no drift."""
     made, road = vehicle(np.random.default_rng(24), axles, twins), Road(2e-6, 20.0)

@@ -33,7 +33,7 @@ def simplex(car, index, method, starts):
     return float(np.exp(min(found)))
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_friction_moves_the_optimum_and_no_simplex_finds_less():
     car = paper_quarter_car(k | c - (Inerter(free(10.0, 5e3, "b")) | Friction(100.0)))
     method = ExpectedValue(realisations=2, seed=0)

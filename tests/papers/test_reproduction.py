@@ -297,7 +297,7 @@ def test_what_no_convention_explains_is_told() -> None:
     assert "No convention that was tried explains it" in text
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_an_optimum_with_friction_is_no_worse_than_the_linear_one() -> None:
     found = beyond.compute_optimum("J1 S3-100N")
     assert found["percent"] < 0.0  # type: ignore[operator]
@@ -317,6 +317,7 @@ def test_tasks_give_numbers_that_json_has() -> None:
     assert numbers["seconds"] > 0.0
 
 
+@pytest.mark.campaign
 def test_one_table_from_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Its rows in text, CSV and page; a second run with --resume computes nothing anew."""
     folder = tmp_path / "paper"

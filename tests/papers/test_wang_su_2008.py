@@ -51,7 +51,7 @@ ALWAYS = [row for row in DESIGNS if row.table == 1 or row.layout == "S1"]
 ALWAYS += [row for row in DESIGNS if (row.table, row.index, row.layout) == (2, "J5", "S3-soft")]
 
 
-@pytest.mark.parametrize("row", sampled(DESIGNS, ALWAYS, kept=2), ids=name)
+@pytest.mark.parametrize("row", sampled(DESIGNS, ALWAYS, kept=1), ids=name)
 def test_designs_are_found_from_scratch(row: PrintedRow) -> None:
     """At or below the printed value, to its printed digits, from the widest bounds and with no hint."""
     vehicle = source(row).design(row.layout)
@@ -77,7 +77,7 @@ def test_seeds_agree_on_the_half_car(layout: str, index: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "part", sampled(["table1", "table2", "figure11", "friction1", "friction2"], ["table1", "table2"])
+    "part", sampled(["table1", "table2", "figure11", "friction1", "friction2"], ["table1", "table2"], ["friction1"])
 )
 def test_studies_can_be_run(part: str) -> None:
     check_study(study(part))

@@ -69,7 +69,7 @@ def test_what_is_read_is_what_was_written(seed, tmp_path):
     check_one(seed, tmp_path)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_many_of_them(tmp_path):
     for seed in range(40, 2000):
         check_one(seed, tmp_path)

@@ -87,7 +87,7 @@ def joined(seed: int) -> float | None:
     return max(apart(cut), balances(cut))
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), [0]))
+@pytest.mark.parametrize("chunk", sampled(range(4), [0], kept=2))
 def test_two_parts_are_the_whole(chunk: int) -> None:
     found = {seed: joined(seed) for seed in range(5000 + 100 * chunk, 5000 + 100 * chunk + 10)}
     assert max(f for f in found.values() if f is not None) < CLOSE, found

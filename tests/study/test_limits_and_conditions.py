@@ -97,6 +97,7 @@ def test_a_limit_on_a_ratio_is_a_number(load: Callable[..., Study], of: str, sen
     assert alone[0].value == 0.3
 
 
+@pytest.mark.campaign
 def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., Study], tmp_path: Path) -> None:
     study = load('indices = ["J1"]\noptimise = "norm"\nsubject_to = { J3 = { at_most = "10 N" } }')
     result = run_study(study, tmp_path / "out")

@@ -65,7 +65,7 @@ def weighable(mechanism, name):
     return True
 
 
-@pytest.mark.parametrize("seed", sampled(range(13), [0], kept=1))
+@pytest.mark.parametrize("seed", sampled(range(13), [0], kept=0))
 def test_all_analyses_know_the_same_names(seed):
     looked_at = left_out = 0
     for mechanism, system in members(seed, 5):

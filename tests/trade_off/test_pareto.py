@@ -74,7 +74,7 @@ KINDS = ["S2", "S3", "S1 k", "S3 k", "four"]
 MEMBERS = list(product(KINDS, range(3), range(3), [20_000, 100_000]))  # with so many random designs
 
 
-@pytest.mark.parametrize("other", [J5, it.SuspensionTravel(ROAD)], ids=["J5", "travel"])
+@pytest.mark.parametrize("other", sampled([J5, it.SuspensionTravel(ROAD)], [J5]), ids=["J5", "travel"])
 def test_an_end_that_leaves_the_other_criterion_open_is_the_best_in_that_too(other):
     """The least static stiffness has any damper."""
     car, indices = paper_quarter_car(strut("S3 k")), [it.static_stiffness("strut"), other]
@@ -88,7 +88,7 @@ def test_an_end_that_leaves_the_other_criterion_open_is_the_best_in_that_too(oth
 
 @pytest.mark.parametrize(
     ("kind", "pair", "number", "count"),
-    sampled(MEMBERS, [("S3", 0, 0, 20_000)], seldom=[member for member in MEMBERS if member[-1] > 20_000], kept=3),
+    sampled(MEMBERS, [("S3", 0, 0, 20_000)], seldom=[member for member in MEMBERS if member[-1] > 20_000], kept=2),
 )
 def test_no_random_design_dominates_a_point(kind, pair, number, count):
     car, indices = random_quarter_car(np.random.default_rng([number, 77]), strut(kind)), list(TWO[pair])
@@ -111,7 +111,7 @@ def test_no_random_design_dominates_a_point(kind, pair, number, count):
 HARD = [83, 89, 93, 95]  # fronts that had gaps, as 16
 
 
-@pytest.mark.parametrize("number", sampled(range(120), [16], often=HARD, kept=2))
+@pytest.mark.parametrize("number", sampled(range(120), [16], often=HARD[2:], kept=1))
 def test_fronts_of_a_force_have_no_gaps_that_are_not_told(number):
     """Many designs may have the least force of a damper: the best of them in the other criterion is the end."""
     rng = np.random.default_rng([number, 818])
@@ -238,7 +238,7 @@ def test_a_front_that_no_design_reaches():
         _ = front.knee
 
 
-@pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], seldom=["S3 k", "four"]))
+@pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], kept=0))
 def test_three_criteria(kind):
     car = paper_quarter_car(strut(kind))
     front = it.pareto(car, [J1, J3, J5], NORM, points=15)
@@ -289,6 +289,7 @@ def test_the_knee_is_farthest_from_the_line_of_the_ends():
     assert front.knee == int(np.argmax(away))
 
 
+@pytest.mark.campaign
 def test_a_front_of_what_is_simulated():
     screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
     car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - screw)

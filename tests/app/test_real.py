@@ -142,7 +142,8 @@ def test_it_ends_and_leaves_nothing(served: Any) -> None:
     deadline = time.monotonic() + 60.0
     while client.get(f"/api/work/{work}").json()["done"] < 1 and time.monotonic() < deadline:
         time.sleep(0.05)
-    assert client.get(f"/api/work/{work}").json()["state"] == "running"
+    told = client.get(f"/api/work/{work}").json()
+    assert told["state"] == "running", told
     children = children_of(process)
     assert len(children) >= 2
     process.send_signal(signal.SIGTERM)

@@ -139,7 +139,7 @@ print(doubled(1.0), tripled(1.0), halved(1.0))
 
 
 @pytest.mark.parametrize(
-    "helper", sampled(["inerter.kernels.prepare", "there.is.no.such.module"], ["inerter.kernels.prepare"], kept=0)
+    "helper", sampled(["inerter.kernels.prepare", "there.is.no.such.module"], seldom=["there.is.no.such.module"])
 )
 def test_kernels_that_are_missing_are_compiled_beforehand_and_each_is_told_once(tmp_path: Path, helper: str) -> None:
     (tmp_path / "small.py").write_text(SEVERAL, encoding="utf-8")

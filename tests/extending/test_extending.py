@@ -318,6 +318,7 @@ def test_the_paper_is_reproduced(session: Session, tmp_path: Path, as_json: bool
     assert "--force" in session.command("reproduce", "usual-strut-2031", "-o", "paper", cwd=tmp_path, code=2)[1]
 
 
+@pytest.mark.campaign
 def test_the_value_of_the_element_is_swept(session: Session, tmp_path: Path) -> None:
     """A flywheel of twice the moment in a screw of sqrt(2) times the pitch is the same device."""
     values = {}

@@ -346,7 +346,9 @@ def chosen(count: int, every: bool) -> list[int]:
 
 
 LONG = [pytest.mark.marathon, pytest.mark.timeout(7200)]
-EVERY = pytest.mark.parametrize("every", [False, pytest.param(True, marks=LONG)], ids=["some", "every"])
+EVERY = pytest.mark.parametrize(
+    "every", [pytest.param(False, marks=pytest.mark.campaign), pytest.param(True, marks=LONG)], ids=["some", "every"]
+)
 
 
 def kills(first: list[str], *others: list[str]) -> pytest.MarkDecorator:

@@ -144,12 +144,15 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     page.get_by_role("group", name="Indices of the study").get_by_role("button", name="J3", exact=True).click()
     page.wait_for_selector("td[data-index=J3]")
     asked = page.locator(".asked")
-    for of, sense, value in (("suspension-travel", "at_most", "8 mm"), ("static-stiffness.strut", "at_least", "600 N")):
+    for of, sense, value, told in (
+        ("suspension-travel", "at_most", "8 mm", ".limits li"),
+        ("static-stiffness.strut", "at_least", "600 N", ".problems >> text=static-stiffness"),
+    ):
         asked.locator("[name=of]").select_option(of)
         asked.locator("[name=sense]").select_option(sense)
         asked.locator("[name=value]").fill(value)
         asked.get_by_role("button", name="Add").click()
-    page.wait_for_selector(".problems >> text=static-stiffness")
+        page.wait_for_selector(told)  # which moves the button: what is pressed meanwhile misses it
     entry = page.get_by_label("static-stiffness strut at least", exact=True)
     entry.fill("60 kN/m")
     entry.press("Enter")

@@ -61,7 +61,7 @@ RMS, PEAK = "it.RideComfort(it.Road(roughness=5e-7, speed=25))", "it.LoadCarryin
 
 
 @pytest.mark.parametrize(
-    ("way", "index"), sampled(product(["none", "plain"], [RMS, PEAK]), [("none", RMS)], seldom=[("plain", PEAK)])
+    ("way", "index"), sampled(product(["none", "plain"], [RMS, PEAK]), [("none", RMS)], seldom=[("plain", RMS)])
 )
 def test_norms_do_not_depend_on_how_kernels_are_compiled(way: str, index: str) -> None:
     program = NORMS.format(index=index)

@@ -148,7 +148,7 @@ def test_steps_that_do_not_divide_the_hold(half):
         assert whole[name] == pytest.approx(odd[name], abs=1e-7 * odd.rms(name))
 
 
-@pytest.mark.parametrize("seed", sampled([0, 1, 3], [1, 3]))
+@pytest.mark.parametrize("seed", sampled([0, 1, 3], [3]))
 def test_time_stepping_comes_to_the_same(seed):
     car, (road, *_), _, half = random_car(seed)
     outputs = ["sprung_velocity", "sprung_displacement"] + (["pitch_velocity"] if half else [])

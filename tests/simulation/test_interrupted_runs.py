@@ -88,7 +88,7 @@ def test_ctrl_c_ends_long_work_soon(what: str) -> None:
     assert process.returncode == 0
 
 
-@pytest.mark.parametrize("what", sampled(SHORT, ["simulate"]))
+@pytest.mark.parametrize("what", sampled(SHORT))
 def test_ctrl_c_is_a_keyboard_interrupt(what: str) -> None:
     with script(_OFTEN, SHORT[what]) as process:
         output, _ = process.communicate(timeout=240)

@@ -90,6 +90,7 @@ def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
     assert "S2, knee" in page
 
 
+@pytest.mark.campaign
 def test_an_interrupted_front_goes_on_to_the_same_bytes(found: StudyResult, tmp_path: Path) -> None:
     again = run_study(found.study, tmp_path / "again").folder
     journal = again / "journal.jsonl"

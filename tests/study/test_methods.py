@@ -101,6 +101,7 @@ def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(resu
     assert found == pytest.approx(expected, rel=0.02)
 
 
+@pytest.mark.campaign
 def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyResult) -> None:
     study = budgeted.study
     (found,) = budgeted.budgets

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from campaigns import sampled
 from rigs import BALL_SCREW, device, fit_test
 
 import inerter as it
@@ -132,7 +131,8 @@ def test_a_device_that_nobody_can_predict_has_no_parameters() -> None:
     assert all(np.isnan(parameter.value) for parameter in fit.parameters.values())
 
 
-@pytest.mark.parametrize("model", sampled([FLYWHEEL, BALL_SCREW], seldom=[BALL_SCREW]), ids=["flywheel", "ball screw"])
+@pytest.mark.marathon
+@pytest.mark.parametrize("model", [FLYWHEEL, BALL_SCREW], ids=["flywheel", "ball screw"])
 def test_progress_never_goes_back(model: it.Network) -> None:
     """Also where a record asks for further searches."""
     told: list[float] = []

@@ -246,7 +246,7 @@ def test_what_kills_every_worker_is_named_and_the_rest_complete(tmp_path: Path, 
     assert len(list(tmp_path.glob("mark*"))) == 3
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(900)
 def test_workers_of_another_kind_are_refused(tmp_path: Path) -> None:
     """Without the package; with other sources of it; and one of these that comes when the work has begun."""

@@ -111,6 +111,12 @@ class Status:
 OK = Status()
 
 
+def with_article(word: str) -> str:
+    """A word of a message after its indefinite article."""
+    is_vowel = word[0] in "aeiou" and not word.startswith(("one", "uni"))
+    return f"{'an' if is_vowel else 'a'} {word}"
+
+
 def __getattr__(name: str) -> object:
     if name != "IndicatorError":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -281,6 +281,43 @@ def test_a_simulation_file_knows_the_vehicle_the_element_and_the_signal(session:
     assert "J_friction" in said
 
 
+STOPPED = """title = "Onto the bump stop"
+[vehicle]
+model = "quarter-car"
+sprung_mass = "250 kg"
+unsprung_mass = "35 kg"
+tyre_stiffness = "150 kN/m"
+[elements]
+k = "10 kN/m"
+c = "1 kN s/m"
+kb = { kind = "bump stop", stiffness = "90 kN/m", clearance = "20 mm" }
+[layouts]
+stopped = "k | c | kb"
+[signal]
+kind = "sine"
+amplitude = "50 mm"
+frequency = "1.5 Hz"
+[road]
+speed = "20 m/s"
+[simulation]
+duration = "2 s"
+"""
+
+
+def test_a_report_tells_of_the_states_that_an_element_can_have(session: Session, tmp_path: Path) -> None:
+    (tmp_path / "stopped.toml").write_text(STOPPED, encoding="utf-8")
+    said, _ = session.command("simulate", "stopped.toml", cwd=tmp_path)
+    (row,) = [line for line in said.splitlines() if "kb_stop" in line]
+    assert re.search(r"one-sided stop kb_stop +\d+  open \d+\.\d %, contact \d+\.\d %$", row)
+    assert "never" not in said
+    text = STOPPED[: STOPPED.index("[signal]")] + '[road]\nspeed = "20 m/s"\nroughness = "5e-7 m^3/cycle"\n'
+    text += '[study]\nindices = ["J1"]\nevaluate = ["norm", "expected-value"]\nrealisations = 2\n'
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    said, _ = session.command("run", "study.toml", "-j", "1", "-o", "out", cwd=tmp_path)
+    assert "without one-sided stop" in said
+    assert "friction" not in said
+
+
 def test_a_journal_counts_for_one_state_of_the_distribution(place: Path, study: Path, tmp_path: Path) -> None:
     """With a changed source, or without the distribution, what makes the numbers is another."""
     origin = "from inerter.work.origin import origin, versions; print(origin(), versions().get('inerter-extending'))"

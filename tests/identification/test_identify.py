@@ -69,7 +69,7 @@ FREE_SHAFT = it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100, 2e
 FREE_FLYWHEEL = it.Inerter(it.free(10, 500, name="b")) | it.Friction(it.free(0, 100, name="f"))
 
 
-@pytest.mark.parametrize("kind", sampled(["rigid", "elastic"], kept=0))
+@pytest.mark.parametrize("kind", sampled(["rigid", "elastic"], kept=1))
 def test_two_records_share_parameters_and_have_their_own_offsets(kind):
     """One record tells the friction, the other the rest; the load cell is set to zero anew for each."""
     model = FREE_FLYWHEEL if kind == "rigid" else FREE_SHAFT - FREE_FLYWHEEL
@@ -83,7 +83,7 @@ def test_two_records_share_parameters_and_have_their_own_offsets(kind):
         assert fit.parameters[name].value == pytest.approx(PAPER[name], rel=0.02)
 
 
-@pytest.mark.parametrize("kind", sampled(["rigid", "elastic"], kept=0))
+@pytest.mark.parametrize("kind", sampled(["rigid", "elastic"], kept=1))
 def test_gain_and_delay_of_the_sensor(kind):
     flywheel = it.Inerter(113.0) | it.Friction(it.free(0, 100, name="f"))
     shaft = it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100, 2e4, name="cs"))

@@ -470,7 +470,7 @@ def test_other_numbers_are_checked_as_values_are(lead):
 def test_statistical_linearisation_refuses_what_says_so():
     class Refused(Clutch):
         key = "ratchet"
-        statistical = Statistical.REFUSED
+        statistical = Statistical.ITSELF
 
     with pytest.raises(PerformanceIndexError, match="'f' in 'strut' is a ratchet"):
         it.evaluate(car(k | c | Refused(5.0, "f")), COMFORT, it.StatisticalLinearisation())

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from itertools import count
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -14,8 +16,10 @@ from uneven import OneSidedStop, OneWay, Push, UnevenFriction, valved_damper
 
 import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, Spring, simulate
-from inerter.errors import MechanismError, PerformanceIndexError, SimulationError
+from inerter.errors import DesignError, MechanismError, PerformanceIndexError, SimulationError
 from inerter.networks.elements import Element, Network
+from inerter.networks.elements.roles import Guard, Statistical, Switch
+from inerter.systems.piecewise import piecewise, revalued
 
 MASS, STIFFNESS = 10.0, 4000.0  # 20 rad/s
 
@@ -196,3 +200,126 @@ def test_a_start_beyond_a_stop_is_refused():
     start[1:] = -0.05
     with pytest.raises(SimulationError, match=r"Stop 's' starts at -0\.05 m, beyond where it is met, at -0\.01 m\."):
         simulate(car, **still, initial=start, integrator="time-stepping")
+
+
+def beside_a_friction(uneven: Element) -> it.Mechanism:
+    return oscillator(Spring(STIFFNESS) | Damper(20.0) | uneven | Friction(5.0, "f"))
+
+
+def test_what_another_member_of_the_kind_was_does_not_matter():
+    """Frictions that are alike in both directions may share a force; the next of the kind is not alike."""
+    wave = {"force": it.sine(amplitude=200.0, frequency=2.0)}
+    simulate(beside_a_friction(UnevenFriction(10.0, 10.0, "u")), forces=wave, duration=0.1)
+    run = simulate(beside_a_friction(UnevenFriction(30.0, 10.0, "u")), forces=wave, duration=1.0, step=1e-3)
+    assert [(run[name].min(), run[name].max()) for name in ("u_force", "f_force")] == [(-10.0, 30.0), (-5.0, 5.0)]
+
+
+@dataclass(frozen=True)
+class Between(Push):
+    """A kind whose limits are given."""
+
+    ends: ClassVar[tuple[float, float]]
+    key = "law"
+    switch = Switch(Guard.FORCE, "down", "stick", "up")
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        return self.ends
+
+
+def between(lower: float, upper: float, guard: Guard = Guard.FORCE) -> Element:
+    kind = type("Law", (Between,), {"ends": (lower, upper), "switch": Switch(guard, "down", "middle", "up")})
+    return kind(1.0, "x")
+
+
+@pytest.mark.parametrize("integrator", ["event-driven", "time-stepping"])
+@pytest.mark.parametrize(
+    ("lower", "upper"),
+    [
+        (5.0, -5.0),
+        (math.nan, 5.0),
+        (5.0, math.nan),
+        (-math.inf, math.inf),
+        (math.inf, math.inf),
+        (-math.inf, -math.inf),
+    ],
+)
+def test_limits_that_cannot_be_are_one_sentence(lower, upper, integrator):
+    for guard in Guard:
+        strut = Spring(STIFFNESS) | Damper(40.0) | between(lower, upper, guard) - Spring(1e3)
+        with pytest.raises(it.InerterError, match=f"Law 'x' switches at {lower} and {upper}; expected two numbers in"):
+            simulate(oscillator(strut), forces={"force": pushed(1.0)}, duration=0.1, integrator=integrator)
+
+
+@pytest.mark.parametrize(("lower", "upper", "rest"), [(0.005, 0.02, 0.005), (-0.02, -0.005, -0.005)])
+def test_a_gap_on_one_side_of_zero_rests_at_its_nearer_end(lower, upper, rest):
+    strut = Spring(STIFFNESS) | Damper(40.0) | between(lower, upper, Guard.ELONGATION) - Damper(300.0)
+    run = simulate(oscillator(strut), forces={"force": pushed(0.0)}, duration=0.1, step=1e-3)
+    np.testing.assert_allclose(run["x_stroke"], rest, rtol=1e-12)
+
+
+def test_a_rest_between_a_slot_and_a_gap_is_one_that_both_can_have():
+    parts = between(0.005, 0.02, Guard.ELONGATION) | Gap(0.01, "g")
+    strut = Spring(STIFFNESS) | Damper(40.0) | Friction(50.0) - parts - Damper(300.0)
+    for integrator in ("event-driven", "time-stepping"):
+        run = simulate(
+            oscillator(strut), forces={"force": pushed(0.0)}, duration=0.01, step=1e-4, integrator=integrator
+        )
+        assert run.status.ok
+
+
+@pytest.mark.parametrize("drag", [54.276188008708544, 68.64540369432245, 79.05444163941203, 98.09298278032263])
+def test_what_rests_at_a_limit_with_none_beyond_is_not_struck_by_rounding(drag):
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(150)
+    rough = it.Signal.sampled(np.arange(0.0, 0.3, 0.002), noise, "zero", speed=10.0)
+    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) | between(drag, math.inf))
+    assert simulate(car, road=rough, duration=0.2, step=2e-4).status.ok
+
+
+@pytest.mark.parametrize("statistical", list(Statistical))
+def test_statistical_linearisation_refuses_what_is_uneven_whatever_it_says_of_itself(statistical, monkeypatch):
+    monkeypatch.setattr(UnevenFriction, "statistical", statistical)
+    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - UnevenFriction(300.0, 100.0, "u"))
+    with pytest.raises(PerformanceIndexError, match="'u' in 'strut' is an uneven friction"):
+        it.evaluate(car, it.RideComfort(it.Road(roughness=5e-7, speed=25.0)), it.StatisticalLinearisation())
+
+
+def test_a_clutch_is_not_told_to_have_no_drag():
+    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - OneWay(0.0, "w"))
+    with pytest.raises(PerformanceIndexError, match=r"which simulate it\.$"):
+        it.evaluate(car, it.RideComfort(it.Road(roughness=5e-7, speed=25.0)), it.StatisticalLinearisation())
+
+
+def test_a_budget_of_what_has_no_usual_size_asks_for_bounds():
+    first = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - OneWay(0.0, "w"))
+    other = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0))
+    road = it.Road(roughness=5e-7, speed=25.0)
+    with pytest.raises(DesignError, match=r"'w' is 0: give bounds=\(lower, upper\)"):
+        it.budget(first, other, it.RideComfort(road), parameter="w", method=it.ExpectedValue(realisations=2))
+
+
+def test_a_constant_force_leaves_gains_as_they_are():
+    struts = (Spring(5e4) | Damper(1500.0), Spring(5e4) | Damper(1500.0) | Push(800.0))
+    plain, loaded = (it.QuarterCar(181.75, 25.0, 120e3, strut) for strut in struts)
+    methods = (it.Norm(), it.ExpectedValue(realisations=2))
+    found = {it.evaluate(car, it.LoadCarrying(), method).value for car in (plain, loaded) for method in methods}
+    assert len(found) == 1
+
+
+def test_new_values_that_change_what_holds_are_refused():
+    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) | Reach(30.0, "u"))
+    system = piecewise(car)
+    assert revalued(system, {"u": 20.0}).mechanics.limits.tolist() == [[-10.0, 20.0]]
+    with pytest.raises(DesignError, match="'u' holds what it did not, or the reverse"):
+        revalued(system, {"u": 70.0})
+
+
+@dataclass(frozen=True)
+class Reach(Push):
+    """Holds between a limit that grows with another, and that."""
+
+    switch = Switch(Guard.FORCE, "down", "stick", "up")
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        return (-10.0 if self.coefficient < 50.0 else 10.0), self.coefficient

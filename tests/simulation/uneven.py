@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from inerter.fields import Field
 from inerter.networks.elements import Damper, Element, Network, Value
-from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
+from inerter.networks.elements.roles import Guard, Linear, Switch
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,6 @@ class OneSidedStop(Element):
     example = "50 mm"
     linear = Linear.OPEN
     switch = Switch(Guard.ELONGATION, "contact", "open", "never")
-    statistical = Statistical.REFUSED
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -65,7 +64,6 @@ class OneWay(Element):
     example = "1 N"
     linear = Linear.OPEN
     switch = Switch(Guard.FORCE, "slip down", "stick", "never")
-    statistical = Statistical.REFUSED
     may_vanish = True
 
     @property
@@ -89,7 +87,6 @@ class UnevenFriction(Element):
     more = (Field("compression", "N", "Force while it gets shorter."),)
     linear = Linear.OPEN
     switch = Switch(Guard.FORCE, "slip down", "stick", "slip up")
-    statistical = Statistical.REFUSED
 
     @property
     def limits(self) -> tuple[float, float]:

@@ -507,7 +507,7 @@ BAD = {
             asked("", how="statistical"),
         ],
         "study.evaluate",
-        ["no answer for gaps", "S2 has one", '"expected-value"'],
+        ["no answer for a gap, as in S2", '"expected-value"'],
     ),
     "budget unknown": (
         [asked('budgets = ["bb"]')],

@@ -8,7 +8,7 @@ from inspect import getdoc
 from textwrap import wrap
 from typing import Any
 
-from inerter.errors import StudyError
+from inerter.errors import StudyError, with_article
 from inerter.files.common.keys import ANY_NAME, Key, below, found, keys_of
 from inerter.files.common.kinds import kind_with
 from inerter.files.common.suggest import nearest
@@ -93,7 +93,7 @@ def _told(key: Key, keys: Sequence[Key]) -> Iterator[str]:
 def _row(what: str, name: str, row: Any) -> Iterator[str]:
     """A word that a key may be."""
     sentence = " ".join((getdoc(row) or "").partition("\n\n")[0].split())
-    yield from _wrapped(f"{name}, {'an' if what[0] in 'aeiou' else 'a'} {what}: {sentence}", "")
+    yield from _wrapped(f"{name}, {with_article(what)}: {sentence}", "")
 
 
 def _table(keys: Sequence[Key]) -> Iterator[str]:

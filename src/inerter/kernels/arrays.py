@@ -90,8 +90,7 @@ class Mechanics(NamedTuple):
     lengths: Matrix  # (k, ng + nr): elongation of the gaps from positions and roads
     kind: Ints  # (k,) FRICTION or GAP
     own_position: Ints  # (k,) number of the position that is the gap's own elongation, or -1
-    limits: Matrix  # (k, 2): force or elongation between which its guard stays in state 0; where both are one, or one
-    # is infinite, there is no state 0, or none beyond: see `may_be`
+    limits: Matrix  # (k, 2): forces or elongations between which it is in state 0, see `locking.can_be_in`
     over: Matrix  # (outputs, n + nu + na + nw + k): outputs over the state, the inputs, and (a', w, F)
 
 

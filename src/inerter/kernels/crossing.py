@@ -9,7 +9,7 @@ import numpy as np
 from inerter.kernels.arrays import FRICTION, NONE, Array, Run
 from inerter.kernels.declare import part
 from inerter.kernels.flow import first_root, polynomial, slope_at, value_at
-from inerter.kernels.locking import may_be
+from inerter.kernels.locking import can_be_in
 
 ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
 ROUNDING = 1e-13  # relative to the largest state so far
@@ -32,7 +32,7 @@ def first_crossing(run: Run, count: int, d: float, ends: bool) -> Any:
         watch = run.motion.watch[e]
         if watch.touch < ORDERS:
             row = modes.maps[m, mechanics.rows.guard + e]
-            slips = mechanics.kind[e] == FRICTION and modes.state[m, e] != 0 and may_be(mechanics.limits, e, 0)
+            slips = mechanics.kind[e] == FRICTION and modes.state[m, e] != 0 and can_be_in(mechanics.limits, e, 0)
             if slips and ended and _lies_still(run, row, min(count, ORDERS), modes.reach[m] / d):
                 watch.crossed = modes.state[m, e]
                 best, who = 0.0, e

@@ -87,10 +87,10 @@ def is_locked(kind: int, state: int) -> bool:
 
 
 @part(typed=True, borrowing=True)
-def may_be(limits: Matrix, e: int, state: int) -> bool:
-    """Whether an element can be in a state: in its middle one between two limits, in another where that limit is met.
+def can_be_in(limits: Matrix, e: int, state: int) -> bool:
+    """Whether an element can be in a state: in the middle one if its limits are apart, in another if that is finite.
 
-    What has one limit alone is always there, in state 1.
+    What has both limits in one place is always there, in state 1.
     """
     if not limits[e, 0] < limits[e, 1]:
         return state == 1

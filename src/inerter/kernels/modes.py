@@ -22,7 +22,7 @@ import numpy as np
 
 from inerter.kernels.arrays import FRICTION, GAP, Flags, Ints, MapRows, Matrix, Mechanics, Mode, Sizes
 from inerter.kernels.declare import kernel, part
-from inerter.kernels.locking import Bases, Locks, Rates, bases_of, is_locked, limit_of, locks_of, may_be, rates_of
+from inerter.kernels.locking import Bases, Locks, Rates, bases_of, can_be_in, is_locked, limit_of, locks_of, rates_of
 from inerter.kernels.matrices import (
     add,
     block,
@@ -238,7 +238,7 @@ def slip_of(sizes: Sizes, lock: Matrix, solution: Solution) -> Matrix:
 def limit_guard(guards: Matrix, e: int, state: int, limits: Matrix) -> None:
     """A lock's force stays within its limits, what slips or is open on its side."""
     guards[e, 0], guards[e, 1] = -np.inf, np.inf
-    if may_be(limits, e, 0):
+    if can_be_in(limits, e, 0):
         guards[e, 0] = limits[e, 0] if state == 0 else (0.0 if state > 0 else -np.inf)
         guards[e, 1] = limits[e, 1] if state == 0 else (0.0 if state < 0 else np.inf)
 
@@ -321,7 +321,7 @@ def watch_what_moves(mechanics: Mechanics, mode: Mode, still: Flags) -> None:
     drop_rounding(change, product(sizes_of(guards), sizes_of(rates)))
     for e in range(k):
         state = mode.state[e]
-        slips = mechanics.kind[e] == FRICTION and state != 0 and not still[e] and may_be(mechanics.limits, e, 0)
+        slips = mechanics.kind[e] == FRICTION and state != 0 and not still[e] and can_be_in(mechanics.limits, e, 0)
         if slips and is_zero(maps, guard + e):
             limits[e, 0 if state > 0 else 1] = state
         mode.entry_limits[e, 0], mode.entry_limits[e, 1] = limits[e, 0], limits[e, 1]

@@ -10,11 +10,12 @@ from inerter.kernels.arrays import FRICTION, NONE, Array, Floats, Matrix, Run
 from inerter.kernels.crossing import MET, ORDERS, ROUNDING
 from inerter.kernels.declare import part
 from inerter.kernels.flow import input_sizes, inputs_from, over_columns
-from inerter.kernels.locking import limit_of, may_be
+from inerter.kernels.locking import can_be_in, limit_of
 
 DONE, PAUSED, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(9)
 ACCEPTED, STRUCK, STRANDED = -1, -2, -3  # verdicts on a mode; another one is the element that must change its state
 VELOCITY, SPRINGS, LOOSE = range(3)  # groups of conditions on entry
+_EPS = 2.2e-16
 
 
 @part(borrowing=True)
@@ -61,7 +62,8 @@ def _first_trial(run: Run, who: int) -> None:
     """The present states, with that changed whose guard was crossed; before there is a mode, all at rest."""
     before, watch = run.motion.place[0].mode, run.motion.watch
     for e in range(run.mechanics.sizes.elements):
-        watch[e].trial = run.modes.state[before, e] if before >= 0 else (0 if may_be(run.mechanics.limits, e, 0) else 1)
+        first = 0 if can_be_in(run.mechanics.limits, e, 0) else 1
+        watch[e].trial = run.modes.state[before, e] if before >= 0 else first
     if who >= 0 and watch[who].crossed != 0:
         watch[who].trial = watch[who].crossed if watch[who].trial == 0 else 0
 
@@ -74,7 +76,7 @@ def _nth_trial(run: Run, code: int) -> bool:
         watch = run.motion.watch[e]
         watch.trial = code % 3 - 1
         code //= 3
-        possible = possible and may_be(run.mechanics.limits, e, watch.trial)
+        possible = possible and can_be_in(run.mechanics.limits, e, watch.trial)
     return possible
 
 
@@ -125,6 +127,21 @@ def _as_seen(run: Run, length: float) -> None:
     for i in range(n):
         motion.state[i] = room.guess[i]
         motion.scale[i] = max(motion.scale[i], abs(motion.state[i]))
+    if _is_at_rest(run):
+        for i in range(sizes.inertial):
+            motion.state[i] = 0.0
+
+
+@part(borrowing=True, inside=True)
+def _is_at_rest(run: Run) -> bool:
+    """Whether no velocity would change a position by its last digit while its mode moves: the rounding of a load."""
+    sizes, motion, farthest = run.mechanics.sizes, run.motion, 0.0
+    for i in range(sizes.inertial, sizes.states):
+        farthest = max(farthest, motion.scale[i])
+    fastest = 0.0
+    for i in range(sizes.inertial):
+        fastest = max(fastest, abs(motion.state[i]))
+    return bool(fastest * run.modes.reach[motion.place[0].mode] <= _EPS * farthest)
 
 
 @part(borrowing=True)
@@ -179,7 +196,7 @@ def _guess(run: Run) -> float:
 def _is_apart(run: Run, e: int, length_scale: float) -> bool:
     """Whether a gap that is to touch is not at its limit; if it is, its elongation becomes the limit."""
     mechanics, sizes, trial = run.mechanics, run.mechanics.sizes, run.motion.watch[e].trial
-    if mechanics.kind[e] == FRICTION or trial == 0 or not may_be(mechanics.limits, e, 0):
+    if mechanics.kind[e] == FRICTION or trial == 0 or not can_be_in(mechanics.limits, e, 0):
         return False
     limit, own = limit_of(mechanics.limits, e, trial), mechanics.own_position[e]
     beyond, size = -limit, abs(limit)
@@ -219,11 +236,11 @@ def _blame(run: Run, m: int, first: int, last: int, group: int) -> int:
     for e in range(mechanics.sizes.elements):
         trial = run.motion.watch[e].trial
         s = _asked(reaction, n + e, residual, first, last)
-        if not may_be(mechanics.limits, e, 0) or abs(s) <= 1e-9 * largest:
+        if not can_be_in(mechanics.limits, e, 0) or abs(s) <= 1e-9 * largest:
             continue
         if trial == 0 and group == VELOCITY and mechanics.kind[e] == FRICTION:
             place.wanted = 1 if s > 0.0 else -1
-            if may_be(mechanics.limits, e, place.wanted):
+            if can_be_in(mechanics.limits, e, place.wanted):
                 return e
         if trial * s < 0.0:
             place.wanted = 0

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.indices.question import Question
-from inerter.methods.equivalent import GAUSSIAN, Equivalent, acts, equivalent, slipping_freely
+from inerter.methods.equivalent import GAUSSIAN, Equivalent, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
-from inerter.networks.elements.roles import Statistical
 from inerter.norms.h2 import h2
 from inerter.norms.stability import balance
 from inerter.systems.arrivals import inputs_of
@@ -39,7 +38,7 @@ def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str
     across = {
         f"velocity across friction {i}": Output("", "m/s", "", velocity=branch.nodes, road_velocity=branch.roads)
         for i, branch in enumerate(branches)
-        if acts(branch.element)
+        if branch.element.is_damped
     }
     return replace(system, outputs={**system.outputs, **across}), tuple(across)
 
@@ -47,7 +46,7 @@ def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str
 def has_play(system: PiecewiseSystem) -> bool:
     """Whether something switches that no damper stands for, as a gap, so that no linear design need resemble it."""
     elements = (b.element for b in system.graph.branches)
-    return any(e.acts and e.statistical is Statistical.REFUSED for e in elements)
+    return any(e.acts and not e.is_damped for e in elements)
 
 
 @dataclass(frozen=True, eq=False)

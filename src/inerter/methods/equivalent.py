@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, PerformanceIndexError
+from inerter.errors import DesignError, PerformanceIndexError, with_article
 from inerter.indices.question import Question
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
 from inerter.networks.elements.roles import Linear, Statistical
@@ -80,15 +80,16 @@ class Equivalent:
             )
 
 
-def check_gaps(mechanism: Mechanism) -> None:
+def check_damped(mechanism: Mechanism) -> None:
     """Raises `PerformanceIndexError` for what switches and is no dry friction, such as a gap with play."""
     for mount in switching(mechanism).mounts():
         for element in mount.network.elements():
-            if element.statistical is Statistical.REFUSED and element.acts:
-                zero = f", or give it a {element.quantity.replace('_', ' ')} of 0" if element.may_vanish else ""
+            if element.acts and not element.is_damped:
+                vanishes = element.may_vanish and not element.with_value(0.0).acts
+                zero = f", or give it a {element.quantity.replace('_', ' ')} of 0" if vanishes else ""
                 raise PerformanceIndexError(
-                    f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is a "
-                    f"{element.key}. Use expected-value or approximate-linear, which simulate it{zero}."
+                    f"Statistical linearisation treats dry friction, but {element.label!r} in {mount.name!r} is "
+                    f"{with_article(element.key)}. Use expected-value or approximate-linear, which simulate it{zero}."
                 )
 
 
@@ -107,7 +108,7 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
 
 def has_friction(mechanism: Mechanism) -> bool:
     """Whether any friction has a force."""
-    return any(acts(element) for mount in switching(mechanism).mounts() for element in mount.network.elements())
+    return any(element.is_damped for mount in switching(mechanism).mounts() for element in mount.network.elements())
 
 
 def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = ()) -> Equivalent:
@@ -125,7 +126,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
 
     def changed(mount: str, network: Network) -> Network:
         def damped(element: Element) -> Network:
-            if not acts(element):
+            if not element.is_damped:
                 return element
             name = f"equivalent_damper_{len(found) + 1}"
             while name in taken:
@@ -167,7 +168,7 @@ def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
     """
     driven = switching(question.drive.driven(mechanism))
     arrivals = question.arrivals(driven)
-    if not any(acts(element) for mount in _reachable(driven, arrivals) for element in mount.network.elements()):
+    if not any(element.is_damped for mount in _reachable(driven, arrivals) for element in mount.network.elements()):
         return frozenset()
     found: frozenset[str] = frozenset()
     while True:
@@ -189,11 +190,6 @@ def _reached_directly(descriptor: Descriptor) -> list[int]:
     """Numbers of the outputs that white noise passes straight to."""
     halfway = {name: middle(free) for name, free in descriptor.free.items()}
     return [int(i) for i in np.flatnonzero(np.any(close(descriptor, halfway).D != 0.0, axis=1))]
-
-
-def acts(element: Element) -> bool:
-    """Whether an element is a friction with a force, or with one still to be chosen."""
-    return element.statistical is Statistical.DAMPER and element.value != 0.0
 
 
 def _typical_damping(mechanism: Mechanism) -> float:

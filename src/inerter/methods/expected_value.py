@@ -149,7 +149,7 @@ class ExpectedValue:
         system = piecewise(question.drive.driven(mechanism))
         if question.is_peak:
             return None
-        if not is_nonlinear(system):
+        if not is_nonlinear(system, question):
             return np.zeros(count), np.zeros(_MORE)
         change = first_order(system, question, drive(system, question, conventions, self.period))
         if change is None:
@@ -168,7 +168,7 @@ class ExpectedValue:
         question = under(conventions, mechanism, index.question(mechanism))
         linear = _linear(vehicle, question, conventions)
         system = piecewise(question.drive.driven(mechanism))
-        if not _is_held(system, question, conventions) and not is_nonlinear(system):
+        if not _is_held(system, question, conventions) and not is_nonlinear(system, question):
             assert linear is not None
             return replace(linear.estimate(close(linear.descriptor, {})), standard_error=0.0)
         if question.is_peak:
@@ -221,9 +221,10 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
     return omegas if omegas.size and np.all(np.isfinite(omegas)) else None
 
 
-def is_nonlinear(system: PiecewiseSystem) -> bool:
-    """Whether something that switches is there, or pushes all the time."""
-    return bool(np.any(system.mechanics.limits != 0.0))
+def is_nonlinear(system: PiecewiseSystem, question: Question) -> bool:
+    """Whether something switches, or, where mean squares are asked for, pushes all the time."""
+    lower, upper = system.mechanics.limits.T
+    return bool(np.any(lower < upper) or (not question.is_peak and np.any(upper != 0.0)))
 
 
 def _is_held(system: PiecewiseSystem, question: Question, conventions: Conventions) -> bool:

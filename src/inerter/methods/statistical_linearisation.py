@@ -13,7 +13,7 @@ from inerter.indices.question import Index, Question
 from inerter.kernels import harmonic
 from inerter.methods.compiled_norm import kernels_of
 from inerter.methods.describing_function import HarmonicBalance, harmonic_balance
-from inerter.methods.equivalent import check_gaps, check_outputs, has_friction
+from inerter.methods.equivalent import check_damped, check_outputs, has_friction
 from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.method import Estimate, Sees
@@ -94,7 +94,7 @@ class StatisticalLinearisation:
         """The closure that serves the index; None if no friction acts."""
         mechanism = vehicle.mechanism()
         question = index.question(mechanism)
-        check_gaps(mechanism)
+        check_damped(mechanism)
         if not has_friction(mechanism):
             return None
         check_outputs(mechanism, [weighted.output for weighted in question.outputs])

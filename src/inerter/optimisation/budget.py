@@ -17,6 +17,7 @@ from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Averaging, Method, check_request, evaluate
 from inerter.networks.elements import Element
+from inerter.networks.elements.registry import ELEMENTS
 from inerter.units import format_quantity
 from inerter.vehicle.changed import mounted, opened, with_elements
 from inerter.vehicle.vehicle import Vehicle
@@ -166,7 +167,7 @@ def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
     if not chosen:
         labels = ", ".join(dict.fromkeys(e.label for e in all_elements))
         raise DesignError(
-            f'No strut or tyre has an element named {parameter!r} (there are: {labels}; or take "friction" or "gap" '
+            f"No strut or tyre has an element named {parameter!r} (there are: {labels}; or take {_kinds()} "
             f"for all). To find how much friction or backlash a design bears, put in a Friction(0.0) or Gap(0.0)."
         )
     if len({(e.unit, e.value) for e in chosen if e.name is None}) > 1:
@@ -177,6 +178,11 @@ def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
     if len({e.unit for e in chosen}) > 1:
         raise DesignError(f"{parameter!r} names elements of different kinds. Give them different names.")
     return chosen
+
+
+def _kinds() -> str:
+    """The kinds of which all elements are meant by the name of the kind."""
+    return " or ".join(f'"{kind.key}"' for kind in ELEMENTS.values() if kind.may_vanish)
 
 
 def _has(vehicle: Vehicle, parameter: str) -> bool:
@@ -197,7 +203,9 @@ def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[f
     present: Any = chosen[0].value
     if not is_number(present):
         raise DesignError(f"The value of {parameter!r} is free; fix it, or give bounds=(lower, upper).")
-    if present == 0.0 and chosen[0].tried is not None:
+    if present == 0.0:
+        if chosen[0].tried is None:
+            raise DesignError(f"The value of {parameter!r} is 0: give bounds=(lower, upper) between which to look.")
         return chosen[0].tried
     return present / _REACH, present * _REACH
 

@@ -13,7 +13,7 @@ from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.report.budgets import end_of_range
-from inerter.report.findings import Telling, Writer, best_layouts, headlines
+from inerter.report.findings import Wording, Writer, best_layouts, headlines
 from inerter.report.fronts import front_sentences
 from inerter.report.question import spoken
 
@@ -27,7 +27,7 @@ def answers(
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     return [
         *(() if study.line is None else study.line.warnings),
-        *headlines(results, Telling(write, static)),
+        *headlines(results, Wording(write, static)),
         *front_sentences(results, write),
         *_of_budgets(results, study, budgets, write),
         *_of_limits(results, study, write),

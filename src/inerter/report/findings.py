@@ -41,7 +41,7 @@ _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
 
 @dataclass(frozen=True)
-class Telling:
+class Wording:
     """How findings are told: `write` turns a number, its unit and its error into text.
 
     `static` are indices and layouts whose largest gain is that under a steady force.
@@ -51,14 +51,14 @@ class Telling:
     static: frozenset[tuple[str, str]] = frozenset()
 
 
-PLAIN = Telling()
+PLAIN = Wording()
 
 
-def headlines(results: xr.Dataset, telling: Telling = PLAIN) -> list[str]:
+def headlines(results: xr.Dataset, wording: Wording = PLAIN) -> list[str]:
     """One sentence for each index: which layout is best, how good it is, and how much better than the baseline."""
     if not swept_places(results):
-        return [_of_designs(results, index, telling) for index in indices(results)]
-    return [_of_sweep(results, index, telling) for index in indices(results)]
+        return [_of_designs(results, index, wording) for index in indices(results)]
+    return [_of_sweep(results, index, wording) for index in indices(results)]
 
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
@@ -210,7 +210,7 @@ def _places(found: list[tuple[float, float]], unit: str, write: Writer) -> str:
     return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
+def _of_designs(results: xr.Dataset, index: str, wording: Wording) -> str:
     title = f"Best {_called(results, index)}"
     names = best_layouts(results, index)
     if not names:
@@ -221,11 +221,11 @@ def _of_designs(results: xr.Dataset, index: str, telling: Telling) -> str:
         one = by_method(results, method) if method else results
         if not parts:
             pause = "," if words and "," in title else ""
-            parts.append(f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_verdict(one, index, telling)}")
+            parts.append(f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_verdict(one, index, wording)}")
         elif best_layouts(one, index)[:1] == names[:1]:
             parts.append(f"{words} still {_still(one, index, names[0])}")
         else:
-            parts.append(f"{words} {_verdict(one, index, telling)}")
+            parts.append(f"{words} {_verdict(one, index, wording)}")
     return f"{'; '.join(parts)}."
 
 
@@ -235,14 +235,14 @@ def _called(results: xr.Dataset, index: str) -> str:
     return title if index in INDICES else titled(title, index)
 
 
-def _verdict(results: xr.Dataset, index: str, telling: Telling) -> str:
+def _verdict(results: xr.Dataset, index: str, wording: Wording) -> str:
     """By one method: the best layouts, the value, and how it compares with the baseline."""
     names, baseline = best_layouts(results, index), results.attrs["baseline"]
     if not names:
         return _none(results, index)
     design = results.sel(layout=names[0], index=index)
-    value = telling.write(float(design["value"]), index_unit(results, index), error_of(design))
-    limit = f", {_STATIC}" if (index, names[0]) in telling.static else ""
+    value = wording.write(float(design["value"]), index_unit(results, index), error_of(design))
+    limit = f", {_STATIC}" if (index, names[0]) in wording.static else ""
     answer = f"{_alike(names)}, {value}{limit}"
     if names[0] == baseline:
         return f"{answer}; no other layout is better than this baseline"
@@ -266,8 +266,8 @@ def _better(design: xr.Dataset) -> str:
     return percent(float(design["improvement"]), error_of(design, "improvement")).removeprefix("+")
 
 
-def _of_sweep(every: xr.Dataset, index: str, telling: Telling) -> str:
-    results, write = one_method(every), telling.write
+def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:
+    results, write = one_method(every), wording.write
     words = next((way(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
     swept, title, baseline = swept_words(results), _called(results, index), results.attrs["baseline"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import attrgetter
 from textwrap import wrap
 from typing import Any
 
@@ -13,8 +14,6 @@ from inerter.report.json_data import json_data
 from inerter.report.text import WIDTH
 from inerter.simulation.peaks import LiftOff, Peak
 from inerter.units import shown
-
-_SHARES = {"stick": "stuck", "open": "in the gap", "upper contact": "upper end", "lower contact": "lower end"}
 
 
 def simulation_text(result: SimulationResult, window: Window | None) -> str:
@@ -87,15 +86,15 @@ def _when(peak: Peak, unit: str) -> str:
 
 def _elements(result: SimulationResult) -> Iterator[str]:
     if result.nonlinear:
-        width = max(len(n.name) for n in result.nonlinear)
-        yield f"  {'element':<{width + 9}}  events  share of the time"
+        kinds, width = (max(len(of(n)) for n in result.nonlinear) for of in (attrgetter("kind"), attrgetter("name")))
+        yield f"  {'element':<{kinds + 1 + width}}  events  share of the time"
     for n in result.nonlinear:
-        shares = ", ".join(f"{_SHARES.get(state, state)} {100 * share:.1f} %" for state, share in n.shares.items())
+        shares = ", ".join(f"{n.switch.time_in(state)} {100 * share:.1f} %" for state, share in n.shares.items())
         yield from wrap(
-            f"  {n.kind:<8} {n.name:<{width}}  {n.events:>6}  {shares}",
+            f"  {n.kind:<{kinds}} {n.name:<{width}}  {n.events:>6}  {shares}",
             WIDTH,
             drop_whitespace=False,
-            subsequent_indent=" " * (width + 21),
+            subsequent_indent=" " * (kinds + width + 13),
         )
     if result.unrecorded:
         names = ", ".join(result.unrecorded)
@@ -107,11 +106,12 @@ def _energy(result: SimulationResult) -> Iterator[str]:
     if energy is None:
         return
     yield "energy"
+    kinds = {n.name: n.kind for n in result.nonlinear}
     rows = [
         *((f"put in by {name}", work) for name, work in energy.inputs.items() if name in result.inputs),
         ("gained by masses, inerters and springs", energy.stored),
         *((f"dissipated in damper {name}", work) for name, work in energy.dampers.items()),
-        *((f"dissipated in friction {name}", work) for name, work in energy.friction.items()),
+        *((f"dissipated in {kinds.get(name, 'friction')} {name}", work) for name, work in energy.friction.items()),
         ("unaccounted for", energy.residual),
     ]
     width = max(len(name) for name, _ in rows)

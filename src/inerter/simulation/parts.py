@@ -147,7 +147,7 @@ def _reactions(branches: tuple[Branch, ...]) -> tuple[Reaction, ...]:
     for i, branch in enumerate(branches):
         if branch.element.switch is None:
             continue
-        lower, upper = branch.element.limits
+        lower, upper = branch.element.checked_limits()
         even, gap = -lower == upper, branch.element.switches_by(Guard.ELONGATION)
         beside = [j for j, other in enumerate(found) if even and other.even and _sense(branch, other)]
         if gap or not even:
@@ -155,8 +155,8 @@ def _reactions(branches: tuple[Branch, ...]) -> tuple[Reaction, ...]:
         elif beside:
             other = found[beside[0]]
             shares = {**other.shares, i: _sense(branch, other) * upper}
-            whole = other.upper + upper
-            found[beside[0]] = replace(other, lower=-whole, upper=whole, shares=shares)
+            together = other.upper + upper
+            found[beside[0]] = replace(other, lower=-together, upper=together, shares=shares)
         elif upper > 0.0:
             found.append(Reaction(False, lower, upper, branch.nodes, branch.roads, {i: upper}))
     return tuple(replace(r, shares={i: f / r.upper for i, f in r.shares.items()}) if r.even else r for r in found)

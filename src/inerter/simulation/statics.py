@@ -44,7 +44,13 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Equilib
     parts = _parts(system, road, force)
     loose = np.flatnonzero(parts.ends[:, 0] < parts.ends[:, 1])
     ways = [[side for side in (0, 1, -1) if not side or np.isfinite(_end(parts, int(i), side))] for i in loose]
-    for sides in sorted(product(*ways), key=lambda sides: sum(map(abs, sides))):
+
+    def closed_and_far(sides: tuple[int, ...]) -> tuple[int, float]:
+        """How many gaps are closed, and by how much further out they are than at their other ends."""
+        ends = [(abs(_end(parts, int(i), side)), parts.ends[i]) for i, side in zip(loose, sides, strict=True) if side]
+        return len(ends), sum(at - np.abs(both).min() for at, both in ends)
+
+    for sides in sorted(product(*ways), key=closed_and_far):
         found = _touching(parts, {int(i): side for i, side in zip(loose, sides, strict=True) if side})
         if found is not None:
             return found
@@ -163,7 +169,7 @@ def _forces(parts: _Parts, held: list[int], load: Matrix, given: Matrix) -> Matr
 def _drawn_in(parts: _Parts, branches: Sequence[int], displacement: Matrix, ways: Matrix) -> tuple[Matrix, Matrix]:
     """Displacements moved within `ways` to where some branches are shortest; and the ways that leave these alone."""
     rows = parts.rows[list(branches)]
-    along = rows @ ways
+    along = _sum(rows, ways)
     if not along.size:
         return displacement, ways
     far = _sum(rows, displacement, parts.offset[list(branches)])

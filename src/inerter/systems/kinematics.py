@@ -99,7 +99,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
 
 def _drawn(network: Network) -> tuple[Any, ...]:
     if isinstance(network, Element):
-        return type(network), network.name, network.coefficient > 0.0
+        return type(network), network.name, network.role
     assert isinstance(network, Parallel | Series)
     return (type(network), network.name, *map(_drawn, network.parts))
 

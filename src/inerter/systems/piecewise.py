@@ -135,7 +135,12 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
             allowed = "any positive number" if positive else "nothing else"
             raise DesignError(f"The value of {label!r} is {old:g} and can become {allowed} here, got {value!r}.")
         if label in elements:
-            elements[label] = elements[label].with_value(value)
+            changed = elements[label].with_value(value)
+            if changed.role != elements[label].role:
+                raise DesignError(
+                    f"With {value!r}, {label!r} holds what it did not, or the reverse. Take piecewise(...)."
+                )
+            elements[label] = changed
         else:
             inertias[label] = replace(inertias[label], inertia=value)
     if system.mechanism.ground_moves and any(label in inertias for label in values):
@@ -223,7 +228,7 @@ def _shares(graph: Graph, group: dict[int, int]) -> dict[int, float]:
 
 def _limits(graph: Graph, group: dict[int, int]) -> list[float]:
     """Between which forces or elongations the guard of a group stays in its middle state; those of several are even."""
-    return [sum(ends) for ends in zip(*(graph.branches[i].element.limits for i in group), strict=True)]
+    return [sum(ends) for ends in zip(*(graph.branches[i].element.checked_limits() for i in group), strict=True)]
 
 
 def _weighted(graph: Graph, law: Linear, left: Matrix, right: Matrix) -> Matrix:

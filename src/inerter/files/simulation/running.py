@@ -104,7 +104,7 @@ class SimulationResult:
                 switch = element.switch
                 shares = {
                     state: sum(end - start for start, end in self.run.intervals(label, state)) / length
-                    for state in (switch.middle, switch.upper, switch.lower)
+                    for state in (switch.states[i] for i in element.possible)
                 }
                 events = sum(event.element == label for event in self.run.events)
                 found.append(Nonlinear(label, element.key, switch, strut, events, shares))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
+from inerter.errors import with_article
 from inerter.fields import Field, fields_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
@@ -19,7 +20,6 @@ from inerter.methods.registry import (
     refuses_gaps,
 )
 from inerter.networks.elements import Element, Tied
-from inerter.networks.elements.roles import Statistical
 from inerter.systems.graph import switching_parts
 from inerter.units import shown
 
@@ -109,14 +109,21 @@ def _force_problems(study: Study) -> Iterator[Problem]:
 
 
 def _gap_problems(study: Study) -> Iterator[Problem]:
-    gaps = _layouts_with(study, lambda part: part.statistical is Statistical.REFUSED)
+    kinds: dict[str, None] = {}
+
+    def is_refused(part: Element) -> bool:
+        if refused := part.acts and not part.is_damped:
+            kinds[part.key] = None
+        return refused
+
+    layouts = _layouts_with(study, is_refused)
     refusing = next(filter(refuses_gaps, study.methods), None)
-    if refusing is not None and gaps:
+    if refusing is not None and layouts:
         yield at(
             ("study", "optimise" if study.optimise == refusing else "evaluate"),
             got=shown(refusing),
-            fault=f"it has no answer for gaps, and {some(gaps)} has one",
-            expected=f"another method, such as {shown(_simulating())}, or layouts without gaps",
+            fault=f"it has no answer for {' or '.join(map(with_article, kinds))}, as in {some(layouts)}",
+            expected=f"another method, such as {shown(_simulating())}, or layouts without",
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from inerter.errors import InerterError
+from inerter.errors import InerterError, with_article
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.excitations import Named, Sized
@@ -60,7 +60,7 @@ def _of_name(place: Sequence[str], named: Named, mechanism: Mechanism, question:
     except InerterError as error:
         return at(place, str(error))
     close = nearest(named.name, known)
-    fault = f"{'an' if named.what[0] in 'aeiou' else 'a'} {named.what} that this vehicle does not have"
+    fault = f"{with_article(named.what)} that this vehicle does not have"
     others = "" if close else f"one of {some(told)}" if told else "another excitation, as it has none"
     return at(place, got=shown(named.name), fault=fault, expected=others, hint=close)
 

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from inerter.errors import InerterError, StudyError
+from inerter.errors import InerterError, StudyError, with_article
 from inerter.fields import Field, fields_of, needed_mounts_of
 from inerter.files.common.keys import keys_of
 from inerter.files.common.shape import ROAD
@@ -76,7 +76,7 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
     car = model.replace("-", " ")
     blocks = [
         [
-            f"# A study of {_a(car)}: which values make each layout best, and which layout is the best of all?",
+            f"# A study of {with_article(car)}: which values make each layout best, and which layout is the best?",
             "#",
             f"# Run it: inerter run {name}",
             "# What a key means: inerter explain road.speed",
@@ -99,10 +99,6 @@ class _Quarter(QuarterCar):
 
 def _line(text: str, remark: str) -> str:
     return f"{text:<{_COLUMN - 1}} # {remark.rstrip('.')}"
-
-
-def _a(word: str) -> str:
-    return f"{'an' if word[0] in 'aeiou' else 'a'} {word}"
 
 
 def _quantities(fields: Iterable[Field]) -> Iterator[str]:

@@ -10,7 +10,6 @@ from inerter.methods.registry import brief_words_of, what_is_seen
 from inerter.networks.elements.roles import Guard
 from inerter.systems.graph import switching_parts
 
-_LOSSES = {Guard.FORCE: "friction", Guard.ELONGATION: "play"}
 _SEEN = {Sees.NEITHER: (), Sees.FRICTION: (Guard.FORCE,), Sees.BOTH: tuple(Guard)}
 
 
@@ -25,15 +24,16 @@ def ways(study: Study) -> dict[str, str]:
     return {method: words if count[words] == 1 else _apart(words, method) for method, words in told.items()}
 
 
-def _losses(study: Study) -> list[Guard]:
-    """What there is in the layouts that a linear analysis does not see."""
+def _losses(study: Study) -> dict[str, Guard]:
+    """What there is in the layouts that a linear analysis does not see, and what it switches by: force first."""
     used = [study.elements[name] for name in elements_used(study) if name in study.elements]
-    guards = {part.switch.guard for element in used for part in switching_parts(element) if part.switch is not None}
-    return [guard for guard in _LOSSES if guard in guards]
+    parts = [part for element in used for part in switching_parts(element)]
+    found = {part.effect or part.key: part.switch.guard for part in parts if part.switch is not None}
+    return dict(sorted(found.items(), key=lambda one: list(Guard).index(one[1])))
 
 
-def _told(there: list[Guard], seen: tuple[Guard, ...]) -> str:
-    with_, without = ([_LOSSES[guard] for guard in there if (guard in seen) == wanted] for wanted in (True, False))
+def _told(there: dict[str, Guard], seen: tuple[Guard, ...]) -> str:
+    with_, without = ([word for word, by in there.items() if (by in seen) == wanted] for wanted in (True, False))
     words = [f"with {' and '.join(with_)}"] * bool(with_) + [f"without {' or '.join(without)}"] * bool(without)
     return ", ".join(words)
 

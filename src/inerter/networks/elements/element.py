@@ -36,6 +36,7 @@ class Element(Network):
     linear: ClassVar[Linear]
     switch: ClassVar[Switch | None] = None
     statistical: ClassVar[Statistical] = Statistical.ITSELF
+    effect: ClassVar[str] = ""  # what linear analysis does not see of what switches, such as "play"; else the kind
     # to design
     may_vanish: ClassVar[bool] = False  # a friction or a gap of zero is an element that is not there
     tried: ClassVar[tuple[float, float] | None] = None  # where a budget is looked for if the value is zero
@@ -117,11 +118,25 @@ class Element(Network):
         """
         return -self.coefficient, self.coefficient
 
+    def checked_limits(self) -> tuple[float, float]:
+        """`limits`; raises `DesignError` if a kind gives two that it cannot be between."""
+        lower, upper = self.limits
+        if not (is_number(lower) or is_number(upper)) or not -np.inf <= lower <= upper <= np.inf:
+            raise DesignError(
+                f"{self.key.capitalize()} {self.label!r} switches at {lower} and {upper}; expected two numbers in "
+                f"order, of which one may be infinite."
+            )
+        return lower, upper
+
     @property
     def even(self) -> bool:
-        """Whether its limits are as far from zero in both directions."""
-        lower, upper = self.limits
-        return -lower == upper
+        """Whether its limits are minus and plus its value, also while that is free."""
+        return type(self).limits is Element.limits
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether statistical linearisation has a damper for it: for dry friction alike in both directions."""
+        return self.acts and self.even and self.statistical is Statistical.DAMPER
 
     @property
     def acts(self) -> bool:
@@ -132,12 +147,27 @@ class Element(Network):
         return lower < upper
 
     @property
+    def possible(self) -> tuple[int, ...]:
+        """The states in which what switches can be, the middle one first; with limits in one place, 1 alone."""
+        if not self.acts:
+            return (1,)
+        lower, upper = self.limits
+        return (0, *((1,) if upper < np.inf else ()), *((-1,) if lower > -np.inf else ()))
+
+    @property
     def always_holds(self) -> bool:
-        """Whether what switches holds its length when nothing forces it: friction with a force, a closed gap."""
+        """Whether what switches gives way to no force that is small enough: friction with a force, a closed gap."""
         if self.switches_by(Guard.FORCE):
             lower, upper = self.limits
             return lower < 0.0 < upper
         return not self.acts
+
+    @property
+    def role(self) -> tuple[bool, bool]:
+        """All that a mechanism's motions depend on beside its kind: whether it switches, and whether it holds."""
+        if self.even:
+            return self.coefficient > 0.0, True  # as a friction or a gap does, of whichever size
+        return self.acts, self.always_holds
 
     def switches_by(self, guard: Guard) -> bool:
         """Whether it switches under this guard."""

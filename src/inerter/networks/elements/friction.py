@@ -24,7 +24,9 @@ class Friction(Element):
     sentence: ClassVar[str] = "Size of the force while it slips, and the most that it holds."
     example: ClassVar[str] = "10 N"
     linear: ClassVar[Linear] = Linear.OPEN
-    switch: ClassVar[Switch] = Switch(Guard.FORCE, "slip down", "stick", "slip up", "sticks")
+    switch: ClassVar[Switch] = Switch(
+        Guard.FORCE, "slip down", "stick", "slip up", at_middle="sticks", spent=("slip down", "stuck", "slip up")
+    )
     statistical: ClassVar[Statistical] = Statistical.DAMPER
     may_vanish: ClassVar[bool] = True
     tried: ClassVar[tuple[float, float]] = (0.1, 1e4)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from inerter.networks.elements.drawing import Line
 from inerter.networks.elements.element import Element
-from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
+from inerter.networks.elements.roles import Guard, Linear, Switch
 from inerter.networks.elements.values import Value
 
 
@@ -24,8 +24,10 @@ class Gap(Element):
     sentence: ClassVar[str] = "How far it moves freely to either side of its middle."
     example: ClassVar[str] = "0.1 mm"
     linear: ClassVar[Linear] = Linear.CLOSED
-    switch: ClassVar[Switch] = Switch(Guard.ELONGATION, "lower contact", "open", "upper contact")
-    statistical: ClassVar[Statistical] = Statistical.REFUSED
+    switch: ClassVar[Switch] = Switch(
+        Guard.ELONGATION, "lower contact", "open", "upper contact", spent=("lower end", "in the gap", "upper end")
+    )
+    effect: ClassVar[str] = "play"
     may_vanish: ClassVar[bool] = True
     tried: ClassVar[tuple[float, float]] = (1e-6, 1e-2)
     drawing: ClassVar[tuple[Line, ...]] = (  # a pin between two jaws

@@ -34,26 +34,34 @@ class Guard(Enum):
 
 
 class Statistical(Enum):
-    """What statistical linearisation makes of an element."""
+    """What statistical linearisation makes of an element. What switches and is no damper to it, it refuses."""
 
     ITSELF = "itself"
     DAMPER = "damper"  # one that takes as much power from a Gaussian velocity, by its value as a force
-    REFUSED = "refused"  # unless its value is zero
 
 
 @dataclass(frozen=True)
 class Switch:
-    """The modes of an element of the piecewise system: what guards them, and their names in states -1, 0 and 1."""
+    """The modes of an element of the piecewise system: what guards them, and their names in states -1, 0 and 1.
+
+    A report tells which part of the time it spent in each by the same names, or by those in `spent`.
+    """
 
     guard: Guard
     lower: str
     middle: str
     upper: str
     at_middle: str = ""  # what one does in its middle state, to go after its name; "is ..." if left out
+    spent: tuple[str, str, str] | None = None  # such as "stuck", in the order of the states
 
     def said(self, name: str) -> str:
         """That an element of this name is in its middle state."""
         return f"{name} {self.at_middle or f'is {self.middle}'}"
+
+    def time_in(self, state: str) -> str:
+        """How a report tells of the time in the state of that name."""
+        names = (self.lower, self.middle, self.upper)
+        return (self.spent or names)[names.index(state)]
 
     @property
     def states(self) -> dict[int, str]:

@@ -23,7 +23,6 @@ class Stop(it.Element):
     example: ClassVar[str] = "40 mm"
     linear: ClassVar[it.Linear] = it.Linear.OPEN
     switch: ClassVar[it.Switch] = it.Switch(it.Guard.ELONGATION, "contact", "open", "never")
-    statistical: ClassVar[it.Statistical] = it.Statistical.REFUSED
 
     @property
     def limits(self) -> tuple[float, float]:

@@ -107,6 +107,12 @@ class Status:
     def __str__(self) -> str:
         return self.kind.value if not self.message else f"{self.kind.value}: {self.message}"
 
+    @staticmethod
+    def parts(text: str) -> tuple[str, str]:
+        """Kind and message of what a table holds as text; of a case that was not computed its word, and none."""
+        kind, _, message = text.partition(": ")
+        return kind, message
+
 
 OK = Status()
 

@@ -9,7 +9,7 @@ from typing import Any
 from inerter.app.answers import Body, texts_of
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
-from inerter.errors import StudyError
+from inerter.errors import Status, StudyError
 from inerter.files.study.fronts import FrontCase, FrontOutcome, fronts_csv
 from inerter.files.study.running import FRONTS
 from inerter.files.study.study import Study
@@ -41,7 +41,7 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
 def _told(study: Study, found: FrontOutcome) -> dict[str, Any]:
     points = []
     for values, parameters, said in zip(found.values, found.parameters, found.statuses, strict=True):
-        status, _, message = said.partition(": ")
+        status, message = Status.parts(said)
         points.append(
             {
                 "values": dict(zip(study.trade_off, values, strict=True)),

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from inerter.errors import StatusKind
+from inerter.errors import Status, StatusKind
 from inerter.units import format_quantity, headed, parse_quantity
 
 _POWER = re.compile(r"\^(-?\d)")
@@ -95,7 +95,7 @@ def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
 
 def infeasible(results: xr.Dataset) -> xr.DataArray:
     """Where no design keeps the limits."""
-    kept_by_none = np.vectorize(lambda text: str(text).partition(":")[0] == StatusKind.INFEASIBLE.value, otypes=[bool])
+    kept_by_none = np.vectorize(lambda text: Status.parts(str(text))[0] == StatusKind.INFEASIBLE, otypes=[bool])
     return results["status"].copy(data=kept_by_none(results["status"].values))
 
 

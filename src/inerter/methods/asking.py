@@ -79,6 +79,11 @@ class Composed(Protocol):
 Asked = Index | Composed
 
 
+def is_index(given: object) -> bool:
+    """Whether something can be asked for: an index, or what is made of some; not its class."""
+    return not isinstance(given, type) and (hasattr(given, "question") or is_composed(given))
+
+
 def is_composed(index: object) -> TypeIs[Composed]:
     """Whether the index asks by itself."""
     return not isinstance(index, type) and isinstance(index, Composed)

@@ -15,7 +15,7 @@ from inerter.checks import is_number
 from inerter.errors import OK, PerformanceIndexError, Status
 from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
-from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_composed, objective_of
+from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_index, objective_of
 from inerter.methods.combined import ObjectivePart, combined
 from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Objective
@@ -128,7 +128,7 @@ class OverConditions(OfIndex):
     worst: bool
 
     def __post_init__(self) -> None:
-        if isinstance(self.index, type) or not (hasattr(self.index, "question") or is_composed(self.index)):
+        if not is_index(self.index):
             raise PerformanceIndexError(
                 f"Expected an index such as RideComfort(road) to take over conditions, got {self.index!r}."
             )

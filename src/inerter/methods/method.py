@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.kernels.prepare import prepare_on
-from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, without_tied_values
+from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, is_index, without_tied_values
 from inerter.methods.objective import Objective
 from inerter.norms.hinf import GainPeak
 from inerter.systems.arrivals import inputs_of
@@ -206,7 +206,7 @@ def check_request(vehicle: Vehicle, index: Asked, method: object) -> None:
     So it does for an index that names an input or output which the vehicle does not have.
     """
     check_vehicle(vehicle)
-    if isinstance(index, type) or not (hasattr(index, "question") or is_composed(index)):
+    if not is_index(index):
         raise PerformanceIndexError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
     if isinstance(method, type) or not isinstance(method, Method):
         raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
 from inerter.indices.question import Combination, Index, OfIndex, Question
-from inerter.methods.asking import Asked, is_composed, objective_of
+from inerter.methods.asking import Asked, is_composed, is_index, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable, Objective
 from inerter.units import format_quantity
@@ -40,7 +40,7 @@ class Limit:
     value: float
 
     def __post_init__(self) -> None:
-        if isinstance(self.of, type) or not (hasattr(self.of, "question") or is_composed(self.of)):
+        if not is_index(self.of):
             raise PerformanceIndexError(
                 f"A limit is put on an index, such as TyreLoad(road) or static_stiffness('strut'), got {self.of!r}."
             )

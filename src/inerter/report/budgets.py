@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from textwrap import wrap
 
+from inerter.errors import StatusKind
 from inerter.figures.labels import printed, with_unit
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.study import Study
@@ -72,7 +73,7 @@ def _remark(found: BudgetOutcome, write: Writer) -> str:
     if len(found.crossings) > 1:
         places = [write(value, found.unit, float("nan")) for value in found.crossings]
         remarks.append(f"equally good at {', '.join(places[:-1])} and {places[-1]}")
-    if found.status == "unbounded":
+    if found.status == StatusKind.UNBOUNDED:
         remarks.append(found.message)
     elif found.status != "ok":
         remarks.append(f"{found.status}: {found.message}")

@@ -46,6 +46,7 @@ def until(client: TestClient, number: str, *states: str) -> Any:
     return told
 
 
+@pytest.mark.campaign
 def test_a_long_sweep_stops_at_its_next_check(client: TestClient) -> None:
     number = begin(client, kind="run", study=LONG)
     deadline = time.monotonic() + 60.0

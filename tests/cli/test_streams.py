@@ -86,6 +86,7 @@ def test_a_terminal_that_knows_few_characters(line: str, terminal: str, home: Pa
     assert out.isascii()
 
 
+@pytest.mark.campaign
 def test_a_disk_that_takes_no_more_output_is_told_and_loses_no_results(home: Path) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no device that is full")

@@ -304,6 +304,7 @@ duration = "2 s"
 """
 
 
+@pytest.mark.campaign
 def test_a_report_tells_of_the_states_that_an_element_can_have(session: Session, tmp_path: Path) -> None:
     (tmp_path / "stopped.toml").write_text(STOPPED, encoding="utf-8")
     said, _ = session.command("simulate", "stopped.toml", cwd=tmp_path)

@@ -250,7 +250,7 @@ def test_no_right_to_write_is_a_wrong_request(home: Path, capsys: pytest.Capture
 
 @pytest.mark.parametrize(
     ("command", "again"),
-    sampled(product([RUN, SIMULATE, REPRODUCE], [False, True]), [(RUN, True), (SIMULATE, False)], kept=2),
+    sampled(product([RUN, SIMULATE, REPRODUCE], [False, True]), [(SIMULATE, False)], kept=2),
     ids=lambda value: value[0] if isinstance(value, list) else ("new", "force")[value],
 )
 def test_a_full_disk_is_one_sentence_and_old_results_stay(

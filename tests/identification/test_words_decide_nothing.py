@@ -121,7 +121,7 @@ def test_an_identification_is_the_same_with_tokens_for_words(bench: Path, capsys
     assert ran[0][0] == (bench.name.startswith("late") or bench.name.startswith("saturated"))
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_choice_and_a_law_are_the_same_with_tokens_for_words() -> None:
     record = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=1, sampling=400.0).run(it.cosine(1e-3, 4.0), 1.5)
     ran = []

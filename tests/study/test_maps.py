@@ -63,6 +63,7 @@ def test_cases_go_through_all_pairs_the_second_place_first(study: Study) -> None
     assert [everything.number(case) for case in everything] == list(range(len(everything)))
 
 
+@pytest.mark.campaign
 def test_each_point_is_the_study_of_its_numbers(study: Study, data: xr.Dataset, tmp_path: Path) -> None:
     """The same designs, to the last digit, as a study in whose file the numbers stand."""
     assert data["value"].dims == ("layout", "index", "vehicle.sprung_mass", "k", "method")

@@ -266,7 +266,7 @@ def test_hypervolume_of_two_criteria_is_an_area():
     assert front.hypervolume(front.ideal * 0.9) == 0.0
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_hypervolume_of_three_criteria_is_a_volume():
     pytest.importorskip("moocore", reason="the volume of three criteria needs moocore (extra fronts)")
     front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3, J5], NORM, points=6)

@@ -15,7 +15,7 @@ from inerter.kernels.locking import can_be_in, limit_of
 DONE, PAUSED, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, STIFF = range(9)
 ACCEPTED, STRUCK, STRANDED = -1, -2, -3  # verdicts on a mode; another one is the element that must change its state
 VELOCITY, SPRINGS, LOOSE = range(3)  # groups of conditions on entry
-_EPS = 2.2e-16
+_EPS = 2.2e-16  # the last digit of a number, relative to it
 
 
 @part(borrowing=True)

@@ -109,14 +109,9 @@ def _force_problems(study: Study) -> Iterator[Problem]:
 
 
 def _gap_problems(study: Study) -> Iterator[Problem]:
-    kinds: dict[str, None] = {}
-
-    def is_refused(part: Element) -> bool:
-        if refused := part.acts and not part.is_damped:
-            kinds[part.key] = None
-        return refused
-
-    layouts = _layouts_with(study, is_refused)
+    used = (study.elements[name] for name in elements_used(study) if name in study.elements)
+    kinds = dict.fromkeys(part.key for element in used for part in switching_parts(element) if _is_refused(part))
+    layouts = _layouts_with(study, _is_refused)
     refusing = next(filter(refuses_gaps, study.methods), None)
     if refusing is not None and layouts:
         yield at(
@@ -125,6 +120,11 @@ def _gap_problems(study: Study) -> Iterator[Problem]:
             fault=f"it has no answer for {' or '.join(map(with_article, kinds))}, as in {some(layouts)}",
             expected=f"another method, such as {shown(_simulating())}, or layouts without",
         )
+
+
+def _is_refused(part: Element) -> bool:
+    """Whether statistical linearisation has no answer for what switches."""
+    return part.acts and not part.is_damped
 
 
 def _simulating() -> str:

@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations, pairwise
 
+import numpy as np
+
 from inerter.papers.wang_su_2008.between import WORSE, Found, crossings, excess_there
-from inerter.papers.wang_su_2008.judging import Claim, Evidence, Statement, is_near, kilo
-from inerter.papers.wang_su_2008.over_stiffness import Array, Curves, Intersection
+from inerter.papers.wang_su_2008.judging import (
+    Claim,
+    Evidence,
+    Measured,
+    Statement,
+    Verdict,
+    about,
+    all_of,
+    everywhere,
+    kilo,
+    somewhere_above,
+    statement,
+    within,
+)
+from inerter.papers.wang_su_2008.over_stiffness import Curves
 from inerter.papers.wang_su_2008.paper import CLAIMS
 
 _SOFT = 60e3  # [N/m] half the stiffness for which Table 1 is printed: what is called small here
@@ -23,15 +39,47 @@ def friction_claims(curves: Curves) -> list[Claim]:
     return [claim(curves) for claim in (_claim_4, _claim_5, _claim_8, _claim_9, _claim_10)]
 
 
+def _rising(curves: Curves, names: Sequence[str], index: str) -> tuple[Verdict, list[Measured]]:
+    """Whether each curve is nowhere below the one before it, and somewhere above; and how much higher each is."""
+    gaps = [curves.measured(higher, lower, index) for lower, higher in pairwise(names)]
+    every = [gap for steps in gaps for gap in steps]
+    return all_of([everywhere(every, low=-WORSE), *(somewhere_above(steps, WORSE) for steps in gaps)]), every
+
+
+def _where_contrary(curves: Curves, names: Sequence[str], index: str) -> str:
+    """The stiffnesses at which a curve lies below the one before it, certainly or perhaps, in words."""
+    gaps = [curves.measured(higher, lower, index) for lower, higher in pairwise(names)]
+    return _exceptions(curves, [[gap.times(-1.0) for gap in steps] for steps in gaps])
+
+
+def _exceptions(curves: Curves, gaps: Sequence[Sequence[Measured]]) -> str:
+    """The stiffnesses at which one of the quantities lies above `WORSE`, certainly or perhaps, in words."""
+    count = sum(map(len, gaps))
+    contrary = [any(within(g, high=WORSE, comparisons=count) is Verdict.CONTRADICTED for g in at) for at in _at(gaps)]
+    open_ = [any(within(g, high=WORSE) is not Verdict.SHOWN for g in at) for at in _at(gaps)]
+    unsure = [o and not c for o, c in zip(open_, contrary, strict=True)]
+    said = f", but not at k = {kilo(curves.k[contrary].tolist(), ', ', 0)} kN/m" if any(contrary) else ""
+    return said + (f", not certain at {sum(unsure)} of {len(unsure)} stiffnesses" if any(unsure) else "")
+
+
+def _at(gaps: Sequence[Sequence[Measured]]) -> list[tuple[Measured, ...]]:
+    return list(zip(*gaps, strict=True))
+
+
+def _percent(found: Sequence[Measured]) -> list[Measured]:
+    return [one.times(100.0) for one in found]
+
+
 def _shrinks(curves: Curves, index: str) -> list[Statement]:
     """Whether the optimum is worse with a hard shaft than with none, and worse still with a soft one, at every k."""
     parts, base = [], curves.of("S1", index)
     for layout in _LAYOUTS:
-        ideal, hard, soft = (layout + kind for kind in ("", "-hard", "-soft"))
-        exceptions = curves.k[curves.worse(ideal, hard, index) | curves.worse(hard, soft, index)]
+        names = ideal, hard, soft = [layout + kind for kind in ("", "-hard", "-soft")]
+        verdict, gaps = _rising(curves, names, index)
         losses = [100.0 * (curves.of(name, index) - curves.of(ideal, index)) / base for name in (hard, soft)]
         text = f"{layout}: the benefit shrinks by up to {losses[0].max():.2f} (hard) and {losses[1].max():.2f} (soft) "
-        parts.append(Statement(f"{text}percentage points{_but(exceptions)}", exceptions.size == 0))
+        text += f"percentage points{_where_contrary(curves, names, index)}"
+        parts.append(statement(text, verdict, by=_percent(gaps), at_once=len(gaps)))
     return parts
 
 
@@ -42,11 +90,14 @@ def _claim_1(curves: Curves) -> Claim:
 def _claim_2(curves: Curves, between: Found) -> Claim:
     parts = []
     for kind in ("soft", "hard"):
-        excess = curves.excess(f"S3-{kind}", "S3", "J3")
+        gaps = curves.measured(f"S3-{kind}", "S3", "J3")
         found = crossings(between, "J3", f"S3-{kind}", "S3")
-        once = bool(excess[0] < 0.0 < excess[-1]) and len(found) == 1
-        text = f"{kind}: better below k = {kilo(found)} kN/m, by at most {-100.0 * float(excess.min()):.2f} %"
-        parts.append(Statement(text, once, once and is_near(found[0], 120e3, curves.step)))
+        ends = [within(gaps[0], high=-WORSE), within(gaps[-1], low=WORSE)]
+        least = -100.0 * min(gap.value for gap in gaps)
+        text = f"{kind}: better below k = {kilo(found)} kN/m, by at most {least:.2f} %"
+        once = all_of(ends) if len(found) == 1 else Verdict.CONTRADICTED
+        number = within(Measured(found[0]), *about(120e3, curves.step)) if found else None
+        parts.append(statement(text, once, number, by=_percent([gaps[0], gaps[-1]])))
     return Claim(2, CLAIMS[2], tuple(parts))
 
 
@@ -54,11 +105,11 @@ def _claim_3(curves: Curves, between: Found) -> Claim:
     parts = _shrinks(curves, "J5")
     for kind in ("soft", "hard"):
         found = crossings(between, "J5", f"S3-{kind}", "S1")
-        there = excess_there(between, "J5", f"S3-{kind}", "S1")
+        there = Measured(excess_there(between, "J5", f"S3-{kind}", "S1"))
         where = f", and worse from k = {kilo(found, ' to ')} kN/m" if len(found) == 2 else ""
-        word = "worse" if there > 0.0 else "better"
-        text = f"at 55 kN/m S3 {kind} is {abs(100.0 * there):.2f} % {word} than S1{where}"
-        parts.append(Statement(text, there > WORSE))
+        word = "worse" if there.value > 0.0 else "better"
+        text = f"at 55 kN/m S3 {kind} is {abs(100.0 * there.value):.2f} % {word} than S1{where}"
+        parts.append(statement(text, within(there, low=WORSE), by=[there.times(100.0)]))
     return Claim(3, CLAIMS[3], tuple(parts))
 
 
@@ -66,28 +117,23 @@ def _claim_4(curves: Curves) -> Claim:
     parts = []
     for layout in _LAYOUTS:
         for index in ("J1", "J3"):
-            none, ten, twenty = layout, f"{layout}-10N", f"{layout}-20N"
+            names = none, ten, twenty = [layout, f"{layout}-10N", f"{layout}-20N"]
+            verdict, gaps = _rising(curves, names, index)
             costs = [100.0 * curves.excess(name, none, index) for name in (ten, twenty)]
-            contrary = curves.k[curves.worse(none, ten, index) | curves.worse(ten, twenty, index)]
             spans = [f"{cost.min():.1f} to {cost.max():.1f} % ({f} N)" for f, cost in zip((10, 20), costs, strict=True)]
-            parts.append(
-                Statement(
-                    f"{index} of {layout}: friction costs {' and '.join(spans)}{_but(contrary)}", contrary.size == 0
-                )
-            )
+            text = f"{index} of {layout}: friction costs {' and '.join(spans)}{_where_contrary(curves, names, index)}"
+            parts.append(statement(text, verdict, by=_percent(gaps), at_once=len(gaps)))
     for layout in _LAYOUTS:
         name = f"{layout}-10N"
-        found, soft = curves.crossings(name, "S1", "J1"), bool(curves.worse(name, "S1", "J1")[0])
-        where = f"worse than S1's up to k = {_at(found)} kN/m" if soft else "not certainly worse than S1's at small k"
-        once = soft and len(found) == 1
-        parts.append(
-            Statement(f"J1 of {layout} with 10 N is {where}", once, once and _is_at(found[0], 15e3, curves.step))
-        )
+        soft, found = curves.measured(name, "S1", "J1")[0].times(100.0), curves.crossings(name, "S1", "J1")
+        text = f"J1 of {layout} with 10 N is {_against(soft)} than S1's at k = {kilo(curves.k[:1], '', 0)} kN/m"
+        text += f", and equal at k = {_crossing_text(found)} kN/m" if found else ""
+        verdict = within(soft, low=100.0 * WORSE)
+        parts.append(statement(text, verdict, _near(found, 15e3, curves.step), by=[soft]))
     for layout in _LAYOUTS:
-        name = f"{layout}-10N"
-        last = -100.0 * curves.excess(name, "S1", "J1")[-1]
-        text = f"J1 of {layout} with 10 N is {last:.1f} % better than S1's at k = {kilo([curves.k[-1]], '', 0)} kN/m"
-        parts.append(Statement(text, bool(curves.worse("S1", name, "J1")[-1])))
+        last = curves.measured(f"{layout}-10N", "S1", "J1")[-1].times(100.0)
+        text = f"J1 of {layout} with 10 N is {_against(last)} than S1's at k = {kilo(curves.k[-1:], '', 0)} kN/m"
+        parts.append(statement(text, within(last, high=-100.0 * WORSE), by=[last]))
     return Claim(4, CLAIMS[4], tuple(parts))
 
 
@@ -95,34 +141,37 @@ def _claim_5(curves: Curves) -> Claim:
     parts, soft = [], curves.k <= _SOFT
     for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5")):
         for force in (10, 20):
-            name = f"{layout}-{force}N"
-            there = soft & curves.worse(name, "S1", index)
-            text = f"{index} of {layout} with {force} N: nowhere worse"
-            if there.any():
-                most = 100.0 * float(curves.excess(name, "S1", index)[there].max())
-                at = kilo(curves.k[there].tolist(), ", ", 0)
-                text = f"{index} of {layout} with {force} N: worse than S1's at k = {at} kN/m, by at most {most:.2f} %"
-            parts.append(Statement(text, bool(there.any())))
-    return Claim(
-        5,
-        CLAIMS[5],
-        tuple(parts),
-        note=f"Looked at up to k = {kilo([_SOFT], '', 0)} kN/m; worse means beyond two standard errors.",
-    )
+            gaps = _percent(curves.measured(f"{layout}-{force}N", "S1", index)[: int(soft.sum())])
+            certain = [within(g, high=100.0 * WORSE, comparisons=len(gaps)) is Verdict.CONTRADICTED for g in gaps]
+            largest = max(gaps, key=lambda gap: gap.value)
+            text = f"{index} of {layout} with {force} N: not certainly worse than S1's, at most {_against(largest)}"
+            if any(certain):
+                at = kilo(curves.k[soft][certain].tolist(), ", ", 0)
+                text = f"{index} of {layout} with {force} N: worse than S1's at k = {at} kN/m, "
+                text += f"by up to {largest.value:.2f} %"
+            parts.append(statement(text, somewhere_above(gaps, 100.0 * WORSE), by=gaps, at_once=len(gaps)))
+    return Claim(5, CLAIMS[5], tuple(parts), note=f"Evaluated up to k = {kilo([_SOFT], '', 0)} kN/m.")
+
+
+def _worst(curves: Curves, layout: str, kinds: Sequence[str], index: str) -> Statement:
+    """Whether the last kind of a layout is nowhere better than any of the others."""
+    both = layout + kinds[-1]
+    gaps = [curves.measured(layout + kind, both, index) for kind in kinds[:-1]]
+    every = [gap for steps in gaps for gap in steps]
+    text = f"{layout}: both together are the worst{_exceptions(curves, gaps) or ' at every k'}"
+    return statement(text, everywhere(every, high=WORSE), by=_percent(every), at_once=len(every))
 
 
 def _claim_8(curves: Curves) -> Claim:
     parts = []
     for layout, printed in (("S2", 50e3), ("S3", 150e3)):
-        friction, elastic, both = (f"{layout}-{kind}" for kind in ("10N", "soft", "soft-10N"))
-        found = curves.crossings(friction, elastic, "J1")
-        gap = curves.excess(friction, elastic, "J1")
-        text = f"{layout}: friction alone is better than elasticity alone above k = {_at(found)} kN/m"
-        once = bool(gap[0] > 0.0 > gap[-1]) and len(found) == 1
-        parts.append(Statement(text, once, once and _is_at(found[0], printed, curves.step)))
-        exceptions = curves.not_worst(both, (layout, friction, elastic), "J1")
-        text = f"{layout}: both together are the worst{' at every k' if not exceptions.size else ''}{_but(exceptions)}"
-        parts.append(Statement(text, exceptions.size == 0))
+        gaps = _percent(curves.measured(f"{layout}-10N", f"{layout}-soft", "J1"))
+        found = curves.crossings(f"{layout}-10N", f"{layout}-soft", "J1")
+        text = f"{layout}: friction alone is better than elasticity alone above k = {_crossing_text(found)} kN/m"
+        ends = [within(gaps[0], low=100.0 * WORSE), within(gaps[-1], high=-100.0 * WORSE)]
+        once = all_of(ends) if len(found) == 1 else all_of([*ends, Verdict.UNDETERMINED])
+        parts.append(statement(text, once, _near(found, printed, curves.step), by=[gaps[0], gaps[-1]]))
+        parts.append(_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J1"))
     return Claim(8, CLAIMS[8], tuple(parts))
 
 
@@ -137,12 +186,15 @@ def _claim_9(curves: Curves) -> Claim:
     parts = []
     for layout, where, at, order in printed:
         found = curves.order([layout + kind for kind in words], "J3", at)
-        signs = ["<" if curves.certainly_better(a, b, "J3", at) else "≈" for a, b in pairwise(found)]
+        steps = [within(curves.mean_measured(b, a, "J3", at), low=WORSE) for a, b in pairwise(found)]
+        signs = ["<" if step is Verdict.SHOWN else "≈" for step in steps]
         line = "".join(f"{words[n.removeprefix(layout)]} {sign} " for n, sign in zip(found, [*signs, ""], strict=True))
-        contrary = [curves.certainly_better(layout + b, layout + a, "J3", at) for a, b in combinations(order, 2)]
-        parts.append(Statement(f"{layout} {where} kN/m: {line.rstrip()}", not any(contrary)))
+        gaps = [curves.mean_measured(layout + b, layout + a, "J3", at) for a, b in combinations(order, 2)]
+        text = f"{layout} {where} kN/m: {line.rstrip()}"
+        parts.append(statement(text, everywhere(gaps, low=WORSE), by=_percent(gaps), at_once=len(gaps)))
     equal = [
-        f"{layout} at k = {_at(curves.crossings(f'{layout}-10N', f'{layout}-soft', 'J3'))} kN/m" for layout in _LAYOUTS
+        f"{layout} at k = {_crossing_text(curves.crossings(f'{layout}-10N', f'{layout}-soft', 'J3'))} kN/m"
+        for layout in _LAYOUTS
     ]
     return Claim(
         9,
@@ -153,23 +205,24 @@ def _claim_9(curves: Curves) -> Claim:
 
 
 def _claim_10(curves: Curves) -> Claim:
-    parts = []
-    for layout in _LAYOUTS:
-        friction, elastic, both = (f"{layout}-{kind}" for kind in ("10N", "soft", "soft-10N"))
-        exceptions = curves.not_worst(both, (layout, friction, elastic), "J5")
-        text = f"{layout}: both together are the worst{' at every k' if not exceptions.size else ''}{_but(exceptions)}"
-        parts.append(Statement(text, exceptions.size == 0))
-    more, less = curves.worse("S3-soft", "S3-10N", "J5"), curves.worse("S3-10N", "S3-soft", "J5")
+    parts = [_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J5") for layout in _LAYOUTS]
+    more = curves.measured("S3-soft", "S3-10N", "J5")
+    counts = [
+        sum(within(gap.times(sign), low=WORSE, comparisons=len(more)) is Verdict.SHOWN for gap in more)
+        for sign in (1.0, -1.0)
+    ]
     text = (
-        f"S3: elasticity costs more than friction at {int(more.sum())} of {more.size} stiffnesses, less at "
-        f"{int(less.sum())}, with no certain difference at the others"
+        f"S3: elasticity certainly costs more than friction at {counts[0]} of {len(more)} stiffnesses, less at "
+        f"{counts[1]}"
     )
-    parts.append(Statement(text, bool(more.any()) and not less.any()))
-    found = curves.crossings("S2-10N", "S2-soft", "J5")
-    friction_more, elastic_more = curves.worse("S2-10N", "S2-soft", "J5"), curves.worse("S2-soft", "S2-10N", "J5")
-    text = f"S2: friction and elasticity cost the same at k = {_at(found, ', ')} kN/m, elasticity more above"
-    holds = bool(friction_more.any() and elastic_more[-1])
-    parts.append(Statement(text, holds, len(found) == 1 and _is_at(found[0], 140e3, curves.step)))
+    verdict = all_of([everywhere(more, low=-WORSE), somewhere_above(more, WORSE)])
+    parts.append(statement(text, verdict, by=_percent(more), at_once=len(more)))
+    gaps, found = curves.measured("S2-10N", "S2-soft", "J5"), curves.crossings("S2-10N", "S2-soft", "J5")
+    below = [gap for gap, k in zip(gaps, curves.k, strict=True) if k < 140e3]
+    text = f"S2: friction and elasticity cost the same at k = {_crossing_text(found, ', ')} kN/m, elasticity more above"
+    verdict = all_of([somewhere_above(below, WORSE), within(gaps[-1], high=-WORSE)])
+    number = _near(found, 140e3, curves.step)
+    parts.append(statement(text, verdict, number, by=_percent([*below, gaps[-1]]), at_once=len(below)))
     return Claim(10, CLAIMS[10], tuple(parts))
 
 
@@ -179,25 +232,30 @@ def claim_13(evidence: Evidence) -> Claim:
     curves, parts = Curves(evidence.curves), []
     for index in ("J1", "J3", "J5"):
         for layout in ("S2-soft-10N", "S3-soft-10N"):
-            better = -100.0 * curves.excess(layout, "S1", index)
-            exceptions = curves.k[curves.worse(layout, "S1", index)]
-            text = f"{index} of {layout.split('-')[0]}: {better[-1]:.1f} % better at 300 kN/m"
-            but = f", worse at k = {kilo(exceptions.tolist(), ', ', 0)} kN/m" if exceptions.size else ""
-            parts.append(Statement(text + but, bool(better[-1] > 0.0) and exceptions.size == 0))
-    half = [evidence.improvement(3, index, case)[0] for index in ("J1", "J3", "J5") for case in (7, 13)]
-    parts.append(Statement(f"half car, Method 2: {min(half):.1f} to {max(half):.1f} % better", min(half) > 0.0))
-    return Claim(13, CLAIMS[13], tuple(parts), note="Worse means beyond two standard errors.")
+            gaps = curves.measured(layout, "S1", index)
+            last = gaps[-1].times(100.0)
+            where = f"than S1's at k = {kilo(curves.k[-1:], '', 0)} kN/m{_exceptions(curves, [gaps])}"
+            text = f"{index} of {layout.split('-')[0]}: {_against(last)} {where}"
+            verdict = all_of([everywhere(gaps, high=WORSE), within(last, high=-100.0 * WORSE)])
+            parts.append(statement(text, verdict, by=_percent(gaps), at_once=len(gaps)))
+    half = [evidence.improvement(3, index, case) for index in ("J1", "J3", "J5") for case in (7, 13)]
+    spread = np.array([one.value for one in half])
+    text = f"half car, Method 2: {spread.min():.1f} to {spread.max():.1f} % better"
+    parts.append(statement(text, everywhere(half, low=0.0), by=half, at_once=len(half)))
+    return Claim(13, CLAIMS[13], tuple(parts))
 
 
-def _but(exceptions: Array) -> str:
-    return f", but not at k = {kilo(exceptions.tolist(), ', ', 0)} kN/m" if exceptions.size else ""
+def _against(gap: Measured) -> str:
+    """How a quantity compares, in per cent, with the half-width of its 95 % confidence interval."""
+    scatter = f" ± {gap.half_width():.2f}" if gap.error else ""
+    return f"{abs(gap.value):.2f}{scatter} % {'worse' if gap.value > 0.0 else 'better'}"
 
 
-def _at(found: list[Intersection], between: str = " and ") -> str:
-    return (
-        between.join(f"{c.k / 1e3:.1f}{f' ± {c.error / 1e3:.1f}' if c.error else ''}" for c in found) or "(no crossing)"
-    )
+def _crossing_text(found: Sequence[Measured], between: str = " and ") -> str:
+    parts = [f"{c.value / 1e3:.1f}{f' ± {c.half_width() / 1e3:.1f}' if c.error else ''}" for c in found]
+    return between.join(parts) or "(no crossing)"
 
 
-def _is_at(found: Intersection, printed: float, step: float) -> bool:
-    return is_near(found.k, printed, step, found.error)
+def _near(found: Sequence[Measured], printed: float, step: float) -> Verdict:
+    """Whether the only crossing lies at the printed stiffness, which was read off a figure in steps."""
+    return within(found[0], *about(printed, step)) if len(found) == 1 else Verdict.UNDETERMINED

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -16,6 +18,7 @@ LAYOUTS = {
 }
 
 _RIGID = 1e5  # [kg]
+_REALISATIONS = 8
 
 
 def names(figure: str) -> list[str]:
@@ -38,32 +41,51 @@ def compute(name: str, optima: dict[str, float]) -> dict[str, object]:
     (swept,) = source.sweeps
     design = source.design(layout, swept.values[int(point)]).with_values(optima)
     rigid = optima["b"] > _RIGID  # an inerter that does not move feels no friction
-    found = evaluate(design, index_of(index, source), Norm() if rigid else ApproximateLinear(realisations=4))
-    return {"value": found.value, "error": found.standard_error or 0.0, "status": str(found.status)}
+    found = evaluate(
+        design, index_of(index, source), Norm() if rigid else ApproximateLinear(realisations=_REALISATIONS)
+    )
+    return {
+        "value": found.value,
+        "error": found.standard_error or 0.0,
+        "deviations": [sample - found.value for sample in found.samples],
+        "status": str(found.status),
+    }
 
 
-def dataset(found: dict[str, dict[str, object]], figure11: xr.Dataset) -> xr.Dataset:
-    """The curves as a dataset beside those of Figure 11: value, standard error and improvement over S1."""
+def dataset(found: dict[str, dict[str, Any]], figure11: xr.Dataset) -> xr.Dataset:
+    """The curves as a dataset beside those of Figure 11: value, standard error, improvement over S1, status.
+
+    `deviation` holds what each realisation adds to the mean, and `unsampled_error` what of the standard error does not
+    come from them; both are zero for linear designs.
+    """
     layouts = list(dict.fromkeys(name.split()[0] for name in found))
     base = figure11["value"].sel(layout="S1")
     shape = (len(layouts), figure11.sizes["index"], figure11.sizes["k"])
-    value, error, status = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, "ok", dtype=object)
+    value, error, rest = np.full((3, *shape), np.nan)
+    deviation, status = np.zeros((*shape, _REALISATIONS)), np.full(shape, "ok", dtype=object)
     symbols = figure11["index"].values.tolist()
     for name, numbers in found.items():
         layout, index, point = name.split()
         at = layouts.index(layout), symbols.index(index), int(point)
-        value[at], error[at] = float(numbers["value"]), float(numbers["error"])  # type: ignore[arg-type]
-        status[at] = numbers["status"]
+        value[at], error[at], status[at] = numbers["value"], numbers["error"], numbers["status"]
+        if numbers["deviations"]:
+            deviation[at] = numbers["deviations"]
+        sampled = np.sum(deviation[at] ** 2) / (_REALISATIONS * (_REALISATIONS - 1))
+        rest[at] = np.sqrt(max(error[at] ** 2 - sampled, 0.0))
     dims = ("layout", "index", "k")
     data = xr.Dataset(
-        {"value": (dims, value), "standard_error": (dims, error)},
+        {
+            "value": (dims, value),
+            "standard_error": (dims, error),
+            "unsampled_error": (dims, rest),
+            "deviation": ((*dims, "realisation"), deviation),
+        },
         coords={"layout": layouts, **{c: figure11[c] for c in ("index", "k", "index_unit", "index_title")}},
         attrs=figure11.attrs,
     )
     data["improvement"] = 100.0 * (1.0 - data["value"] / base)
     every = [*figure11["layout"].values, *layouts]
     together = xr.concat([figure11[["value", "improvement"]], data[["value", "improvement"]]], dim="layout")
-    return together.assign(
-        standard_error=data["standard_error"].reindex(layout=every, fill_value=0.0),
-        status=xr.concat([figure11["status"].astype(object), xr.DataArray(status, data.coords, dims)], dim="layout"),
-    )
+    scatter = data[["standard_error", "unsampled_error", "deviation"]].reindex(layout=every, fill_value=0.0)
+    statuses = [figure11["status"].astype(object), xr.DataArray(status, data.coords, dims)]
+    return together.assign({**scatter.data_vars, "status": xr.concat(statuses, dim="layout")})

@@ -1,30 +1,166 @@
-"""How claims of the paper are judged: part by part, each with what was found."""
+"""Verdicts on claims of the paper, statement by statement: shown, contradicted or undetermined, by one rule (`RULE`).
+
+What happens somewhere is the opposite of what is nowhere. Noise can make a statement undetermined, and never shown.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from math import hypot, inf
 
+import scipy
 import xarray as xr
 
 from inerter.papers.wang_su_2008.between import Found
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 
-HOLDS, OTHER_NUMBER, IN_PART, FAILS = "holds", "holds with another number", "holds in part", "does not hold"
+RULE = (
+    "A statement is shown if the 95 % confidence interval of the quantity in it lies inside the range that it names, "
+    "contradicted if it lies outside, and undetermined if it reaches across an end. What is said of every stiffness "
+    "has to be shown at each; to contradict it takes a difference that is certain among so many (Bonferroni). In "
+    "brackets: the verdict; that on the printed number if there is one, which stands for the values within half of its "
+    "last step; the least difference that would have been shown in nine of ten cases. ±: half the confidence interval."
+)
+_RISK = 0.05  # of an interval that misses
+_DETECTED = 0.9  # of differences as large as the power that is stated
+
+
+class Verdict(StrEnum):
+    """What the evidence says of a statement."""
+
+    SHOWN = "shown"
+    CONTRADICTED = "contradicted"
+    UNDETERMINED = "undetermined"
+
+    @property
+    def opposite(self) -> Verdict:
+        """The verdict on the contrary statement."""
+        return _OPPOSITE.get(self, self)
+
+
+_OPPOSITE = {Verdict.SHOWN: Verdict.CONTRADICTED, Verdict.CONTRADICTED: Verdict.SHOWN}
+
+
+def all_of(verdicts: Iterable[Verdict]) -> Verdict:
+    """The verdict on several statements together: contradicted by any, shown only by all."""
+    found = set(verdicts)
+    for verdict in (Verdict.CONTRADICTED, Verdict.UNDETERMINED):
+        if verdict in found:
+            return verdict
+    return Verdict.SHOWN
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A quantity as it was found: its value, standard error and degrees of freedom, and why it may be wrong if it may.
+
+    A standard error of 0 is that of a computed optimum or norm, which does not scatter.
+    """
+
+    value: float
+    error: float = 0.0
+    freedom: float = inf
+    doubt: str = ""  # the status of an estimate in it that is not ok
+
+    def half_width(self, comparisons: int = 1) -> float:
+        """Half the 95 % confidence interval, or one so wide that so many hold together with that confidence."""
+        return _quantile(1.0 - 0.5 * _RISK / comparisons, self.freedom) * self.error
+
+    def detectable(self, comparisons: int = 1) -> float:
+        """How far from the end of a range the true value has to lie to be told from it in nine of ten cases."""
+        return self.half_width(comparisons) + _quantile(_DETECTED, self.freedom) * self.error
+
+    def minus(self, other: Measured) -> Measured:
+        """The difference of two that scatter independently."""
+        return Measured(
+            self.value - other.value,
+            hypot(self.error, other.error),
+            min(self.freedom, other.freedom),
+            self.doubt or other.doubt,
+        )
+
+    def times(self, factor: float) -> Measured:
+        """The same in another unit."""
+        return replace(self, value=factor * self.value, error=abs(factor) * self.error)
+
+
+def _quantile(share: float, freedom: float) -> float:
+    # As `scipy.stats` has them, which takes a quarter of a second to load, in each process anew.
+    return float(scipy.special.ndtri(share) if freedom == inf else scipy.special.stdtrit(freedom, share))
+
+
+def within(found: Measured, low: float = -inf, high: float = inf, comparisons: int = 1) -> Verdict:
+    """Whether a quantity lies from `low` to `high`, by its 95 % confidence interval."""
+    reach = found.half_width(comparisons)
+    if found.doubt or not abs(found.value) < inf:
+        return Verdict.UNDETERMINED
+    if low <= found.value - reach and found.value + reach <= high:
+        return Verdict.SHOWN
+    if found.value + reach < low or found.value - reach > high:
+        return Verdict.CONTRADICTED
+    return Verdict.UNDETERMINED
+
+
+def everywhere(found: Sequence[Measured], low: float = -inf, high: float = inf) -> Verdict:
+    """Whether all quantities lie from `low` to `high`."""
+    if all(within(one, low, high) is Verdict.SHOWN for one in found):
+        return Verdict.SHOWN
+    certain = [within(one, low, high, len(found)) for one in found]
+    return Verdict.CONTRADICTED if Verdict.CONTRADICTED in certain else Verdict.UNDETERMINED
+
+
+def somewhere_above(found: Sequence[Measured], level: float) -> Verdict:
+    """Whether any quantity lies above `level`."""
+    return everywhere(found, high=level).opposite
+
+
+def about(printed: float, step: float) -> tuple[float, float]:
+    """The range of values that may be told as `printed`, where numbers go in such steps."""
+    return printed - 0.5 * step, printed + 0.5 * step
 
 
 @dataclass(frozen=True)
 class Statement:
-    """One statement within a claim: what was found, whether it holds, and with the number that the paper gives."""
+    """One statement within a claim: what was found, the verdict on it, and that on the number that the paper gives.
+
+    `power` is the least difference that would have been told, in words; empty where nothing scatters.
+    """
 
     found: str
-    holds: bool
-    as_printed: bool = True
+    verdict: Verdict
+    number: Verdict | None = None  # None: no number is printed, or what has it was not shown
+    power: str = ""
+
+    @property
+    def text(self) -> str:
+        """What was found, with the verdicts."""
+        number = f"; printed number {self.number}" if self.number is not None else ""
+        power = f"; would tell {self.power}" if self.power else ""
+        return f"{self.found} [{self.verdict}{number}{power}]"
+
+
+def statement(
+    found: str,
+    verdict: Verdict,
+    number: Verdict | None = None,
+    *,
+    by: Sequence[Measured] = (),
+    unit: str = "%",
+    at_once: int = 1,
+) -> Statement:
+    """A statement judged by quantities in `unit`; `at_once` are those compared for one verdict."""
+    power = max((one.detectable(at_once) for one in by), default=0.0)
+    doubts = dict.fromkeys(one.doubt for one in by if one.doubt)
+    said = f"{found} (not to be relied on: {'; '.join(doubts)})" if doubts else found
+    kept = number if verdict is Verdict.SHOWN else None
+    return Statement(said, verdict, kept, f"{power:.2g} {unit}" if power > 0.0 else "")
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper and what became of its parts."""
+    """A claim of the paper and what became of its statements."""
 
     number: int
     statement: str
@@ -32,19 +168,28 @@ class Claim:
     note: str = ""
 
     @property
-    def verdict(self) -> str:
-        """In words: of all parts together."""
-        holding = [part.holds for part in self.parts]
-        if all(holding):
-            return HOLDS if all(part.as_printed for part in self.parts) else OTHER_NUMBER
-        return IN_PART if any(holding) else FAILS
+    def verdict(self) -> Verdict:
+        """Of all statements together."""
+        return all_of(part.verdict for part in self.parts)
+
+    @property
+    def printed_numbers(self) -> Verdict | None:
+        """Of the numbers that the paper gives, where what has them is shown; None where there are none."""
+        found = [part.number for part in self.parts if part.number is not None]
+        return all_of(found) if found else None
+
+    @property
+    def headline(self) -> str:
+        """The verdict in words, with how many statements it rests on, and that on the printed numbers."""
+        alike = sum(part.verdict is self.verdict for part in self.parts)
+        some = "" if self.verdict is Verdict.SHOWN else f" in {alike} of {len(self.parts)} statements"
+        numbers = self.printed_numbers
+        return f"{self.verdict}{some}" + (f"; printed numbers {numbers}" if numbers is not None else "")
 
     @property
     def evidence(self) -> str:
-        """What was found, with a word on each part that does not hold where others do."""
-        mixed = self.verdict == IN_PART
-        said = [f"{part.found}{' [does not hold]' if mixed and not part.holds else ''}" for part in self.parts]
-        return "; ".join(said) + "." + (f" {self.note}" if self.note else "")
+        """What was found, statement by statement, each with its verdict."""
+        return "; ".join(part.text for part in self.parts) + "." + (f" {self.note}" if self.note else "")
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,28 +206,29 @@ class Evidence:
         """Whether the simulated rows of these tables are there."""
         return all(any(table == key[0] for key in self.rows) for table in tables)
 
-    def improvement(self, table: int, index: str, case: int) -> tuple[float, float]:
-        """Improvement of a row over the traditional suspension of its table [%], and its standard error.
+    def improvement(self, table: int, index: str, case: int) -> Measured:
+        """Improvement of a row over the traditional suspension of its table [%].
 
         Of the exact values; a row that was not simulated is linear and has its norm.
         """
-        (value, error), (base, base_error) = (self._exact(table, f"{index} {n}") for n in (case, 1))
-        ratio = value / base
-        return 100.0 * (1.0 - ratio), 100.0 * ratio * ((error / value) ** 2 + (base_error / base) ** 2) ** 0.5
+        found, base = (self._exact(table, f"{index} {n}") for n in (case, 1))
+        ratio = found.value / base.value
+        error = 100.0 * ratio * hypot(found.error / found.value, base.error / base.value)
+        return replace(found.minus(base), value=100.0 * (1.0 - ratio), error=error)
 
-    def cost(self, table: int, index: str, ideal: int, other: int) -> tuple[float, float]:
-        """Percentage points of the improvement that `other` loses to `ideal`, and the standard error."""
-        (best, error), (worse, other_error) = (self.improvement(table, index, case) for case in (ideal, other))
-        return best - worse, (error**2 + other_error**2) ** 0.5
+    def cost(self, table: int, index: str, ideal: int, other: int) -> Measured:
+        """Percentage points of the improvement that `other` loses to `ideal`."""
+        return self.improvement(table, index, ideal).minus(self.improvement(table, index, other))
 
-    def _exact(self, table: int, name: str) -> tuple[float, float]:
+    def _exact(self, table: int, name: str) -> Measured:
         row = self.rows.get((table, name))
-        return (self.linear[table, name], 0.0) if row is None else (row.exact, row.exact_error)
+        return Measured(self.linear[table, name]) if row is None else exact_value(row)
 
 
-def is_near(value: float, printed: float, step: float, error: float = 0.0) -> bool:
-    """Whether a value could have been told as `printed`, which goes in steps; it is known to a standard error."""
-    return abs(value - printed) <= 0.5 * step + 2.0 * error
+def exact_value(row: SimulatedRow) -> Measured:
+    """The exact value of a simulated row."""
+    freedom = row.exact_realisations - 1 if row.exact_realisations > 1 else inf
+    return Measured(row.exact, row.exact_error, freedom, row.exact_doubt)
 
 
 def kilo(values: Iterable[float], between: str = " and ", digits: int = 1) -> str:

@@ -1,27 +1,21 @@
-"""Indices over the static stiffness: which curve is certainly higher, and where two of them cross."""
+"""Indices over the static stiffness: how curves differ, with what confidence, and where two of them cross."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from inerter.papers.wang_su_2008.between import WORSE
+from inerter.papers.wang_su_2008.judging import Measured, Verdict, within
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Intersection:
-    """Where one curve becomes better or worse than another [N/m], and its standard error."""
-
-    k: float
-    error: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,42 +38,49 @@ class Curves:
         """The values of one curve."""
         return np.asarray(self.data["value"].sel(layout=layout, index=index).values)
 
-    def error(self, layout: str, index: str) -> Array:
-        """Their standard errors."""
-        if "standard_error" not in self.data:
-            return np.zeros(self.k.size)
-        return np.asarray(self.data["standard_error"].sel(layout=layout, index=index).fillna(0.0).values)
-
     def excess(self, one: str, other: str, index: str) -> Array:
         """How much higher `one` is than `other`, relative."""
         return np.asarray(self.of(one, index) / self.of(other, index) - 1.0)
 
-    def excess_error(self, one: str, other: str, index: str) -> Array:
-        """The standard error of that."""
-        return np.asarray(np.hypot(self.error(one, index), self.error(other, index)) / self.of(other, index))
+    def measured(self, one: str, other: str, index: str) -> list[Measured]:
+        """How much higher `one` is than `other`, relative, at each stiffness.
 
-    def worse(self, one: str, other: str, index: str) -> Flags:
-        """Where `one` is higher than `other` by more than can be seen, and than two standard errors."""
-        return np.asarray(self.excess(one, other, index) > WORSE + 2.0 * self.excess_error(one, other, index))
+        Realisation by realisation, since both were driven by the same ones: what those do to both alike cancels.
+        """
+        gap, scatter = self.excess(one, other, index), self._scatter(one, other, index)
+        doubts = self._doubts(one, other, index)
+        return [
+            _mean(g, s, r, doubt)
+            for g, s, r, doubt in zip(gap, scatter, self._rest(one, other, index), doubts, strict=True)
+        ]
 
-    def not_worst(self, one: str, others: Iterable[str], index: str) -> Array:
-        """Stiffnesses at which `one` is certainly not the worst."""
-        return self.k[np.any([self.worse(other, one, index) for other in others], axis=0)]
+    def mean_measured(self, one: str, other: str, index: str, at: Flags) -> Measured:
+        """How much higher `one` is than `other`, relative, in the mean where `at` holds.
 
-    def crossings(self, one: str, other: str, index: str) -> list[Intersection]:
-        """Where `one` becomes better or worse than `other`, by linear interpolation between swept values.
+        The realisations are the same at every stiffness, so their deviations are averaged before they are squared.
+        """
+        doubt = next((d for d in self._doubts(one, other, index)[at] if d), "")
+        rest = float(np.mean(self._rest(one, other, index)[at]))
+        scatter = self._scatter(one, other, index)[at].mean(axis=0)
+        return _mean(float(np.mean(self.excess(one, other, index)[at])), scatter, rest, doubt)
+
+    def crossings(self, one: str, other: str, index: str) -> list[Measured]:
+        """Stiffnesses [N/m] where `one` becomes better or worse than `other`, interpolated between swept values.
 
         A stretch between turns, or before or behind them all, counts if the difference is certain anywhere on it.
         """
-        gap, k, error = self.excess(one, other, index), self.k, self.excess_error(one, other, index)
-        certain = self.worse(one, other, index) | self.worse(other, one, index)
+        gap, k, found = self.excess(one, other, index), self.k, self.measured(one, other, index)
+        same = [within(each, -WORSE, WORSE, k.size) for each in found]
+        certain = np.array([verdict is Verdict.CONTRADICTED for verdict in same])
         stretches = np.split(np.arange(k.size), 1 + np.flatnonzero(np.diff(np.sign(gap)) != 0))
         counted = [stretch for stretch in stretches if certain[stretch].any()]
         turns = [(s[-1], after[0]) for s, after in pairwise(counted) if gap[s[-1]] * gap[after[0]] < 0.0]
         return [
-            Intersection(
-                k=float(k[i] + (k[j] - k[i]) * gap[i] / (gap[i] - gap[j])),
-                error=float(max(error[i], error[j]) * (k[j] - k[i]) / abs(gap[i] - gap[j])),
+            Measured(
+                float(k[i] + (k[j] - k[i]) * gap[i] / (gap[i] - gap[j])),
+                float(max(found[i].error, found[j].error) * (k[j] - k[i]) / abs(gap[i] - gap[j])),
+                min(found[i].freedom, found[j].freedom),
+                found[i].doubt or found[j].doubt,
             )
             for i, j in turns
         ]
@@ -90,10 +91,39 @@ class Curves:
         mean = {name: float(np.mean(self.excess(name, chosen[0], index)[at])) for name in chosen}
         return sorted(chosen, key=mean.__getitem__)
 
-    def certainly_better(self, one: str, other: str, index: str, at: Flags) -> bool:
-        """Whether `one` is lower than `other` in the mean where `at` holds, by more than two standard errors.
+    def _at(self, name: str, layout: str, index: str) -> Array | None:
+        return np.asarray(self.data[name].sel(layout=layout, index=index).values) if name in self.data else None
 
-        Errors at different stiffnesses come from the same random inputs and may be correlated.
-        """
-        gap, error = self.excess(other, one, index)[at], self.excess_error(other, one, index)[at]
-        return bool(np.mean(gap) > WORSE + 2.0 * np.mean(error))
+    def _deviations(self, layout: str, index: str) -> Array:
+        """What each realisation adds to the mean (k, realisations); zero for a linear design."""
+        found = self._at("deviation", layout, index)
+        return np.zeros((self.k.size, 1)) if found is None else np.nan_to_num(found)
+
+    def _scatter(self, one: str, other: str, index: str) -> Array:
+        """The same of `excess` (k, realisations), to first order."""
+        first, second = self.of(one, index)[:, None], self.of(other, index)[:, None]
+        a, b = self._deviations(one, index), self._deviations(other, index)
+        return np.asarray(a / second - first / second**2 * b)
+
+    def _rest(self, one: str, other: str, index: str) -> Array:
+        """What is unsure of `excess` beside the realisations: harmonics that are missed, smoothing."""
+        base, zero = self.of(other, index), np.zeros(self.k.size)
+        parts = [self._at("unsampled_error", layout, index) for layout in (one, other)]
+        return np.asarray(np.hypot(*(zero if part is None else np.nan_to_num(part) for part in parts)) / base)
+
+    def _doubts(self, one: str, other: str, index: str) -> Array:
+        statuses = [self._at("status", layout, index) for layout in (one, other)]
+        found = np.full(self.k.size, "", dtype=object)
+        for status in statuses:
+            if status is not None:
+                found = np.where((found == "") & (status != "ok"), status, found)
+        return found
+
+
+def _mean(value: float, scatter: Array, rest: float, doubt: str) -> Measured:
+    """A mean over realisations that deviate from it by `scatter`, with what else is unsure of it."""
+    count = scatter.size
+    if count < 2 or not np.any(scatter):
+        return Measured(float(value), float(rest), inf, doubt)
+    error = np.sqrt(np.sum(scatter**2) / (count * (count - 1)))
+    return Measured(float(value), float(np.hypot(error, rest)), count - 1, doubt)

@@ -18,10 +18,11 @@ RUNS = 4  # simulations that the paper averages
 _ERROR = 1e-3  # relative standard error of what we call exact
 _RUN = 20.0  # [s] of a sine from rest, as short as those of the paper can have been
 _CHANCE = 3.0  # standard errors of a difference between two means of four runs
-VERDICTS = EQUAL, WITHIN, STARTED, OTHER_PEAK, DIFFERS = (
+VERDICTS = EQUAL, WITHIN, STARTED, EITHER, OTHER_PEAK, DIFFERS = (
     "agrees to the printed digits",
     "within the scatter of four runs",
     "as from a start at rest",
+    "either of several peaks",
     "another peak",
     "differs",
 )
@@ -39,6 +40,8 @@ class SimulatedRow:
     exact_error: float
     peaks: tuple[GainPeak, ...]  # local maxima over all frequencies, for J5 by a sine
     begun: tuple[float, ...] = ()  # gains at their frequencies in a short run from rest
+    exact_realisations: int = 0  # random inputs of the exact value; 0 if it does not scatter
+    exact_doubt: str = ""  # its status where that is not ok
     improvement: float | None = None  # of `paper2008` over the norm of S1, for rows of Method 1 [%]
 
     @property
@@ -67,7 +70,9 @@ class SimulatedRow:
             return WITHIN if abs(self.score) <= _CHANCE else DIFFERS
         if not self.compatible:
             return DIFFERS
-        return STARTED if self.peaks[0] in self.compatible else OTHER_PEAK
+        if self.peaks[0] not in self.compatible:
+            return OTHER_PEAK
+        return EITHER if len(self.candidates) > 1 else STARTED
 
     @property
     def compatible(self) -> tuple[GainPeak, ...]:
@@ -75,6 +80,15 @@ class SimulatedRow:
         pairs = zip(self.peaks, self.begun, strict=True) if self.begun else ()
         digit, value = self.row.last_digit, self.row.value
         return tuple(peak for peak, begun in pairs if begun - digit <= value <= peak.gain + digit)
+
+    @property
+    def candidates(self) -> tuple[GainPeak, ...]:
+        """Those of them whose gains can be told apart in print: which one the printed value follows is open."""
+        found: list[GainPeak] = []
+        for peak in self.compatible:
+            if all(abs(peak.gain - other.gain) > self.row.last_digit for other in found):
+                found.append(peak)
+        return tuple(found)
 
 
 def names(table: int) -> list[str]:
@@ -95,6 +109,8 @@ def compute(table: int, name: str) -> dict[str, object]:
         "paper2008_error": paper.standard_error or 0.0,
         "exact": exact.value,
         "exact_error": exact.standard_error or 0.0,
+        "exact_realisations": exact.realisations,
+        "exact_doubt": "" if exact.status.ok else str(exact.status),
         "peaks": [[peak.omega, peak.gain] for peak in exact.peaks],
         "begun": [_begun(row, peak) for peak in exact.peaks] if by_sine else [],
         "improvement": None if table != 2 else 100.0 * (1.0 - paper.value / _norm_of_s1(row)),

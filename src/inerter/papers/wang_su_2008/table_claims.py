@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
-from inerter.papers.wang_su_2008.judging import Claim, Evidence, Statement, is_near
+from inerter.papers.wang_su_2008.between import WORSE
+from inerter.papers.wang_su_2008.judging import (
+    Claim,
+    Evidence,
+    Measured,
+    Statement,
+    about,
+    exact_value,
+    statement,
+    within,
+)
 from inerter.papers.wang_su_2008.paper import CLAIMS
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 
-_SAID = 0.5  # percentage points: the steps in which the paper speaks of losses (0.5, 1, 2.5)
+_STEP = 0.5  # percentage points: the steps in which the paper gives losses (0.5, 1, 2.5)
+_POINTS = "percentage points"
 
 
 def quarter_car_claims(evidence: Evidence) -> list[Claim]:
@@ -14,19 +25,31 @@ def quarter_car_claims(evidence: Evidence) -> list[Claim]:
     return [claim(evidence) for claim in (_claim_6, _claim_7, _claim_11)]
 
 
+def _loss(what: str, cost: Measured, low: float, high: float) -> Statement:
+    """The statement that something costs an improvement anything, with the printed range of how much."""
+    text = f"{what} loses {_points(cost)} {_POINTS}"
+    return statement(text, within(cost, low=0.0), within(cost, low, high), by=[cost], unit=_POINTS)
+
+
+def _points(cost: Measured) -> str:
+    return f"{cost.value:.2f}" + (f" ± {cost.half_width():.2f}" if cost.error else "")
+
+
 def _claim_6(evidence: Evidence) -> Claim:
     parts = []
     for layout, (ideal, ten) in {"S2": (2, 4), "S3": (7, 9)}.items():
         for index in ("J1", "J3"):
-            small, error = evidence.cost(1, index, ideal, ten)
-            text = f"{index} of {layout}: 10 N cost {small:.2f} percentage points"
-            parts.append(Statement(text, abs(small) < _SAID + 2.0 * error))
+            small = evidence.cost(1, index, ideal, ten)
+            text = f"{index} of {layout}: 10 N cost {_points(small)} {_POINTS}"
+            parts.append(statement(text, within(small, -_STEP, _STEP), by=[small], unit=_POINTS))
     for layout, (ideal, hundred), printed in (("S2", (2, 5), 1.0), ("S3", (7, 10), 2.5)):
-        ride, _ = evidence.cost(1, "J1", ideal, hundred)
-        cost, error = evidence.cost(1, "J3", ideal, hundred)
-        text = f"{layout} with 100 N: J3 loses {cost:.2f} ± {error:.2f}, J1 {ride:.2f} percentage points"
-        parts.append(Statement(text, cost > 2.0 * error, is_near(cost, printed, _SAID, error)))
-    return Claim(6, CLAIMS[6], tuple(parts), note="Negligible: less than half a percentage point.")
+        cost = evidence.cost(1, "J3", ideal, hundred)
+        parts.append(_loss(f"J3 of {layout} with 100 N", cost, *about(printed, _STEP)))
+    ride = [
+        f"{layout} {_points(evidence.cost(1, 'J1', *cases))}" for layout, cases in {"S2": (2, 5), "S3": (7, 10)}.items()
+    ]
+    note = f"Negligible: less than half a percentage point. With 100 N J1 loses {' and '.join(ride)} {_POINTS}."
+    return Claim(6, CLAIMS[6], tuple(parts), note)
 
 
 def _claim_7(evidence: Evidence) -> Claim:
@@ -35,9 +58,11 @@ def _claim_7(evidence: Evidence) -> Claim:
         reference = evidence.rows[1, f"J5 {ideal}"]
         for case, force in zip(cases, (10, 100), strict=True):
             row = evidence.rows[1, f"J5 {case}"]
-            change = 100.0 * (row.exact / reference.exact - 1.0)
-            text = f"{layout} with {force} N: {change:+.2f} % over all frequencies"
-            parts.append(Statement(text, change > 0.0 if layout == "S2" else change < 0.0))
+            base = reference.exact
+            change = exact_value(row).minus(exact_value(reference)).times(100.0 / base)
+            verdict = within(change, low=100.0 * WORSE) if layout == "S2" else within(change, high=-100.0 * WORSE)
+            text = f"{layout} with {force} N: {change.value:+.2f} % over all frequencies"
+            parts.append(statement(text, verdict, by=[change]))
             followed.append(_followed(layout, force, row, reference))
     return Claim(7, CLAIMS[7], tuple(parts), note=f"At the peak nearest to the printed value: {'; '.join(followed)}.")
 
@@ -49,33 +74,30 @@ def _followed(layout: str, force: int, row: SimulatedRow, reference: SimulatedRo
 
 
 def _claim_11(evidence: Evidence) -> Claim:
-    parts = []
-    for layout, (ideal, both) in {"S2": (2, 6), "S3": (7, 11)}.items():
-        for index in ("J1", "J3"):
-            cost, error = evidence.cost(1, index, ideal, both)
-            said = _between(cost, 2.0, 3.0, error) if index == "J1" else is_near(cost, 0.5, _SAID, error)
-            parts.append(Statement(f"{index} of {layout} loses {cost:.2f} percentage points", cost > 2.0 * error, said))
+    ranges = {"J1": (2.0, 3.0), "J3": about(0.5, _STEP)}
+    parts = [
+        _loss(f"{index} of {layout}", evidence.cost(1, index, *cases), *ranges[index])
+        for layout, cases in {"S2": (2, 6), "S3": (7, 11)}.items()
+        for index in ranges
+    ]
     return Claim(11, CLAIMS[11], tuple(parts))
 
 
 def claim_12(evidence: Evidence) -> Claim:
     """The claim on the half car, Tables 2 and 3."""
-    parts, load = [], {}
-    for index in ("J1", "J3", "J5"):
-        for layout, (ideal, both) in {"S2": (2, 7), "S3": (8, 13)}.items():
-            cost, error = evidence.cost(3, index, ideal, both)
-            said = {"J1": _between(cost, 2.0, 3.0, error), "J3": cost < 1.0 + 2.0 * error, "J5": True}[index]
-            if index == "J5":
-                load[layout] = cost
-                said = layout == "S2" or (is_near(cost, 6.5, _SAID, error) and cost == max(load.values()))
-            text = f"Method 2, {index} of {layout} loses {cost:.2f} percentage points"
-            parts.append(Statement(text, cost > 2.0 * error, said))
-    for layout, (ideal, both) in {"S2": (2, 7), "S3": (8, 13)}.items():
-        cost, error = evidence.cost(2, "J5", ideal, both)
-        text = f"Method 1, J5 of {layout} loses {cost:.2f} ± {error:.2f} percentage points"
-        parts.append(Statement(text, cost > 2.0 * error, is_near(cost, 8.0, 1.0, error)))
+    cases = {"S2": (2, 7), "S3": (8, 13)}
+    parts = [
+        _loss(f"Method 2, {index} of {layout}", evidence.cost(3, index, *pair), low, high)
+        for index, (low, high) in {"J1": (2.0, 3.0), "J3": (0.0, 1.0)}.items()
+        for layout, pair in cases.items()
+    ]
+    load = {layout: evidence.cost(3, "J5", *pair) for layout, pair in cases.items()}
+    parts.append(_loss("Method 2, J5 of S3", load["S3"], *about(6.5, _STEP)))
+    text = f"Method 2, J5 of S2 loses {_points(load['S2'])} {_POINTS}, less than that of S3"
+    lead = load["S3"].minus(load["S2"])
+    parts.append(statement(text, within(lead, low=0.0), by=[lead], unit=_POINTS))
+    parts += [
+        _loss(f"Method 1, J5 of {layout}", evidence.cost(2, "J5", *pair), *about(8.0, 1.0))
+        for layout, pair in cases.items()
+    ]
     return Claim(12, CLAIMS[12], tuple(parts))
-
-
-def _between(value: float, low: float, high: float, error: float) -> bool:
-    return low - 2.0 * error <= value <= high + 2.0 * error

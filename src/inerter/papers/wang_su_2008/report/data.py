@@ -10,7 +10,7 @@ from typing import Any
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.reproduce import Reproduction
-from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK, SimulatedRow
+from inerter.papers.wang_su_2008.rows import DIFFERS, EITHER, OTHER_PEAK, SimulatedRow
 from inerter.records.result import Response
 
 
@@ -24,7 +24,13 @@ def tables(found: Reproduction) -> dict[str, list[dict[str, Any]]]:
         "simulated-rows": [_simulated_row(row) for row in found.rows.values()],
         "curves": list(_curve_rows(found)),
         "claims": [
-            {"claim": c.number, "statement": c.statement, "verdict": c.verdict, "evidence": c.evidence}
+            {
+                "claim": c.number,
+                "statement": c.statement,
+                "verdict": str(c.verdict),
+                "printed_numbers": str(c.printed_numbers or ""),
+                "evidence": c.evidence,
+            }
             for c in found.claims
         ],
         "methods": method_points(found),
@@ -84,6 +90,9 @@ def reason(r: SimulatedRow) -> str:
             f"the printed value follows the peak at {peak.omega:.1f} rad/s, {peak.gain:.5g} m/N, which is not the "
             "highest; by which rule is not printed"
         )
+    if r.verdict == EITHER:
+        peaks = " or ".join(f"{peak.omega:.1f} rad/s, {peak.gain:.5g} m/N" for peak in r.candidates)
+        return f"as from a start at rest at the peak at {peaks}; which of them the printed value follows cannot be told"
     if r.verdict != DIFFERS:
         return ""
     if r.row.index == "J5" and r.row.table == 2:

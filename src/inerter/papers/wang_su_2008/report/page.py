@@ -12,6 +12,7 @@ from inerter.figures.networks import draw_networks
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
 from inerter.networks.parser import network
+from inerter.papers.wang_su_2008.judging import RULE, Verdict
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.paper import NETWORKS, PAPER
 from inerter.papers.wang_su_2008.report import figures as drawn
@@ -110,6 +111,7 @@ def _page(found: Reproduction, folder: Path) -> str:
             designs=[designs_table(linear.found, number) for number in (1, 2)] if linear else [],
             origins=origins(found),
             claims=found.claims,
+            rule=RULE,
             optima=optima_table(found),
             budgets=budgets_table(found),
             rig=rig_table(found),
@@ -128,11 +130,8 @@ def _summary(found: Reproduction) -> list[str]:
         said = ", ".join(f"{verdict} {count}" for verdict, count in counts.items() if count)
         lines.append(f"Simulated rows of the tables by verdict: {said}; {len(rows)} in all.")
     if found.claims:
-        verdicts = dict.fromkeys(claim.verdict for claim in found.claims)
-        said = "; ".join(
-            f"{verdict}: {', '.join(str(c.number) for c in found.claims if c.verdict == verdict)}"
-            for verdict in verdicts
-        )
+        claims = {verdict: [str(c.number) for c in found.claims if c.verdict is verdict] for verdict in Verdict}
+        said = "; ".join(f"{verdict}: {', '.join(some)}" for verdict, some in claims.items() if some)
         lines.append(f"Claims by number, {said}.")
     if found.optima:
         name, numbers = min(found.optima.items(), key=lambda item: float(item[1]["percent"]))

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.errors import StatusKind
 from inerter.figures.labels import printed
-from inerter.papers.wang_su_2008.judging import Claim
+from inerter.papers.wang_su_2008.judging import RULE, Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.paper import PAPER
 from inerter.papers.wang_su_2008.reproduce import Reproduction
@@ -17,7 +17,7 @@ from inerter.papers.wang_su_2008.rows import VERDICTS, SimulatedRow
 from inerter.report.text import WIDTH
 from inerter.units import format_handy, format_quantity, format_with_interval
 
-_SIGNS = dict(zip(VERDICTS, "=~<^!", strict=True))
+_SIGNS = dict(zip(VERDICTS, "=~<?^!", strict=True))
 
 
 def reproduction_text(found: Reproduction) -> str:
@@ -40,7 +40,7 @@ def reproduction_text(found: Reproduction) -> str:
             lines += wrap(f"{name}: {budget_value(numbers)}", WIDTH, subsequent_indent="    ")
         lines.append("")
     if found.claims:
-        lines += ["Claims", ""]
+        lines += ["Claims", "", *wrap(RULE, WIDTH), ""]
         lines += [line for claim in found.claims for line in _claim_lines(claim)]
     return "\n".join(lines).rstrip()
 
@@ -118,8 +118,8 @@ def _simulated_text(table: int, rows: list[SimulatedRow]) -> list[str]:
     return [
         *wrap(
             f"Table {table} by {how}; = equal to the printed digits, ~ within the scatter of four runs, < as from a "
-            "start at rest, ^ another peak than the highest was printed, ! differs (the report says why). Standard "
-            "errors are in simulated-rows.csv.",
+            "start at rest, ? the same at either of several peaks, ^ another peak than the highest was printed, ! "
+            "differs (the report says why). Standard errors are in simulated-rows.csv.",
             WIDTH,
         ),
         "",
@@ -149,7 +149,7 @@ def budget_value(numbers: dict[str, Any]) -> str:
 
 def _claim_lines(claim: Claim) -> Iterator[str]:
     yield from wrap(f"{claim.number}. {claim.statement}", WIDTH, subsequent_indent="   ")
-    yield from wrap(f"{claim.verdict.upper()}. {claim.evidence}", WIDTH, initial_indent="   ", subsequent_indent="   ")
+    yield from wrap(f"{claim.headline.upper()}. {claim.evidence}", WIDTH, initial_indent="   ", subsequent_indent="   ")
 
 
 def share(c: ComparedRow) -> float:

@@ -344,7 +344,7 @@ def test_a_claim_is_as_good_as_its_worst_statement() -> None:
         0, "", (Statement("this", SHOWN, CONTRADICTED), Statement("that", UNDETERMINED, None, "1 %")), "N. B."
     )
     assert mixed.headline == "undetermined in 1 of 2 statements; printed numbers contradicted"
-    assert mixed.evidence == "this [shown; printed number contradicted]; that [undetermined; would tell 1 %]. N. B."
+    assert mixed.evidence == "this [shown; printed number contradicted]; that [undetermined; detectable: 1 %]. N. B."
 
 
 def test_a_printed_number_is_judged_only_with_what_it_is_about() -> None:

@@ -200,7 +200,8 @@ def _claim_9(curves: Curves) -> Claim:
         9,
         CLAIMS[9],
         tuple(parts),
-        note=f"≈: no certain difference. Friction alone and elasticity alone are equal in {' and in '.join(equal)}.",
+        note="≈: no certain difference of more than 0.01 %. Friction alone and elasticity alone are equal in "
+        f"{' and in '.join(equal)}.",
     )
 
 

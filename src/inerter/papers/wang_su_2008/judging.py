@@ -21,7 +21,7 @@ RULE = (
     "contradicted if it lies outside, and undetermined if it reaches across an end. What is said of every stiffness "
     "has to be shown at each; to contradict it takes a difference that is certain among so many (Bonferroni). In "
     "brackets: the verdict; that on the printed number if there is one, which stands for the values within half of its "
-    "last step; the least difference that would have been shown in nine of ten cases. ±: half the confidence interval."
+    "last step; the detectable difference, which is shown in nine of ten cases. ±: half the confidence interval."
 )
 _RISK = 0.05  # of an interval that misses
 _DETECTED = 0.9  # of differences as large as the power that is stated
@@ -137,7 +137,7 @@ class Statement:
     def text(self) -> str:
         """What was found, with the verdicts."""
         number = f"; printed number {self.number}" if self.number is not None else ""
-        power = f"; would tell {self.power}" if self.power else ""
+        power = f"; detectable: {self.power}" if self.power else ""
         return f"{self.found} [{self.verdict}{number}{power}]"
 
 

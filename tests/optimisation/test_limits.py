@@ -233,3 +233,24 @@ def test_weighted_comfort_with_a_limit_on_travel():
         slopes.append(np.array(logs))
     assert slopes[0] == pytest.approx(best.limits[0].sensitivity * slopes[1], abs=1e-6)
     assert best.sensitivities == {"suspension travel at most 3 mm": best.limits[0].sensitivity}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_peak_gain_that_some_design_has_can_be_asked_for(seed):
+    """Its highest peak is the one that has to be there, whichever of two unequal ones that is."""
+    rng = np.random.default_rng([seed, 77])
+    car = random_quarter_car(
+        rng, it.Spring(80e3) | it.Damper(it.free(100.0, 1e5, "c")) | it.Inerter(it.free(1.0, 3e3, "b"))
+    )
+    while True:
+        point = {"c": 10.0 ** rng.uniform(2.5, 4.5), "b": 10.0 ** rng.uniform(0.5, 3.0)}
+        there = it.evaluate(car.with_values(point), J5, NORM)
+        if len(there.peaks) > 1 and there.peaks[1].gain < 0.9 * there.value:
+            break
+    best = it.optimise(car, J1, NORM, subject_to=[it.equal(J5, there.value)])
+    assert best.status.ok, best.status
+    assert it.evaluate(best.design, J5, NORM).value == pytest.approx(there.value, rel=1e-6)
+    assert best.value <= it.evaluate(car.with_values(point), J1, NORM).value * (1.0 + 1e-9)
+    more, less = (it.optimise(car, J1, NORM, subject_to=[it.equal(J5, there.value * f)]) for f in (1.001, 0.999))
+    slope = np.log(more.value / less.value) / np.log(1.001 / 0.999)
+    assert best.limits[0].sensitivity == pytest.approx(slope, rel=0.02, abs=1e-4)

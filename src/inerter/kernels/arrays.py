@@ -43,6 +43,7 @@ PLACE = record(
         ("left", np.int64),  # pieces before the next look at the keyboard
         ("ended", np.int64),  # 1: a slip may have ended with the segment before
         ("clock", np.float64),  # time within the segment [s]
+        ("zero", np.float64),  # what counts as zero in a guard, relative to the largest state so far
     ]
 )
 BEFORE, SMOOTH, BROKEN = 0, 1, 2  # nothing yet; inputs go on as they were; a value or a slope is another one

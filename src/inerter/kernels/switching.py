@@ -16,21 +16,39 @@ DONE, PAUSED, MODE_UNKNOWN, EVENTS_FULL, CHATTER, IMPACT, NO_MODE, NOT_FINITE, S
 ACCEPTED, STRUCK, STRANDED = -1, -2, -3  # verdicts on a mode; another one is the element that must change its state
 VELOCITY, SPRINGS, LOOSE = range(3)  # groups of conditions on entry
 _EPS = 2.2e-16  # the last digit of a number, relative to it
+_LARGEST_ZERO = 1e-7  # relative to the largest state so far
 
 
 @part(borrowing=True)
 def switch(run: Run, events: Array, start: float, length: float, who: int) -> int:
     """Find the mode that goes on from here, after the guard of element `who` (or nothing, -1) was met.
 
+    Some mode can in exact arithmetic, so if none is found, rounding has taken the place of a zero somewhere: then what
+    counts as zero grows until one is, and derivatives of higher order decide where values did.
+    """
+    place = run.motion.place[0]
+    if place.events + run.mechanics.sizes.elements > events.shape[0]:
+        return EVENTS_FULL
+    if place.mode >= 0:
+        _as_seen(run, length)
+    place.zero, code = ROUNDING, NO_MODE
+    while code in (NO_MODE, IMPACT) and place.zero < 2.0 * _LARGEST_ZERO:
+        code = _find(run, length, who)
+        place.zero *= 10.0
+    if code == DONE:
+        _go_over(run, events, start, _number_on_trial(run))
+    return code
+
+
+@part(borrowing=True, inside=True)
+def _find(run: Run, length: float, who: int) -> int:
+    """Put modes on trial until one can go on, and leave it there; DONE, or why there is none.
+
     Starts from the present mode and lets one element after the other change its state, the first that violates its
     guard first (Murty's least-index rule, finite for friction and contact without impacts); if that does not settle,
     all states are tried.
     """
     place, watch, elements = run.motion.place[0], run.motion.watch, run.mechanics.sizes.elements
-    if place.events + elements > events.shape[0]:
-        return EVENTS_FULL
-    if place.mode >= 0:
-        _as_seen(run, length)
     _first_trial(run, who)
     verdict, m = 0, NONE
     for _ in range(20 + 8 * elements):
@@ -51,10 +69,9 @@ def switch(run: Run, events: Array, start: float, length: float, who: int) -> in
             if m < 0:
                 return _unknown(run)
             verdict = judge(run, m, length, who)
-    if verdict != ACCEPTED:
-        return IMPACT if struck else NO_MODE
-    _go_over(run, events, start, m)
-    return DONE
+    if verdict == ACCEPTED:
+        return DONE
+    return IMPACT if struck else NO_MODE
 
 
 @part(borrowing=True, inside=True)
@@ -222,7 +239,7 @@ def _is_broken(run: Run, m: int, first: int, last: int) -> bool:
         row = run.modes.maps[m, run.mechanics.rows.entry + i]
         room.residual[i] = over_columns(row, room.guess, u, n, nu)
         size = _size(row, room.sizes[0], u, n, nu) + abs(row[n + nu])
-        broken = broken or abs(room.residual[i]) > 1e-10 * size
+        broken = broken or abs(room.residual[i]) > max(1e-10, run.motion.place[0].zero) * size
     return broken
 
 
@@ -314,7 +331,7 @@ def _violated(run: Run, m: int, e: int, d: float, met: bool) -> int:
             if order == 0:
                 total += row[n + nu] - limit
                 size += abs(limit)
-            if abs(total) <= (MET if order == 0 and met else ROUNDING) * size:
+            if abs(total) <= max(MET if order == 0 and met else 0.0, place.zero) * size:
                 watch.touch, watch.side = order + 1, side
             elif side * total > 0.0:
                 return side

@@ -91,7 +91,7 @@ class Integration:
                 events = self.record.events
                 self.record = self.record._replace(events=np.concatenate([events, events]))
             elif code not in (switching.DONE, switching.PAUSED):
-                self.status = self._failed(_FAILURES[code])
+                self.status = self._failed(self._too_stiff() if code == switching.STIFF else _FAILURES[code])
 
     def build(self, states: NDArray[np.int64]) -> bool:
         """Add the mode in which the nonlinear elements are in these states."""
@@ -174,6 +174,29 @@ class Integration:
         parts = (slice(0, na), slice(na, n))
         return max(float(change[p].max(initial=0.0) / max(scale[p].max(initial=0.0), 1e-300)) for p in parts)
 
+    def _too_stiff(self) -> str:
+        """Which elements relax too fast for the step, by the power that they take in the fastest motion of the mode."""
+        n, na, branches = self.system.order, self.system.motions[0].shape[1], self.system.graph.branches
+        maps = self.modes.maps[self.motion.place["mode"][0]]
+        poles, motions = np.linalg.eig(maps[:n, :n])
+        fastest = int(np.argmax(np.abs(poles)))
+        rate, motion = float(np.abs(poles[fastest])), motions[:, fastest]
+        massless = maps[self.eta, :n][na : na + self.system.motions[1].shape[1]] @ motion
+        speeds = np.abs(self.system.rates[0] @ motion[:na] + self.system.rates[1] @ massless)
+        taken = {Linear.DAMPING: 1.0, Linear.STIFFNESS: 1.0 / rate}  # by a damper c v^2, by a spring k (v / rate) v
+        powers = np.array(
+            [
+                taken.get(b.element.linear, 0.0) * b.element.coefficient * v**2
+                for b, v in zip(branches, speeds, strict=True)
+            ]
+        )
+        named = [b.label for b, power in zip(branches, powers, strict=True) if power >= 0.5 * powers.max() > 0.0]
+        return (
+            f"{' and '.join(named) or 'a motion'} relax in {1.0 / rate:.2g} s, more than 10 000 times faster than the "
+            f"step of {self.table.step:g} s. Leave out what is so fast, such as a damper on a small inertance or a "
+            "contact, change its value, or take a step of that order"
+        )
+
     def _failed(self, why: str) -> Status:
         return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; nothing comes after that")
 
@@ -191,8 +214,6 @@ _FAILURES = {
     switching.IMPACT: "two inertias meet without compliance between them",
     switching.NO_MODE: "no combination of slip, stick and contact can go on",
     switching.NOT_FINITE: "the motion grows beyond all bounds",
-    switching.STIFF: "something answers more than 10 000 times faster than the step (a damper on a small inertance, "
-    "most often); take a step of that order, or leave out what is so fast",
 }
 KERNELS: tuple[Any, ...] = (build, integrate, discretise, evaluate)
 _SINGULAR = "the forces in a combination of slip, stick and contact are not determined"

@@ -6,6 +6,7 @@ Bad input raises, where it enters. A numerical failure of one case among many is
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -115,6 +116,21 @@ class Status:
 
 
 OK = Status()
+_GRAVEST_FIRST = (
+    StatusKind.FAILED,
+    StatusKind.INFEASIBLE,
+    StatusKind.UNSTABLE,
+    StatusKind.MARGINAL,
+    StatusKind.DIRECT_TERM,
+    StatusKind.UNBOUNDED,
+    StatusKind.INACCURATE,
+    StatusKind.OK,
+)
+
+
+def worst_of(statuses: Iterable[Status]) -> Status:
+    """The status of what is made of several numbers: the gravest of theirs, the first of those that are alike."""
+    return min(statuses, key=lambda status: _GRAVEST_FIRST.index(status.kind), default=OK)
 
 
 def with_article(word: str) -> str:

@@ -189,6 +189,7 @@ def budget(study: Study, body: Body) -> Answer:
         "crossings": [
             {"value": c.value, "standard_error": c.standard_error, "better": c.better} for c in found.crossings
         ],
+        "ranges": [{"lower": r.lower, "upper": r.upper, "better": r.better} for r in found.ranges],
         "status": found.status.kind.value,
         "message": found.status.message,
     }

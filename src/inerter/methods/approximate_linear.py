@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, PerformanceIndexError, Status, StatusKind
+from inerter.errors import OK, PerformanceIndexError, Status, StatusKind, worst_of
 from inerter.indices.question import Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
@@ -24,7 +24,6 @@ from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.objective import Objective
-from inerter.methods.realisations import worst
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.hinf import GainPeak
@@ -204,7 +203,7 @@ class ApproximateLinear:
             gains = _gains(squares[:, places], inputs[:, None], pooled)
             factor = _factor(question, question.arrivals(runs.system.mechanism)[0], runs)
             estimate = self._from_gains(question, linear, gains * factor, runs)
-        status = worst([estimate.status, runs.warning])
+        status = worst_of([estimate.status, runs.warning])
         if status.ok and self.relative_error is not None and not self._reached(estimate):
             status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
         return replace(estimate, status=status, notes=(*estimate.notes, *notes))

@@ -10,7 +10,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import Status
+from inerter.errors import Status, worst_of
 from inerter.methods.asking import Asked, is_composed
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
@@ -65,8 +65,8 @@ class Comparison:
 
     @property
     def status(self) -> Status:
-        """How far both can be trusted: the first status that is not ok."""
-        return self.first.status if not self.first.status.ok else self.second.status
+        """How far both can be trusted: the worse of their statuses."""
+        return worst_of((self.first.status, self.second.status))
 
     def __str__(self) -> str:
         if not np.isfinite(self.percent):
@@ -78,7 +78,8 @@ class Comparison:
                 f"neither is known to be better: they differ by {abs(self.percent):.2g} % ± {self.percent_error:.1g} %"
             )
         word = "better" if self.difference.value < 0.0 else "worse"
-        return f"the first is {abs(self.percent):.2g} % ± {self.percent_error:.1g} % {word} than the second"
+        doubt = "" if self.status.ok else f"not certain ({self.status}): "
+        return f"{doubt}the first is {abs(self.percent):.2g} % ± {self.percent_error:.1g} % {word} than the second"
 
 
 def compare(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind
+from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
 from inerter.indices.question import Index, Question
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
@@ -20,7 +20,7 @@ from inerter.methods.method import Estimate, Sees
 from inerter.methods.objective import Objective
 from inerter.methods.on_roads import mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
-from inerter.methods.realisations import drive, realisation_seeds, worst
+from inerter.methods.realisations import drive, realisation_seeds
 from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import middle
@@ -205,7 +205,7 @@ class ExpectedValue:
         peaks, statuses = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool)
         weighted = tuple(replace(peak, gain=abs(output.weight) * peak.gain) for peak in peaks)
         value = weighted[0].gain if weighted else np.nan
-        status = worst(statuses)
+        status = worst_of(statuses)
         if status.kind is StatusKind.FAILED:
             value = np.nan
         return Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)

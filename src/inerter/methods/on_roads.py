@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import OK, Status, StatusKind
+from inerter.errors import OK, Status, StatusKind, worst_of
 from inerter.indices.question import Question
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
@@ -25,7 +25,6 @@ from inerter.methods.realisations import (
     factor_of,
     realisation_seeds,
     run,
-    worst,
 )
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
@@ -121,7 +120,7 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Ran], Re
 
 def _is_resolved(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> bool:
     """Whether a period of the motion stands for a long road, or whether that of no road would."""
-    if design.way.hold is not None or worst([ran.status for ran in found]).kind is StatusKind.FAILED:
+    if design.way.hold is not None or worst_of([ran.status for ran in found]).kind is StatusKind.FAILED:
         return True
     settled = all(ran.status.ok for ran in found)
     if has_play(design.system) or design.linear is None:
@@ -235,7 +234,7 @@ def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, po
 def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
     """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
     power = np.array([ran.power[: len(design.outputs)] for ran in found]) + lacking.power
-    status, unit = worst([lacking.status, *(ran.status for ran in found)]), design.question.unit
+    status, unit = worst_of([lacking.status, *(ran.status for ran in found)]), design.question.unit
     question, weights = design.question, design.weights
     samples = question.combined(np.sqrt(np.maximum(power, 0.0)), weights)
     sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))

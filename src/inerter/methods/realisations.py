@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import OK, Status
+from inerter.errors import Status
 from inerter.indices.question import Question
 from inerter.methods.linear import Conventions
 from inerter.methods.steady_squares import steady_squares
@@ -153,8 +153,3 @@ def run(
 def realisation_seeds(seed: int, first: int, stop: int) -> list[int]:
     """Seeds of the realisations `first`, ..., `stop` - 1 of a method's seed."""
     return [int(np.random.SeedSequence([seed, r]).generate_state(1, np.uint64)[0]) for r in range(first, stop)]
-
-
-def worst(found: Sequence[Status]) -> Status:
-    """The first status that is not ok."""
-    return next((status for status in found if not status.ok), OK)

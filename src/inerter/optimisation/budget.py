@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -12,10 +12,10 @@ import numpy as np
 import scipy
 
 from inerter.checks import is_number
-from inerter.errors import OK, DesignError, Status, StatusKind
+from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Averaging, Method, check_request, evaluate
+from inerter.methods.method import Averaging, Method, Sees, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.units import format_quantity
@@ -40,12 +40,22 @@ class Crossing:
 
 
 @dataclass(frozen=True)
+class Range:
+    """Values of the parameter (SI) between crossings or bounds, and whether the design beats the baseline there."""
+
+    lower: float
+    upper: float
+    better: bool | None  # None: an index has no value there
+
+
+@dataclass(frozen=True)
 class Budget:
     """The values of a parameter for which a design beats a baseline.
 
     `value` is the end of that range: the largest friction or gap, the smallest stiffness, damping or inertance. It is
     nan, and `status` says why, where the design is better (or worse) at every value between `bounds`. All are in SI
-    units; `interval` is of 95 % confidence and symmetric in the logarithm.
+    units; `interval` is of 95 % confidence and symmetric in the logarithm. Standard errors and intervals are nan for a
+    method that models friction and has none. `status` is no better than the worst of the estimates that were compared.
     """
 
     parameter: str
@@ -54,6 +64,7 @@ class Budget:
     standard_error: float
     interval: tuple[float, float]
     crossings: tuple[Crossing, ...]  # all that were found, in rising order
+    ranges: tuple[Range, ...]  # between them, in rising order: all of `bounds`
     bounds: tuple[float, float]
     status: Status
     evaluations: int
@@ -112,6 +123,7 @@ def _budget(
 ) -> Budget:
     lower, upper = between
     known: dict[float, Comparison] = {}
+    exact = method.sees is Sees.NEITHER
     fixed = _as_many_roads(design, index, method)
     same = None if _has(baseline, parameter) else evaluate(baseline, index, fixed)
 
@@ -125,15 +137,15 @@ def _budget(
     grid = np.linspace(np.log(lower), np.log(upper), _POINTS).tolist()
     gaps = [difference(at) for at in grid]
     crossings = tuple(
-        _crossing(difference, known, a, b)
+        _crossing(difference, known, a, b, exact=exact)
         for (a, left), (b, right) in pairwise(zip(grid, gaps, strict=True))
         if np.isfinite(left + right) and (left < 0.0) != (right < 0.0)
     )
     wanted = "below" if chosen[0].may_vanish else "above"
     ends = [c for c in crossings if c.better == wanted]
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
-    failed = next((known[at].status for at in grid if not np.isfinite(known[at].difference.value)), OK)
-    failed = next((c.status for c in crossings if not c.status.ok), failed)
+    ranges = _ranges(grid, gaps, crossings, between)
+    asked = [known[at].status for at in grid if end is None or _lies_on_the_way(at, end, grid[1] - grid[0])]
     return Budget(
         parameter=parameter,
         unit=chosen[0].unit,
@@ -141,8 +153,9 @@ def _budget(
         standard_error=np.nan if end is None else end.standard_error,
         interval=(np.nan, np.nan) if end is None else end.interval,
         crossings=crossings,
+        ranges=ranges,
         bounds=between,
-        status=_status(gaps, end, failed, parameter, chosen[0].unit, lower, upper),
+        status=_status(ranges, end, [*asked, *(() if end is None else (end.status,))], parameter, chosen[0].unit),
         evaluations=len(known),
     )
 
@@ -218,7 +231,9 @@ def _as_many_roads(design: Vehicle, index: Asked, method: Method) -> Method:
     return method.fixed(found.realisations) if found.realisations else method
 
 
-def _crossing(difference: Callable[[float], float], known: dict[float, Comparison], a: float, b: float) -> Crossing:
+def _crossing(
+    difference: Callable[[float], float], known: dict[float, Comparison], a: float, b: float, *, exact: bool
+) -> Crossing:
     root = float(scipy.optimize.brentq(difference, a, b, xtol=1e-5))
     rising = difference(b) > difference(a)
     slope = (difference(root + _SLOPE) - difference(root - _SLOPE)) / (2.0 * _SLOPE)
@@ -226,22 +241,60 @@ def _crossing(difference: Callable[[float], float], known: dict[float, Compariso
     here = known[root]
     found = here.difference
     error, reach = (part / abs(slope) if slope else np.inf for part in (found.standard_error, found.reach))
+    if not exact and here.first.standard_error is None and here.second.standard_error is None:
+        error = reach = np.nan  # how far the method is off is not known
     value = float(np.exp(root))
     with np.errstate(over="ignore"):
         interval = (value * float(np.exp(-reach)), value * float(np.exp(reach)))
     return Crossing(value, value * error, interval, "below" if rising else "above", here.status)
 
 
+def _ranges(
+    grid: Sequence[float], gaps: Sequence[float], crossings: Sequence[Crossing], bounds: tuple[float, float]
+) -> tuple[Range, ...]:
+    """What the design is between crossings; a range without values ends half way to its neighbours."""
+    found: list[Range] = []
+    ends = [c.value for c in crossings]
+    for i, (at, gap) in enumerate(zip(grid, gaps, strict=True)):
+        better = bool(gap < 0.0) if np.isfinite(gap) else None
+        if found and better is found[-1].better:
+            continue
+        begin = bounds[0]
+        if found:
+            half_way = float(np.exp(0.5 * (grid[i - 1] + at)))
+            begin = next((end for end in ends if grid[i - 1] <= np.log(end) <= at), half_way)
+            found[-1] = replace(found[-1], upper=begin)
+        found.append(Range(begin, bounds[1], better))
+    return tuple(found)
+
+
+def _lies_on_the_way(at: float, end: Crossing, step: float) -> bool:
+    """Whether a point of the grid (a logarithm) is one on which a range up to its end, or from it on, rests."""
+    beyond = at - float(np.log(end.value))
+    return beyond <= step if end.better == "below" else beyond >= -step
+
+
 def _status(
-    gaps: Sequence[float], end: Crossing | None, failed: Status, parameter: str, unit: str, lower: float, upper: float
+    ranges: Sequence[Range], end: Crossing | None, statuses: Sequence[Status], parameter: str, unit: str
 ) -> Status:
-    if not failed.ok:
-        return failed
-    if end is not None:
-        return OK
-    between = f"{parameter} from {format_quantity(lower, unit)} to {format_quantity(upper, unit)}"
-    if all(gap < 0.0 for gap in gaps):
-        return Status(StatusKind.UNBOUNDED, f"the design is better for every {between}")
-    if all(gap >= 0.0 for gap in gaps):
-        return Status(StatusKind.UNBOUNDED, f"the design is better for no {between}")
-    return Status(StatusKind.UNBOUNDED, f"the design is better only beyond the crossings, of all {between}")
+    """The worst of all that were compared; where there is no end, for which values the design is better."""
+    bad, said = worst_of(statuses), _sentence(ranges, parameter, unit)
+    if not bad.ok:
+        alike = "" if end is not None else f". Taken as it is, {said}"
+        return Status(bad.kind, f"{bad.message.rstrip('.')}{alike}")
+    return OK if end is not None else Status(StatusKind.UNBOUNDED, said)
+
+
+def _sentence(ranges: Sequence[Range], parameter: str, unit: str) -> str:
+    """For which values the design is better, in words."""
+    whole = f"{parameter} {_span(ranges[0].lower, ranges[-1].upper, unit)}"
+    better = [f"{_span(one.lower, one.upper, unit)}" for one in ranges if one.better]
+    if all(one.better for one in ranges):
+        return f"the design is better for every {whole}"
+    if not better:
+        return f"the design is better for no {whole}"
+    return f"the design is better {' and '.join(better)} only, of all {whole}"
+
+
+def _span(lower: float, upper: float, unit: str) -> str:
+    return f"from {format_quantity(lower, unit)} to {format_quantity(upper, unit)}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import nan
 
 import numpy as np
@@ -87,16 +87,27 @@ def _number(value: float, unit: str, write: Writer) -> str:
 
 
 def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome], write: Writer) -> Iterator[str]:
-    """How much of an element each of the best layouts bears."""
+    """For which values of an element each of the best layouts is better; what is not certain says so first."""
     best = {name for index in study.indices for name in best_layouts(results, index)} if budgets else set()
     for element, layout in dict.fromkeys((found.parameter, found.layout) for found in budgets):
         own = [found for found in budgets if (found.parameter, found.layout) == (element, layout)]
         if layout in best:
             what = capital(f"{study.elements[element].key} {element}")
-            ends = [f"{end} in {index_title(results, o.index)}" for o in own if (end := end_of_range(o, write))]
+            sound = [found for found in own if not found.doubt]
+            ends = [f"{end} in {index_title(results, o.index)}" for o in sound if (end := end_of_range(o, write))]
             told = [f"{what}: {layout} is better than {study.baseline} {listed(ends)}."] if ends else []
-            others = [found for found in own if not end_of_range(found, write)]
-            for message in dict.fromkeys(found.message.rstrip(".") for found in others):
-                of = [index_title(results, o.index) for o in others if o.message.rstrip(".") == message]
-                told.append(f"{what}, {layout}, {listed(of)}: {message}.")
+            others = [found for found in sound if not end_of_range(found, write)]
+            for message, of in _alike(results, others, lambda found: found.message):
+                told.append(f"{what}, {layout}, {of}: {message}.")
+            for message, of in _alike(results, own, lambda found: found.doubt):
+                told.append(f"Not certain for {what[0].lower()}{what[1:]}, {layout}, {of}: {message}.")
             yield " ".join(told)
+
+
+def _alike(
+    results: xr.Dataset, found: Sequence[BudgetOutcome], said: Callable[[BudgetOutcome], str]
+) -> Iterator[tuple[str, str]]:
+    """Each sentence once, with the indices of which it is said."""
+    for message in dict.fromkeys(said(one).rstrip(".") for one in found):
+        if message:
+            yield message, listed([index_title(results, o.index) for o in found if said(o).rstrip(".") == message])

@@ -33,11 +33,14 @@ def budget_tables(budgets: Sequence[BudgetOutcome], study: Study) -> list[Table]
         for layout in dict.fromkeys(outcome.layout for outcome in found):
             own = [outcome for outcome in found if outcome.layout == layout]
             remarks = [f"{outcome.index}: {text}" for outcome in own if (text := _remark(outcome, printed))]
-            rows.append(
-                Row(layout, [Cell(end_of_range(outcome, printed) or "–") for outcome in own], status="; ".join(remarks))
-            )
+            rows.append(Row(layout, [Cell(_cell(outcome)) for outcome in own], status="; ".join(remarks)))
         tables.append(Table(_caption(name, found[0], study), ["Layout", *study.indices], rows))
     return tables
+
+
+def _cell(found: BudgetOutcome) -> str:
+    end = end_of_range(found, printed) or "–"
+    return f"not certain: {end}" if found.doubt else end
 
 
 def _by_element(budgets: Sequence[BudgetOutcome]) -> dict[str, list[BudgetOutcome]]:
@@ -52,6 +55,8 @@ def _caption(name: str, found: BudgetOutcome, study: Study) -> str:
 
 def _answer(found: BudgetOutcome, write: Writer) -> str:
     end, remark = end_of_range(found, write), _remark(found, write)
+    if found.doubt:
+        return f"not certain ({remark})" + (f"; taken as it is, {end}" if end else "")
     return f"{end} ({remark})" if end and remark else end or remark
 
 
@@ -73,8 +78,8 @@ def _remark(found: BudgetOutcome, write: Writer) -> str:
     if len(found.crossings) > 1:
         places = [write(value, found.unit, float("nan")) for value in found.crossings]
         remarks.append(f"equally good at {', '.join(places[:-1])} and {places[-1]}")
-    if found.status == StatusKind.UNBOUNDED:
+    if found.doubt:
+        remarks.insert(0, found.doubt)
+    elif found.status == StatusKind.UNBOUNDED:
         remarks.append(found.message)
-    elif found.status != "ok":
-        remarks.append(f"{found.status}: {found.message}")
     return "; ".join(remarks)

@@ -8,6 +8,7 @@ from textwrap import TextWrapper, wrap
 import numpy as np
 import xarray as xr
 
+from inerter.errors import StatusKind
 from inerter.figures.labels import (
     criteria,
     criterion_unit,
@@ -43,7 +44,9 @@ def front_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[str]
             ]
         )
         better = _bettered(results, layout, baseline) if baseline and layout != baseline else ""
-        found.append(f"{layout} {told}{better}")
+        status = str(results["front_status"].sel(layout=layout).item())
+        doubt = "" if status == StatusKind.OK else f"not certain ({status}): "
+        found.append(f"{doubt}{layout} {told}{better}")
     return [f"{trade_off_title(results)}, at the knee: {'; '.join(found)}."] if found else []
 
 

@@ -19,7 +19,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, InerterError, PerformanceIndexError, Status, StatusKind
+from inerter.errors import OK, DesignError, InerterError, PerformanceIndexError, Status, StatusKind, worst_of
 from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.combined import ObjectivePart, combined
 from inerter.methods.method import Method, check_request
@@ -371,7 +371,9 @@ def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]
     parameters = tuple(dict(zip(names, one.point.tolist(), strict=True)) for one in several)
     designs = tuple(trade.vehicle.with_values(values) for values in parameters)
     estimates = [[estimate_of(design, one, trade.method) for one in trade.indices] for design in designs]
-    statuses = tuple(next((e.status for e in row if not e.status.ok), row[0].status) for row in estimates)
+    statuses = tuple(worst_of(e.status for e in row) for row in estimates)
+    bad, troubled = worst_of(statuses), sum(not one.ok for one in statuses)
+    status = OK if bad.ok else Status(bad.kind, f"{troubled} of {len(statuses)} points, such as one with {bad.message}")
     problem = Limited(None, trade.bounds, trade.lower, trade.upper)
     held = tuple(
         held_at(problem, design, trade.method, one.point, known=False)
@@ -380,4 +382,4 @@ def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]
     keys = [one.point.tobytes() for one in several]
     pairs = tuple((i, i + 1) for i in range(len(keys) - 1) if (keys[i], keys[i + 1]) in jumps)
     values = np.array([[estimate.value for estimate in row] for row in estimates])
-    return Front(trade.indices, values, parameters, designs, statuses, pairs, held, seed)
+    return Front(trade.indices, values, parameters, designs, statuses, pairs, held, seed, status)

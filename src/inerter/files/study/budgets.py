@@ -71,6 +71,11 @@ class BudgetOutcome:
         """Whether there is an answer: that it is better at every value is one too."""
         return self.status in _ANSWERS
 
+    @property
+    def doubt(self) -> str:
+        """Why the answer is not certain; empty if it is."""
+        return "" if self.ok else f"{self.status}: {self.message}"
+
     def to_json(self) -> dict[str, Any]:
         """A plain dictionary; `BudgetOutcome(**...)` undoes it."""
         return asdict(self)
@@ -111,8 +116,8 @@ def _outcome(study: Study, case: BudgetCase, found: Budget | None, status: str, 
     return BudgetOutcome(
         *(case.layout, case.index, case.parameter, element.unit, budget_method(study), element.may_vanish),
         value=found.value if found and known else None,
-        standard_error=found.standard_error if found and known else None,
-        interval=found.interval if found and known else None,
+        standard_error=found.standard_error if found and np.isfinite(found.standard_error) else None,
+        interval=found.interval if found and np.isfinite(found.interval).all() else None,
         crossings=[crossing.value for crossing in found.crossings] if found else [],
         status=status,
         message=message,

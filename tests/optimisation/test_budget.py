@@ -324,3 +324,28 @@ def test_a_budget_over_conditions_of_a_seat_is_that_of_the_laden_vehicles():
     alone = it.budget(*(seated(strut, 300.0, 100.0) for strut in struts), comfort, **asked)
     assert np.isfinite(over.value)
     assert over.value == pytest.approx(alone.value, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_budget_is_no_better_than_what_it_rests_on(seed):
+    """Random cars by a method that is inaccurate where friction sticks, looked at between the points of its grid."""
+    rng = np.random.default_rng([seed, 31])
+    strut = Spring(rng.uniform(8e3, 1e5)) | Damper(10.0 ** rng.uniform(2.0, 4.0))
+    car = it.QuarterCar(
+        rng.uniform(80.0, 400.0), rng.uniform(10.0, 50.0), rng.uniform(8e4, 3e5), strut | Friction(30.0)
+    )
+    other = it.QuarterCar(
+        car.sprung_mass, car.unsprung_mass, car.tyre_stiffness, Spring(2e4) | Damper(10.0 ** rng.uniform(2.0, 4.0))
+    )
+    found = budget(car, other, J1, parameter="friction", method=Linearisation())
+    end = found.value if np.isfinite(found.value) else found.bounds[1]
+    inside = np.geomspace(found.bounds[0], end, 12)
+    statuses = [it.evaluate(with_element(car, "friction", f), J1, Linearisation()).status for f in inside]
+    if not all(status.ok for status in statuses[1:-1]):
+        assert found.status.kind is StatusKind.INACCURATE
+        assert "expected-value" in found.status.message
+    if found.status.ok:
+        assert all(status.ok for status in statuses)
+    assert np.isnan(found.standard_error)
+    assert found.ranges[0].lower == found.bounds[0]
+    assert found.ranges[-1].upper == found.bounds[1]

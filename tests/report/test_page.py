@@ -93,6 +93,11 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     assert "Friction f, S3, ride comfort: better for every f." in text
     assert "J1: equally good at 280.5 N and 900 N" in text
     assert "S3 – J1: better for every f" in text
+    poor = replace(found, layout="S3", status="inaccurate", message="it sticks. Take expected-value")
+    doubtful = Page(report(results, asked, tmp_path, [found, poor])).text.replace(SPACE, " ")
+    assert "Not certain for friction f, S3, ride comfort: inaccurate: it sticks. Take expected-value." in doubtful
+    assert "S3 is better than" not in doubtful
+    assert "not certain: up to 280.5 ± 6.6 N" in doubtful
     assert "Values by simulation (in files: expected-value) are means over simulations" in text
     assert "Each mean is over 8 random inputs, which seed 0 decides" in text
     assert "The sinusoidal force of J5 has an amplitude of 1 kN." in text

@@ -85,7 +85,9 @@ def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
     study = study_of(tmp_path, ASK + 'tolerance = { c = "10 %" }\nquantile = 0.9\nbaseline = "S2"', fixed)
     best = it.robust(study.design("S1"), it.RideComfort(study.road), it.Norm(), spread={"c": 0.1}, quantile=0.9, seed=0)
     asked = study.asked("J1", "S1")
-    assert it.evaluate(best.design, asked, it.Norm()).value == best.value
+    assert isinstance(asked, it.Quantile)
+    assert it.evaluate(best.design, asked.apart, it.Norm()).value == best.value
+    assert it.evaluate(best.design, asked, it.Norm()).value == it.optimise(study.design("S1"), asked, it.Norm()).value
     assert "quantile" in asked.title
 
 

@@ -14,15 +14,15 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, DesignError, Status, StatusKind
+from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.indices.question import Index, OfIndex
-from inerter.methods.asking import Asked, objective_of
+from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.scatter.spread import Scatter, elements_scatter, followed, loosened, nominal, scatter_of
-from inerter.scatter.tolerance import scattered
+from inerter.scatter.tolerance import quantile_error, rank_weights, scattered
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -34,7 +34,8 @@ class Quantile(OfIndex):
     """An index: the value that another one stays below in this share of cases, when values scatter.
 
     Elements alone may scatter here. The quantile is a mean of all `samples` by weights that are those of their ranks
-    (Harrell and Davis 1982), which changes smoothly with the design; all designs see the same sample.
+    (Harrell and Davis 1982), which changes smoothly with the design; all designs of a search see the same sample. Its
+    optimum fits that sample a little too well: `apart` is a sample to judge it by.
     """
 
     index: Asked
@@ -63,11 +64,15 @@ class Quantile(OfIndex):
         return self.scatter.factors(sampler.random(self.samples))
 
     @property
+    def apart(self) -> Quantile:
+        """The same quantile by another sample, four times as large."""
+        seed = int(np.random.SeedSequence([int(self.seed), 1]).generate_state(1)[0])
+        return replace(self, samples=4 * self.samples, seed=seed)
+
+    @property
     def weights(self) -> Array:
         """Of the samples in rising order."""
-        a, b = (self.samples + 1) * self.share, (self.samples + 1) * (1.0 - self.share)
-        steps = scipy.stats.beta(a, b).cdf(np.arange(self.samples + 1) / self.samples)
-        return np.asarray(np.diff(steps))
+        return rank_weights(self.samples, self.share)
 
     def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
         """What is asked of each sample; raises `DesignError` where something else than elements is to scatter."""
@@ -80,13 +85,15 @@ class Quantile(OfIndex):
         return [replace(self, index=one) for one in split(self.index, vehicle)]
 
     def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
-        """The quantile for a vehicle without free values."""
-        values = np.sort(scattered(vehicle, self.index, method, self.scatter, self.factors))
-        status = OK
+        """The quantile for a vehicle without free values, with its standard error and interval."""
+        values = scattered(vehicle, self.index, method, self.scatter, self.factors)
         if not np.all(np.isfinite(values)):
             lost = int(np.sum(~np.isfinite(values)))
             status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value")
-        return Estimate(float(values @ self.weights), self.unit, status)
+            return Estimate(np.nan, self.unit, status)
+        value = float(np.sort(values) @ rank_weights(values.size, self.share))
+        error, interval = quantile_error(values, self.share)
+        return Estimate(value, self.unit, OK, error, interval, values.size)
 
     def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The quantiles (designs,) at many values of the free values, nan where one is not known."""
@@ -203,9 +210,9 @@ def robust(
     """The free values that make an index least in the worse cases: at its 95 % quantile, when values scatter.
 
     `spread` is that of `tolerance`, of elements alone, all between equally likely: free values scatter about what is
-    chosen, fixed ones about what they are, and tied ones, by their labels, about what they follow from. The optimum's
-    value is that quantile, over one sample for all designs; everything else is as in `optimise`, with two starts for
-    each free value. `Quantile` has what is not told here.
+    chosen, fixed ones about what they are, and tied ones, by their labels, about what they follow from. All designs of
+    the search see one sample; the optimum's value, with its interval, is that quantile over another sample, four times
+    as large. Everything else is as in `optimise`, with two starts for each free value. `Quantile` has what is left.
 
     Raises what `optimise` and `tolerance` raise.
 
@@ -219,4 +226,8 @@ def robust(
     """
     at = Quantile(index, scatter_of(spread, "uniform"), quantile, samples, seed)
     starts = 2 * len(vehicle.free_values()) or None
-    return optimise(vehicle, at, method, subject_to=subject_to, seed=seed, starts=starts, executor=executor)
+    found = optimise(vehicle, at, method, subject_to=subject_to, seed=seed, starts=starts, executor=executor)
+    if not np.isfinite(found.value):
+        return found
+    judged = estimate_of(found.design, at.apart, method)
+    return replace(found, estimate=replace(judged, status=worst_of((found.status, judged.status))))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import DesignError, Status, StatusKind
 from inerter.methods.asking import Asked, estimate_of
+from inerter.methods.averages import CONFIDENCE
 from inerter.methods.method import Estimate, Method, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
 from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of
@@ -63,6 +64,17 @@ class Tolerance:
         if not is_number(share) or not 0.0 <= share <= 1.0:
             raise DesignError(f"The share of a quantile lies between 0 and 1, got {share!r}.")
         return float(np.quantile(self.values, share))
+
+    def quantile_estimate(self, share: float) -> Estimate:
+        """The same with its standard error and 95 % confidence interval (`quantile_error`).
+
+        Raises `DesignError` unless the share is between 0 and 1.
+        """
+        value = self.quantile(share)
+        if not np.isfinite(value):
+            return Estimate(value, self.unit, self.status)
+        error, interval = quantile_error(self.values, share)
+        return Estimate(value, self.unit, self.status, error, interval, self.values.size)
 
 
 def tolerance(
@@ -143,6 +155,25 @@ def _found(
         seed=seed,
         status=status,
     )
+
+
+def rank_weights(count: int, share: float) -> Array:
+    """Weights of `count` values in rising order whose mean is a quantile (Harrell and Davis 1982)."""
+    a, b = (count + 1) * share, (count + 1) * (1.0 - share)
+    return np.asarray(np.diff(scipy.special.betainc(a, b, np.arange(count + 1) / count)))
+
+
+def quantile_error(values: Array, share: float) -> tuple[float, tuple[float, float]]:
+    """The standard error of a quantile of a sample, and its 95 % confidence interval.
+
+    By order statistics, whose ranks have a binomial distribution whatever that of the values (David and Nagaraja
+    2003, 7.1); the standard error is half of the interval over the normal quantile. Points of a Sobol' sequence scatter
+    less than random ones, so that both are conservative.
+    """
+    ordered, count = np.sort(values), values.size
+    low, high = (scipy.stats.binom.ppf(p, count, share) for p in (0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE))
+    interval = float(ordered[max(int(low) - 1, 0)]), float(ordered[min(int(high), count - 1)])
+    return (interval[1] - interval[0]) / (2.0 * float(scipy.special.ndtri(0.5 + 0.5 * CONFIDENCE))), interval
 
 
 def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:

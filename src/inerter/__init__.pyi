@@ -1,6 +1,7 @@
 """Every public name and where it lives: type checkers read it, and so does the package itself."""
 
 from inerter.app.serve import serve as serve
+from inerter.errors import ErrorSource as ErrorSource
 from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind

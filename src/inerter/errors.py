@@ -1,6 +1,7 @@
 """Exceptions of the package, and the `Status` that a number carries when it is not an ordinary one.
 
-Bad input raises, where it enters. A numerical failure of one case among many is a `Status`.
+Bad input raises, where it enters. A numerical failure of one case among many is a `Status`. What a number may be off by
+is made of `ErrorSource`s.
 """
 
 from __future__ import annotations
@@ -116,6 +117,16 @@ class Status:
 
 
 OK = Status()
+
+
+@dataclass(frozen=True)
+class ErrorSource:
+    """A named part of the error of a number: `bound`, relative to the number, is not exceeded."""
+
+    name: str
+    bound: float
+
+
 _GRAVEST_FIRST = (
     StatusKind.FAILED,
     StatusKind.INFEASIBLE,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from inerter.checks import check_positive
-from inerter.errors import PerformanceIndexError
+from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road
 from inerter.systems.arrivals import Arrival
@@ -211,6 +211,10 @@ class Shaped:
             replace(a, filter=shape if a.filter is None else a.filter.then(shape)) for a in self._of.arrivals(mechanism)
         )
 
+    def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
+        """As those of what is shaped."""
+        return stand_ins_of(self._of, mechanism)
+
 
 @dataclass(frozen=True)
 class OneInput:
@@ -250,6 +254,15 @@ def as_excitation(given: object, what: str) -> Excitation:
         )
     found: Excitation = given  # type: ignore[assignment]
     return found
+
+
+def stand_ins_of(excitation: Excitation, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
+    """Errors of r.m.s. values by what stands in for the excitation that is meant, such as a filter for a coherence.
+
+    An excitation with such errors has a method `stand_ins(mechanism)` of them.
+    """
+    stand_ins = getattr(excitation, "stand_ins", None)
+    return () if stand_ins is None else tuple(stand_ins(mechanism))
 
 
 def _force(mechanism: Mechanism, name: str) -> str:

@@ -17,6 +17,7 @@ from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_index, objective_of
 from inerter.methods.combined import ObjectivePart, combined
+from inerter.methods.error_bounds import of_weighted_sum, of_worst
 from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Objective
 from inerter.networks.elements import Tied
@@ -161,7 +162,8 @@ class OverConditions(OfIndex):
         if self.worst:
             values = [one.value for one in found]
             worst = found[int(np.argmax(values))] if np.all(np.isfinite(values)) else found[_least_known(values)]
-            return dataclasses.replace(worst, status=status, notes=notes)
+            sources = of_worst(found, worst.value)
+            return dataclasses.replace(worst, status=status, notes=notes, error_sources=sources)
         return _mean(found, self.conditions.shares, status, notes)
 
     def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
@@ -198,8 +200,9 @@ def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, no
     """The mean by shares; its error is the sum of all, which is the most: the conditions may share their roads."""
     value = sum(share * one.value for share, one in zip(shares, found, strict=True))
     unit = found[0].unit
+    sources = of_weighted_sum(found, shares)
     if all(one.standard_error is None for one in found):
-        return Estimate(value, unit, status, notes=notes)
+        return Estimate(value, unit, status, notes=notes, error_sources=sources)
     error = sum(share * (one.standard_error or 0.0) for share, one in zip(shares, found, strict=True))
     reach = sum(
         share * 0.5 * (one.interval[1] - one.interval[0])
@@ -212,7 +215,7 @@ def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, no
         samples = tuple((np.array(shares) @ np.array([one.samples for one in found])).tolist())
     realisations = max(one.realisations for one in found)
     return Estimate(value, unit, status, error, (value - reach, value + reach), realisations, notes=notes,
-                    samples=samples)  # fmt: skip
+                    samples=samples, error_sources=sources)  # fmt: skip
 
 
 def _on_other_road(value: Any, road: Road | Mapping[str, Any]) -> Any:

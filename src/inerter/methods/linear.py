@@ -9,8 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import PerformanceIndexError
+from inerter.errors import ErrorSource, PerformanceIndexError
+from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Question
+from inerter.methods.error_bounds import ROUNDING, checked
 from inerter.methods.method import Estimate
 from inerter.methods.sides import on_one_side
 from inerter.norms.h2 import h2
@@ -23,6 +25,7 @@ from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+PROMISE = 1e-9  # relative error of a norm that is ok, beside those of what stands in for its excitation
 
 
 @dataclass(frozen=True)
@@ -147,13 +150,20 @@ class LinearProblem:
             return self._peak_gain(system)
         norms = h2(system, self.pade_order)
         value = float(self.question.combined(norms.outputs, self.weights))
-        return Estimate(value, self.question.unit, norms.status, notes=system.notes)
+        found = Estimate(value, self.question.unit, norms.status, notes=system.notes)
+        return self._with_errors(found, norms.error)
 
     def _peak_gain(self, system: LinearSystem) -> Estimate:
         gain = hinf_norm(system)
         weight = float(self.weights[0])
         peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in gain.peaks)
-        return Estimate(weight * gain.value, self.question.unit, gain.status, peaks=peaks, notes=system.notes)
+        found = Estimate(weight * gain.value, self.question.unit, gain.status, peaks=peaks, notes=system.notes)
+        return self._with_errors(found, gain.error)
+
+    def _with_errors(self, found: Estimate, rounding: float) -> Estimate:
+        """The estimate with what rounding, and what stands in for the excitation that is meant, make of it."""
+        stand_ins = stand_ins_of(self.question.drive, self.unfiltered.mechanism)
+        return checked(replace(found, error_sources=stand_ins), (ErrorSource(ROUNDING, rounding),), PROMISE)
 
 
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:

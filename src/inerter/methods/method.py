@@ -7,12 +7,13 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from functools import partial
+from math import nan
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.errors import OK, DesignError, PerformanceIndexError, Status
+from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, is_index, without_tied_values
@@ -32,7 +33,10 @@ _TOGETHER = 64  # designs that are valued in one call where others take some too
 
 @dataclass(frozen=True)
 class Estimate:
-    """The value of an index, and how far it can be trusted."""
+    """The value of an index, and how far it can be trusted.
+
+    What random inputs make of it is its `standard_error`; all other errors are among `error_sources`.
+    """
 
     value: float
     unit: str
@@ -44,6 +48,15 @@ class Estimate:
     notes: tuple[str, ...] = ()  # what the method left out
     samples: tuple[float, ...] = field(default=(), repr=False)  # the value on each random input
     period: int | None = None  # of each random input [s]
+    error_sources: tuple[ErrorSource, ...] = ()  # rounding, what stands in for something else, ...: not sampling
+
+    @property
+    def error_bound(self) -> float:
+        """Largest relative error of the value, sampling apart: the sum of its sources; nan where the method names none.
+
+        `ok` means that it is no larger than what the method promises.
+        """
+        return float(sum(source.bound for source in self.error_sources)) if self.error_sources else nan
 
 
 @runtime_checkable

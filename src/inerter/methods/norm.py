@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError
 from inerter.indices.question import Index, Question
 from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of
-from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem
+from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.objective import Differentiable
 from inerter.systems.descriptor import close
@@ -39,6 +39,7 @@ class Norm:
     needs_amplitude = False
     searches = True
     has_gradients = True
+    promise = PROMISE
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)

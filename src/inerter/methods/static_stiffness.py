@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import PerformanceIndexError
+from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.question import Index
+from inerter.methods.error_bounds import ROUNDING
 from inerter.methods.method import Estimate, Method
 from inerter.networks.elements import Element, Free, Network, Parallel
 from inerter.networks.elements.roles import Linear
@@ -18,6 +19,7 @@ from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
+_ROUNDING = 1e-12  # relative error of sums of positive terms
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class StaticStiffness:
     def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The value for a vehicle without free values."""
         value = float(_Stiffness(self._network(vehicle.mechanism()), ()).values(np.zeros((1, 0)))[0])
-        return Estimate(value, self.unit)
+        return Estimate(value, self.unit, error_sources=(ErrorSource(ROUNDING, _ROUNDING),))
 
     def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The values (designs,) at many values of the free values."""

@@ -20,6 +20,7 @@ from inerter.systems.linear import LinearSystem
 from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirrored, multiply
 
 Matrix = NDArray[np.float64]
+EXACT = 1e-12  # relative error of what is found here: digits in which results agree, and a few roundings
 
 
 def undamped(frequencies: Sequence[float]) -> Status:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade, propagate
-from inerter.norms.exact import h2_exactly
+from inerter.norms.exact import EXACT, h2_exactly
 from inerter.norms.stability import balance, split
 from inerter.systems.linear import Fine, LinearSystem, check_system
 
@@ -24,15 +24,20 @@ _DAMPED = 1e-4  # relative correction of a variance from which on its motion may
 _LONG = float(np.finfo(np.longdouble).eps)
 _AT_ZERO = 16.0 * _EPS  # size of a pole relative to A that may be rounding
 _SMALL = 1e-6  # relative size of the terms of a correction at first order up to which the rest is below 1e-9
+_SECOND_ORDER = 1e-3  # share of the terms of a correction by which it may be off
 ACCURATE = 1e-9  # relative error of a mean square up to which it is believed
 
 
 @dataclass(frozen=True, eq=False)
 class H2:
-    """The norm of each output, and why it is infinite, or nan because it is not known, where it is."""
+    """The norm of each output, and why it is infinite, or nan because it is not known, where it is.
+
+    `error` is the largest relative error of any of them by rounding.
+    """
 
     outputs: Matrix  # (p,)
     status: Status
+    error: float = np.nan
 
     @property
     def value(self) -> float:
@@ -68,10 +73,10 @@ def h2(system: LinearSystem, pade_order: int | None = None) -> H2:
     if fine is None:
         return _of_matrices(system, pade_order)
     if not (np.any(system.D) or np.any(fine.errors[3])):
-        squares = _squares(system, fine, pade_order)
-        if squares is not None:
-            return H2(np.sqrt(squares), OK)
-    return H2(*h2_exactly(system, pade_order))
+        found = _squares(system, fine, pade_order)
+        if found is not None:
+            return H2(np.sqrt(found[0]), OK, 0.5 * found[1])
+    return H2(*h2_exactly(system, pade_order), EXACT)
 
 
 def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
@@ -85,16 +90,16 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
     seen = seen & (not drifts)
     given = LinearSystem(A, B, C, system.D, delays=system.delays, sources=system.sources)
     matrices = A, B, C, system.D
-    squares = _squares(given, Fine(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
+    found = _squares(given, Fine(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
     if np.any(seen):
         status = parts.status
     elif np.any(direct):
         names = ", ".join(name for name, is_direct in zip(system.outputs, direct, strict=True) if is_direct)
         status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
     else:
-        status = _LOST if squares is None else OK
-    norms = np.full(len(system.outputs), np.nan) if squares is None else np.sqrt(squares)
-    return H2(np.where(direct | seen, np.inf, norms), status)
+        status = _LOST if found is None else OK
+    norms, error = (np.full(len(system.outputs), np.nan), np.nan) if found is None else (np.sqrt(found[0]), found[1])
+    return H2(np.where(direct | seen, np.inf, norms), status, 0.5 * error)
 
 
 def _merged_direct(system: LinearSystem) -> Matrix:
@@ -131,14 +136,15 @@ def drift_covariance(B: Matrix, delays: Matrix, sources: Sequence[str]) -> Matri
     return result
 
 
-def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> Matrix | None:
-    """The squared norm of each output; None where it may be off by more than `ACCURATE`.
+def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> tuple[Matrix, float] | None:
+    """The squared norm of each output and the relative error of any; None where that may be more than `ACCURATE`.
 
     The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
     of each delayed arrival with the state that its earlier arrivals have left: exp(A dt) Bi Bj' and its transpose.
     With the solution Q of A' Q + Q A + C' C = 0 for one output, what P leaves of the first equation changes the square
     by tr(Q rest). With the matrices before they were rounded that corrects all rounding at first order, and is
-    believed while it is small. What rounding has done to those matrices themselves counts as an error.
+    believed while it is small. What rounding has done to those matrices themselves counts as an error, and so does a
+    small part of the correction, by which it may be off at second order.
     """
     A, scale = balance(system.A)
     row = scale[:, None]
@@ -166,9 +172,11 @@ def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> Matrix
     together = np.abs(Q).sum(axis=0)
     unsure = np.sum(together * (2.0 * EA @ size + EW + len(A) * _LONG * (2.0 * np.abs(A) @ size)))
     unsure += np.sum(seen * (2.0 * EC + len(A) * _LONG * np.abs(C)) / goals[:, None])
-    if not (unsure <= ACCURATE and np.sum(together * np.abs(rest)) <= _SMALL and solved):
+    terms = float(np.sum(together * np.abs(rest)))
+    if not (unsure <= ACCURATE and terms <= _SMALL and solved):
         return None
-    return np.asarray(squares * (1.0 + change), dtype=float)
+    error = float(unsure) + _SECOND_ORDER * terms + len(A) * _EPS
+    return np.asarray(squares * (1.0 + change), dtype=float), error
 
 
 def _covariance(

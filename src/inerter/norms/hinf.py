@@ -10,7 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, LinearSystemError, Status, StatusKind
-from inerter.norms.exact import peaks_exactly
+from inerter.norms.exact import EXACT, peaks_exactly
 from inerter.norms.response import resolvent
 from inerter.norms.stability import pole_rates, split
 from inerter.systems.linear import LinearSystem, check_system
@@ -30,11 +30,15 @@ class GainPeak:
 
 @dataclass(frozen=True)
 class HInfinity:
-    """The largest gain, every local maximum of the gain (highest first), and why it is infinite if it is."""
+    """The largest gain, every local maximum of the gain (highest first), and why it is infinite if it is.
+
+    `error` is the largest relative error of the gain by rounding, nan where it has no bound.
+    """
 
     value: float
     peaks: tuple[GainPeak, ...]
     status: Status
+    error: float = np.nan
 
 
 def hinf_norm(system: LinearSystem) -> HInfinity:
@@ -55,7 +59,7 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
     found = peaks_exactly(system) if exact else None
     if found is not None:
         known, status = found
-        return HInfinity(known[0][1] if known else 0.0, tuple(GainPeak(*peak) for peak in known), status)
+        return HInfinity(known[0][1] if known else 0.0, tuple(GainPeak(*peak) for peak in known), status, EXACT)
     parts = split(merged)
     if parts.poles.size and np.any(parts.visible()):
         if exact:  # the transfer functions have no such poles

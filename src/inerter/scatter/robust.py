@@ -14,7 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
+from inerter.errors import OK, DesignError, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, asked_of
@@ -93,7 +93,8 @@ class Quantile(OfIndex):
             return Estimate(np.nan, self.unit, status)
         value = float(np.sort(values) @ rank_weights(values.size, self.share))
         error, interval = quantile_error(values, self.share)
-        return Estimate(value, self.unit, OK, error, interval, values.size)
+        sources = (ErrorSource("values of the sample", getattr(method, "promise", np.nan)),)
+        return Estimate(value, self.unit, OK, error, interval, values.size, error_sources=sources)
 
     def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The quantiles (designs,) at many values of the free values, nan where one is not known."""

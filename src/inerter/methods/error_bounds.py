@@ -1,0 +1,57 @@
+"""Errors of estimates: what a method promises, and what becomes of errors where numbers are put together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from inerter.errors import ErrorSource, Status, StatusKind
+
+if TYPE_CHECKING:
+    from inerter.methods.method import Estimate
+
+ROUNDING = "rounding"
+
+
+def checked(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
+    """The estimate with a method's `own` error sources before its others, inaccurate where those exceed `promise`.
+
+    A value that is infinite is so exactly, and one that is not known has no error.
+    """
+    if not math.isfinite(estimate.value):
+        exact = (ErrorSource(ROUNDING, 0.0),)
+        return replace(estimate, error_sources=exact if math.isinf(estimate.value) else ())
+    sources = tuple(own)
+    result = replace(estimate, error_sources=(*sources, *estimate.error_sources))
+    bound = sum(source.bound for source in sources)
+    if bound <= promise or not estimate.status.ok:
+        return result
+    largest = max(sources, key=lambda source: source.bound)
+    message = f"the value may be off by {bound:.1e} of itself, more than {promise:g}, mostly by {largest.name}"
+    return replace(result, status=Status(StatusKind.INACCURATE, message))
+
+
+def of_weighted_sum(parts: Sequence[Estimate], weights: Sequence[float]) -> tuple[ErrorSource, ...]:
+    """Error sources of a sum of estimates with positive weights; none where one of them names none."""
+    total = sum(weight * part.value for weight, part in zip(weights, parts, strict=True))
+    if not math.isfinite(total) or total == 0.0 or not all(part.error_sources for part in parts):
+        return ()
+    found: dict[str, float] = {}
+    for weight, part in zip(weights, parts, strict=True):
+        for source in part.error_sources:
+            found[source.name] = found.get(source.name, 0.0) + weight * abs(part.value / total) * source.bound
+    return tuple(ErrorSource(name, bound) for name, bound in found.items())
+
+
+def of_worst(parts: Sequence[Estimate], value: float) -> tuple[ErrorSource, ...]:
+    """Error sources of the largest of some estimates, `value`; none where one of them names none.
+
+    It is off by no more than that one of them whose error is the largest.
+    """
+    if not math.isfinite(value) or value == 0.0 or not all(part.error_sources for part in parts):
+        return ()
+    widest = max(parts, key=lambda part: abs(part.value) * part.error_bound)
+    share = abs(widest.value / value)
+    return tuple(replace(source, bound=share * source.bound) for source in widest.error_sources)

@@ -1,0 +1,111 @@
+"""Every estimate carries a bound of its error, and what is made of estimates carries theirs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import pytest
+
+import inerter as it
+from inerter.errors import ErrorSource, StatusKind
+from inerter.indices.excitation import RoadVelocity
+from inerter.methods.error_bounds import checked, of_weighted_sum, of_worst
+from inerter.scatter.spread import scatter_of
+
+ROAD = it.Road(roughness=5e-7, speed=25)
+COMFORT = it.RideComfort(ROAD)
+USUAL = it.Spring(120e3) | it.Damper(4981)
+
+
+def car(strut=USUAL):
+    return it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+
+
+def off_by(value, **bounds):
+    sources = tuple(ErrorSource(name, bound) for name, bound in bounds.items())
+    return it.Estimate(value, "m", error_sources=sources)
+
+
+@pytest.mark.parametrize("index", [COMFORT, it.TyreLoad(ROAD), it.LoadCarrying()])
+@pytest.mark.parametrize("method", [it.Norm(), it.StatisticalLinearisation(), it.ExpectedValue()])
+def test_a_linear_design_is_known_to_rounding(index, method):
+    found = it.evaluate(car(), index, method)
+    assert found.status.ok
+    assert [source.name for source in found.error_sources] == ["rounding"]
+    assert 0.0 < found.error_bound <= 1e-9
+
+
+def test_an_estimate_that_names_no_source_has_no_bound():
+    assert math.isnan(it.Estimate(1.0, "m").error_bound)
+
+
+def test_an_infinite_value_is_so_exactly():
+    found = it.evaluate(car(it.Spring(120e3)), it.LoadCarrying(), it.Norm())
+    assert math.isinf(found.value)
+    assert found.error_bound == 0.0
+
+
+def test_a_bound_beyond_the_promise_is_said_with_its_number():
+    found = checked(it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10), ErrorSource("period", 0.02)], 0.01)
+    assert found.status.kind is StatusKind.INACCURATE
+    assert "2.0e-02 of itself" in found.status.message
+    assert "period" in found.status.message
+    assert checked(it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10)], 0.01).status.ok
+
+
+def test_a_sum_is_off_by_the_sum_of_what_its_parts_are_off_by():
+    parts = [off_by(2.0, rounding=1e-3, line=0.02), off_by(8.0, rounding=2e-3)]
+    (rounding, line) = of_weighted_sum(parts, [0.5, 0.25])
+    assert rounding.bound == pytest.approx((1.0 * 1e-3 + 2.0 * 2e-3) / 3.0)
+    assert line.bound == pytest.approx(0.02 / 3.0)
+    assert of_weighted_sum([*parts, it.Estimate(1.0, "m")], [1.0, 1.0, 1.0]) == ()
+
+
+def test_the_largest_is_off_by_what_any_part_may_exceed_it():
+    parts = [off_by(2.0, rounding=0.2), off_by(3.0, line=0.1)]
+    (source,) = of_worst(parts, 3.0)
+    assert source == ErrorSource("rounding", pytest.approx(0.4 / 3.0))
+
+
+@pytest.mark.parametrize("taken", ["mean", "worst"])
+def test_an_index_over_conditions_carries_the_bounds(taken):
+    use = it.Conditions([it.Condition(0.3, road={"speed": 15.0}), it.Condition(0.7, road={"speed": 30.0})])
+    found = it.evaluate(car(), getattr(use, taken)(COMFORT), it.Norm())
+    assert 0.0 < found.error_bound <= 1e-9
+
+
+@dataclass(frozen=True)
+class Approximate:
+    """A road that something stands in for."""
+
+    of: it.Road
+    is_random = True
+    size = property(lambda self: self.of.velocity_intensity)
+    unit = "m/s"
+
+    def driven(self, mechanism):
+        return mechanism
+
+    def arrivals(self, mechanism):
+        return RoadVelocity(self.of).arrivals(mechanism)
+
+    def stand_ins(self, mechanism):
+        return (ErrorSource("line", 2e-3),)
+
+
+def test_what_stands_in_for_an_excitation_is_among_the_sources():
+    asked = replace(COMFORT, road=Approximate(ROAD))
+    exact = it.evaluate(car(), COMFORT, it.Norm())
+    found = it.evaluate(car(), asked, it.Norm())
+    assert found.status.ok
+    assert found.value == exact.value
+    assert found.error_bound == pytest.approx(2e-3 + exact.error_bound)
+    shaped = it.Shaped(Approximate(ROAD), it.Filter([1.0], [1.0, 1.0]))
+    assert it.evaluate(car(), replace(COMFORT, road=shaped), it.Norm()).error_bound > 2e-3
+
+
+def test_static_stiffness_and_quantiles_have_bounds():
+    assert it.evaluate(car(), it.static_stiffness("strut"), it.Norm()).error_bound <= 1e-9
+    over = it.Quantile(COMFORT, scatter_of({"c": 0.1}, "uniform"), 0.9, samples=64)
+    assert 0.0 < it.evaluate(car(), over, it.Norm()).error_bound <= 1e-9

@@ -156,10 +156,20 @@ def test_what_is_not_a_stiffness_is_refused_in_one_sentence(text, words):
     assert len(message) < 300
 
 
-@pytest.mark.parametrize("text", ["5e-7 m^3", "5e-7 m^3/rad"])
-def test_a_roughness_counts_cycles(text):
-    with pytest.raises(UnitError, match="another kind"):
-        parse_quantity(text, "m^3/cycle")
+@pytest.mark.parametrize(("at_n0", "at_omega0"), [(16, 1), (64, 4), (256, 16), (1024, 64), (4096, 256), (16384, 1024)])
+def test_a_roughness_is_given_as_the_standard_gives_it(at_n0, at_omega0):
+    """Geometric means of the classes of ISO 8608, Tables C.1 and C.2, [1e-6 m^3]; those of C.2 are rounded."""
+    kappa = parse_quantity(f"{at_n0}e-6 m^3", "m^3/cycle")
+    assert kappa == pytest.approx(0.5 * at_n0 * 1e-6 * 0.1**2)
+    assert parse_quantity(f"{at_n0 * 1e3} mm^3 ", "m^3/cycle") == pytest.approx(kappa)
+    assert parse_quantity(f"{at_omega0}e-6 m^3/rad", "m^3/cycle") == pytest.approx(kappa, rel=0.02)
+    assert parse_quantity(f"{kappa!r} m^3/cycle", "m^3/cycle") == kappa
+
+
+def test_what_is_no_roughness_is_refused():
+    for text in ("5e-7 m^2", "5e-7 m^2/cycle", "5e-7 m/cycle"):
+        with pytest.raises(UnitError, match="another kind"):
+            parse_quantity(text, "m^3/cycle")
 
 
 def test_an_angular_frequency_in_cycles_is_not_taken_for_radians():

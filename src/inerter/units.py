@@ -26,6 +26,7 @@ _PER_FREQUENCY = re.compile(r"\b[kM]?(?:Hz|hertz)\b|\brad(?:ian)?s?\b")
 _FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # the weight of a mass, for those who mean it
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
 PURE = "1"  # the unit of what is a mere number
+_STANDARD_FORMS = {"m^3/cycle": (1.0 / (4.0 * math.pi), 0.5 * 0.1**2)}  # kappa over Gd(Omega0) and over Gd(n0)
 _LONGEST = 100
 _FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
 _MOST_DIGITS = 6  # of a value with an interval
@@ -42,6 +43,9 @@ _PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # from which siz
 def parse_quantity(text: str, unit: str) -> float:
     """The number that `text` stands for, expressed in `unit`.
 
+    A roughness [m^3/cycle] may be given as ISO 8608 states it too: "256e-6 m^3" is the displacement spectral density at
+    n0 = 0.1 cycle/m, Gd(n0) = 2 kappa / n0^2, and "16e-6 m^3/rad" that at Omega0 = 1 rad/m, Gd(Omega0) = 4 pi kappa.
+
     Cycles are counted, not turned into 2 pi rad: "m^3/cycle" is its own kind; "Hz" becomes 2 pi rad/s.
 
     Raises `UnitError` unless `text` is a finite number followed by a unit of the same kind as `unit`.
@@ -51,6 +55,9 @@ def parse_quantity(text: str, unit: str) -> float:
     """
     expected = f"a unit of {unit}"
     number, given = _split(text, expected, unit)
+    if unit in _STANDARD_FORMS and _dimension(given) == _dimension("m^3"):
+        per_radian, plain = _STANDARD_FORMS[unit]
+        return _converted(text, number, given, "m^3") * (per_radian if "rad" in given else plain)
     if _dimension(given) != _dimension(unit):
         problem = f"{_described(given)} is a unit of another kind"
         _fail(text, problem, expected, f"{_number_of(text)} {_as_force(given, (unit,)) or _prefixed(given, unit)}")

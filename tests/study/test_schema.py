@@ -114,7 +114,7 @@ def test_a_quantity_that_can_be_read_is_never_refused(number, space, written, un
         (("vehicle", "sprung_mas"), "181.75 kg"),
         (("vehicle", "model"), "half-cra"),
         (("road", "speed"), "0 m/s"),
-        (("road", "roughness"), "5e-7 m^3"),
+        (("road", "roughness"), "5e-7 m^2"),
         (("elements", "k"), "120"),
         (("elements", "k"), "120 km/h"),
         (("elements", "k"), {"from": "1 kN/m"}),

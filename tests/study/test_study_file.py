@@ -413,7 +413,7 @@ BAD = {
     "no element's unit": ([('"300 kg"', '"300 N m"')], "elements.b", ["no element", "inerter", "gap"]),
     "wrong unit": ([('"181.75 kg"', '"181.75 N"')], "vehicle.sprung_mass", ["another kind", '"181.75 kg"']),
     "speed in metres": ([('"25 m/s"', '"25 m"')], "road.speed", ["another kind", '"25 m/s"']),
-    "roughness per metre": ([("5e-7 m^3/cycle", "5e-7 m^3")], "road.roughness", ["another kind", "m^3/cycle"]),
+    "roughness in square metres": ([("5e-7 m^3/cycle", "5e-7 m^2")], "road.roughness", ["another kind", "m^3/cycle"]),
     "vehicle number": ([('"25 kg"', "25")], "vehicle.unsprung_mass", ["without a unit", '"25 kg"']),
     "comma": ([('"300 kg"', '"300,5 kg"')], "elements.b", ["comma"]),
     "nan": ([('"300 kg"', '"nan kg"')], "elements.b", ["not a finite number"]),

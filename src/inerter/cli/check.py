@@ -11,6 +11,7 @@ from inerter.files.study.cases import cases
 from inerter.files.study.checking import check_study, study_notes
 from inerter.files.study.fronts import front_cases
 from inerter.files.study.loading import load_study
+from inerter.files.study.plausibility import input_warnings, road_sentence
 from inerter.files.study.tolerances import tolerance_cases
 
 _WIDTH = 80
@@ -32,6 +33,10 @@ def check(study: Path) -> int:
         f"{study}: ok. {loaded.model}; layouts {some(loaded.layouts)}; indices {', '.join(loaded.indices)}{swept}"
         f": {count} designs to {'find' if loaded.optimise else 'judge'}{further}."
     )
+    if road := road_sentence(loaded):
+        _say(f"{road}.")
+    for warning in input_warnings(loaded):
+        _say(warning)
     for note in study_notes(loaded):
         _say(f"Note: {note}.")
     return 0

@@ -20,6 +20,7 @@ from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.loading import load_study
+from inerter.files.study.plausibility import road_sentence
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
@@ -78,7 +79,9 @@ def run(
         for text in as_text(result):
             print(text, end="")
     else:
-        print("\n".join([*wrapped(loaded.title), "", summary_table(result.data)]))
+        road = road_sentence(loaded)
+        head = [*wrapped(loaded.title), *(wrapped(f"{road}.") if road else []), ""]
+        print("\n".join([*head, summary_table(result.data)]))
         lines = (
             *front_lines(result.data, WIDTH),
             *tolerance_lines(result.tolerances, WIDTH),

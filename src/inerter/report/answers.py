@@ -8,13 +8,15 @@ from math import nan
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import capital, index_title, infeasible, layouts, listed, swept_words, with_unit
+from inerter.figures.labels import capital, index_title, infeasible, layouts, listed, one_method, swept_words, with_unit
 from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.report.budgets import end_of_range
 from inerter.report.findings import Wording, Writer, best_layouts, headlines
 from inerter.report.fronts import front_sentences
+from inerter.report.plausibility import result_warnings
 from inerter.report.question import spoken
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
@@ -23,9 +25,11 @@ _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on whic
 def answers(
     results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome] = (), write: Writer = with_unit
 ) -> list[str]:
-    """A sentence for each index, and one for each budget of a layout that is the best for some index."""
+    """Warnings, a sentence for each index, and one for each budget of a layout that is the best for one."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     return [
+        *result_warnings(one_method(results), study),
+        *input_warnings(study),
         *(() if study.line is None else study.line.warnings),
         *headlines(results, Wording(write, static)),
         *front_sentences(results, write),

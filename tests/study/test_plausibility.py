@@ -1,0 +1,74 @@
+"""Roads and vehicles that no road or vehicle is: warned of by `inerter check` and first in the answer."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from inerter.cli.main import call
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+QUARTER = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8")
+
+
+def checked(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str) -> str:
+    path = tmp_path / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    assert call(["check", str(path)]) == 0
+    return " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize(
+    ("roughness", "letter"),
+    [
+        ('roughness = "256e-6 m^3"', "C"),
+        ('roughness = "16e-6 m^3/rad"', "C"),
+        ('roughness = "1.28e-6 m^3/cycle"', "C"),
+        ('class = "C"', "C"),
+        ('roughness = "5e-7 m^3/cycle"', "B"),
+    ],
+)
+def test_check_says_which_class_a_road_is(tmp_path, capsys, roughness, letter):
+    text = checked(tmp_path, capsys, QUARTER.replace('roughness = "5e-7 m^3/cycle"', roughness))
+    assert f"Road: class {letter} of ISO 8608" in text
+    assert "Warning" not in text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "warning"),
+    [
+        ("5e-7 m^3/cycle", "256e-6 m^3/cycle", "no public road is as rough as class G"),
+        ("5e-7 m^3/cycle", "5e-7 m^3", "no road is as smooth as Gd(n0) = 0.5e-6 m^3"),
+        ('"25 m/s"', '"250 m/s"', "no vehicle drives at 250 m/s"),
+        ("181.75 kg", "200 mg", "no vehicle is like this one: sprung mass 0.0002 kg, less than 0.5 kg"),
+        ('tyre_stiffness = "120 kN/m"', 'tyre_stiffness = "120 N/m"', "tyre stiffness 120 N/m, less than 1 kN/m"),
+    ],
+)
+def test_check_doubts_what_no_road_or_vehicle_is(tmp_path, capsys, old, new, warning):
+    assert old in QUARTER
+    assert warning in checked(tmp_path, capsys, QUARTER.replace(old, new))
+
+
+def test_an_absorber_is_no_vehicle_on_a_road(tmp_path, capsys):
+    assert "Warning" not in checked(tmp_path, capsys, (EXAMPLES / "building_quake.toml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("example", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_no_example_is_doubted(capsys, example):
+    call(["check", str(example)])
+    assert "Warning: no" not in capsys.readouterr().out
+
+
+def test_an_answer_begins_with_what_no_vehicle_stands(tmp_path, capsys):
+    path = tmp_path / "study.toml"
+    text = QUARTER.replace("5e-7 m^3/cycle", "256e-6 m^3/cycle")
+    path.write_text(text.replace('indices  = ["J1", "J3", "J5"]', 'indices = ["J1", "J3"]'), encoding="utf-8")
+    assert call(["run", str(path), "-o", str(tmp_path / "results")]) == 0
+    lines = capsys.readouterr().out
+    answer = " ".join(lines[lines.rindex("Warning: J1") :].split())
+    assert "more than the acceleration of gravity" in answer
+    assert "more than the static load of 2028 N" in answer  # (181.75 kg + 25 kg) g
+    assert answer.index("Warning") < answer.index("Best ride comfort")
+    assert "Road: class G of ISO 8608 (Gd(n0) = 51200e-6 m^3" in " ".join(lines.split())
+    assert "no public road is as rough" in (tmp_path / "results" / "report.html").read_text(encoding="utf-8")

@@ -213,6 +213,42 @@ def _decimals(low: float, high: float) -> int:
     return min(max(1 - math.floor(math.log10(half)), 0), most)
 
 
+def places_borne(value: float, bound: float = math.nan, error: float = math.nan, digits: int = 4) -> int:
+    """Decimal places that a number of a largest error `bound` and of a standard `error` bears, in its own unit.
+
+    As many as two digits of the standard error have, without one as make `digits` significant digits; the last place is
+    no smaller than the bound, but there are two significant digits at least, and one of a standard error. Below zero
+    the number is rounded to tens, hundreds, ...
+
+    >>> places_borne(2.5094), places_borne(2.5094, bound=0.002), places_borne(2.5094, bound=1e-4, error=0.00046)
+    (3, 2, 4)
+    """
+    size = _exponent(value)
+    if math.isfinite(error) and error > 0.0:
+        rounded = float(f"{error:.1e}")
+        fine, least = 1 - _exponent(rounded), -_exponent(rounded)
+    else:
+        fine, least = digits - 1 - size, 1 - size
+    if not bound > 0.0 or not math.isfinite(bound):
+        return fine
+    coarse = -math.ceil(math.log10(bound) - 1e-12)
+    return max(min(fine, coarse), least)
+
+
+def digits_at(value: float, places: int) -> int:
+    """Significant digits of a number with so many decimal places.
+
+    >>> digits_at(2.5094, 2), digits_at(7544.2, -1)
+    (3, 3)
+    """
+    return max(places + 1 + _exponent(value), 1)
+
+
+def _exponent(value: float) -> int:
+    """The power of ten of the first digit."""
+    return int(f"{value:.15e}".partition("e")[2]) if math.isfinite(value) else 0
+
+
 def shown(value: object) -> str:
     """A value as it stands in a study file, on one line and not too long, for messages."""
     match value:

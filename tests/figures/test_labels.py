@@ -1,6 +1,7 @@
 """Words and numbers for people: they mean what the results say."""
 
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -22,7 +23,7 @@ from inerter.figures.labels import (
 )
 from inerter.indices.registry import INDICES, index_settings
 from inerter.networks.elements.registry import ELEMENTS
-from inerter.units import format_quantity, parse_quantity
+from inerter.units import format_quantity, parse_quantity, places_borne
 from inerter.vehicle.registry import VEHICLES
 
 SIZES = st.floats(1e-6, 1e9)
@@ -40,6 +41,45 @@ def test_a_scaled_number_with_its_unit_is_the_value(values, unit):
     handy = scale(values, unit)
     for value in values:
         assert parse_quantity(f"{value * handy.factor!r} {handy.unit}", unit) == pytest.approx(value, rel=1e-12)
+
+
+@given(SIZES, st.floats(1e-12, 0.09))
+def test_the_last_digit_is_no_smaller_than_the_error_bound(value, bound):
+    text = with_unit(value, "")
+    coarse = with_unit(value, "", bound=bound)
+    digits = re.sub(r"e.*|\.", "", coarse).lstrip("0")
+    assert len(digits.rstrip("0")) <= len(re.sub(r"e.*|\.", "", text).strip("0"))  # never more digits than without
+    places = places_borne(value, bound * value)
+    assert float(coarse) == pytest.approx(value, abs=0.501 * 10.0**-places)
+    assert 10.0**-places >= 0.999 * bound * value or places == places_borne(value, value)  # two digits are left
+    assert 10.0**-places < 10.0 * bound * value or text == coarse  # and no fewer than the bound leaves
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "bound", "text"),
+    [
+        (2.5094, math.nan, math.nan, "2.509 N"),
+        (2.5094, math.nan, 1e-9, "2.509 N"),
+        (2.5094, math.nan, 1e-3, "2.51 N"),
+        (2.5094, math.nan, 0.03, "2.5 N"),
+        (502.9, math.nan, 0.03, "500 N"),
+        (7912.0, math.nan, 0.3, "7.9 kN"),
+        (2.50911, 0.00047, 1e-6, "2.50911 +- 0.00047 N"),
+        (2.50911, 0.00047, 1e-4, "2.5091 +- 0.0005 N"),
+        (2.50911, 0.00047, 1e-3, "2.51 N"),
+        (41.0, 3.0, 0.02, "41 +- 3 N"),
+    ],
+)
+def test_digits_that_an_error_bound_and_a_standard_error_bear(value, error, bound, text):
+    assert with_unit(value, "N", error, bound) == text
+
+
+def test_an_improvement_has_tenths_only_if_its_bound_leaves_them():
+    assert percent(13.74, bound=0.1) == "+13.7 %"
+    assert percent(13.74, bound=0.2) == "+14 %"
+    assert percent(13.74, 0.05, 0.01) == "+13.74 +- 0.05 %"
+    assert percent(13.74, 0.05, 0.2) == "+14 %"
+    assert percent(0.3, bound=6.0) == "0 %"
 
 
 @pytest.mark.parametrize("values", [[], [math.nan], [math.inf, math.nan], [0.0]])

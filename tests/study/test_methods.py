@@ -15,6 +15,7 @@ from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv
 from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
+from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.methods.expected_value import ExpectedValue
@@ -85,9 +86,35 @@ def test_every_method_judges_the_same_design(result: StudyResult) -> None:
         again = evaluate(design, study.index("J1"), study.method(row["method"]))
         assert again.value == float(row["value"])
         assert row["standard_error"] == ("" if again.standard_error is None else repr(again.standard_error))
+        assert row["error_bound"] == ("" if np.isnan(again.error_bound) else repr(again.error_bound))
         assert int(row["realisations"]) == again.realisations
     linear, real = (float(r["value"]) for r in rows(result) if r["layout"] == "ideal" and r["method"] != "norm")
     assert linear == real  # without friction every method gives the norm
+
+
+def test_bounds_of_values_and_of_improvements_are_in_the_dataset(study: Study) -> None:
+    values, bounds = {"usual": 2.0, "serial": 1.5, "ideal": 1.4}, {"usual": 0.02, "serial": 0.03, "ideal": 0.0}
+    outcomes = [
+        Outcome(
+            *(layout, "J1", 0),
+            *({"c": 1000.0}, {}, {}, 0, 0, 0),
+            values={"norm": {"J1": value}},
+            standard_errors={},
+            status={"norm": "ok"},
+            error_bounds={"norm": {"J1": bounds[layout]}},
+        )
+        for layout, value in values.items()
+    ]
+    data = dataset(study, {outcome.case: outcome for outcome in outcomes}).sel({"method": "norm", "index": "J1"})
+    for layout, value in values.items():
+        here = data.sel(layout=layout)
+        assert here.error_bound.item() == here.other_error_bound.item() == bounds[layout]
+        off = [
+            100.0 * (1.0 - value * (1.0 + a * bounds[layout]) / (2.0 * (1.0 + b * 0.02))) - here.improvement.item()
+            for a in (-1.0, 1.0)
+            for b in (-1.0, 1.0)
+        ]
+        assert here.improvement_bound.item() == pytest.approx(max(map(abs, off)))
 
 
 def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(result: StudyResult) -> None:

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { after, empty, namesIn, textOf } from "../src/state/document.js";
-import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated, withUnit } from "../src/state/scale.js";
+import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated, placed, withUnit } from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited, limitsIn } from "../src/panels/asked.js";
 import { judging, quickMethod } from "../src/methods.js";
@@ -225,6 +225,14 @@ test("a value has as many places as its error tells", () => {
   const written = [[2.50911, 0.00047], [503.88, 0.0883], [16.0237, 0.0137], [-0.29, 0.0071], [6.6506e-5, 2.1e-9], [1.2e7, 3e5], [0, 0.02], [4, 30]];
   const expected = ["2.5091 ± 0.0005", "503.88 ± 0.09", "16.024 ± 0.014", "−0.290 ± 0.007", "6.6506·10⁻⁵ ± 0.0002·10⁻⁵", "1.20·10⁷ ± 0.03·10⁷", "0.00 ± 0.02", "4 ± 30"];
   assert.deepEqual(written.map(([value, error]) => estimated(value, error).join(" ± ")), expected);
+});
+
+test("a value has no more places than its error bound leaves", () => {
+  assert.equal(estimated(2.50911, 0.00047, 3).join(" ± "), "2.5091 ± 0.0005");
+  assert.equal(estimated(16.0237, 0.0137, 2).join(" ± "), "16.02 ± 0.01");
+  assert.equal(estimated(1.2e7, 1.3e5, -6).join(" ± "), "1.20·10⁷ ± 0.01·10⁷");
+  const written = [[2.50911, 2], [503.88, -1], [6.6506e-5, 7], [-0.29, 6], [0, 2], [4.5, null], [null, 2]];
+  assert.deepEqual(written.map(([value, places]) => placed(value, places)), ["2.51", "500", "6.65·10⁻⁵", "−0.29", "0", "4.5", "–"]);
 });
 
 test("what is compared stands first beside what it is compared with, and goes with its layout", () => {

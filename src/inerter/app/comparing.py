@@ -13,6 +13,7 @@ from inerter.app.documents import study_from
 from inerter.app.kinds import Tell
 from inerter.app.valued import limits_at, valued
 from inerter.errors import DesignError
+from inerter.figures.labels import decimals_of
 from inerter.files.study.cases import FAILURES
 from inerter.files.study.places import element_at, place_of, places
 from inerter.files.study.study import Study, elements_used
@@ -165,6 +166,8 @@ def _told(one: _Judged, baseline: _Judged | None) -> Answer:
         "method": one.method,
         "value": estimate.value,
         "standard_error": estimate.standard_error,
+        "error_bound": estimate.error_bound,
+        "decimals": decimals_of(estimate.value, estimate.standard_error or np.nan, estimate.error_bound, _DIGITS),
         "status": estimate.status.kind.value,
         "message": estimate.status.message,
         "notes": list(estimate.notes),

@@ -41,6 +41,7 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
         "value",
         "unit",
         "standard_error",
+        "error_bound",
         "improvement_percent",
         "improvement_error_percent",
         "tie",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import floor, log10
 from textwrap import fill
 
 import numpy as np
@@ -13,13 +12,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from inerter.errors import Status, StatusKind
-from inerter.units import format_quantity, headed, parse_quantity
+from inerter.units import digits_at, format_number, format_quantity, headed, parse_quantity, places_borne
 
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
+_TENTH = 0.1 * (1.0 + 1e-9)
+_DIGITS = 4  # of a number for people, at most
 WIDE_RANGE = 1.01  # of equally good values, the highest over the lowest, from which on it is told
 NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
@@ -70,6 +71,17 @@ def error_of(design: xr.Dataset, of: str = "value") -> float:
     """The standard error of the value, or the improvement, of one design; nan where there is none."""
     name = {"value": "standard_error", "improvement": "improvement_error"}[of]
     return float(design[name]) if name in design else np.nan
+
+
+def bound_of(design: xr.Dataset, of: str = "value") -> float:
+    """The largest error of the value (relative), or of the improvement [%], of one design; nan where none is known."""
+    name = {"value": "error_bound", "improvement": "improvement_bound"}[of]
+    return float(design[name]) if name in design else np.nan
+
+
+def improvement_text(design: xr.Dataset) -> str:
+    """The improvement of one design with its sign."""
+    return percent(float(design["improvement"]), error_of(design, "improvement"), bound_of(design, "improvement"))
 
 
 def swept_places(results: xr.Dataset) -> list[str]:
@@ -187,41 +199,62 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def with_unit(value: float, unit: str, error: float = np.nan) -> str:
+def with_unit(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
     """A value for people: four digits and a prefix, "inf", or "n/a" where there is none.
 
-    With a standard error, which then has two digits, the value has as many decimals.
+    With a standard error, which then has two digits, the value has as many decimals; fewer where its largest other
+    error, the relative `bound`, allows no more.
 
-    >>> with_unit(7544.2, "N s/m"), with_unit(7544.2, "N s/m", 23.0)
-    ('7.544 kN s/m', '7.544 +- 0.023 kN s/m')
+    >>> with_unit(7544.2, "N s/m"), with_unit(7544.2, "N s/m", 23.0), with_unit(7544.2, "N s/m", bound=2e-3)
+    ('7.544 kN s/m', '7.544 +- 0.023 kN s/m', '7.54 kN s/m')
     """
     if np.isnan(value):
         return "n/a"
     if np.isinf(value):
         return "inf"
-    if not shows_error(value, error):
-        return format_quantity(value, unit)
+    if not shows_error(value, error, bound):
+        return format_quantity(value, unit, digits_of(value, bound))
     own = scale([value], unit)
-    return f"{measured(value * own.factor, error * own.factor)} {own.unit}".rstrip()
+    return f"{measured(value * own.factor, error * own.factor, bound)} {own.unit}".rstrip()
 
 
-def shows_error(value: float, error: float) -> bool:
-    """Whether a standard error is there and large enough to be shown."""
-    return bool(np.isfinite(value) and np.isfinite(error) and error > _LEAST_ERROR * abs(value))
+def digits_of(value: float, bound: float = np.nan) -> int:
+    """Significant digits, four at most, of a value with a relative error `bound`."""
+    return digits_at(value, places_borne(value, bound * abs(value), digits=_DIGITS))
 
 
-def measured(value: float, error: float, sign: str = "") -> str:
-    """A number and its standard error, to two digits of the error; `sign` is "+" to show it always."""
+def decimals_of(value: float, error: float, bound: float, digits: int) -> int | None:
+    """Decimal places that a value bears, with `digits` significant ones at most where no standard error is shown."""
+    if not np.isfinite(value):
+        return None
+    shown = error if shows_error(value, error, bound) else np.nan
+    return places_borne(value, bound * abs(value), shown, digits)
+
+
+def plain_number(value: float, bound: float = np.nan) -> str:
+    """A number of a table without its unit, with as many digits as its relative error `bound` allows."""
+    digits = digits_of(value, bound)
+    text = f"{value:#.{digits}g}"
+    return re.sub(r"\.(?=e|$)", "", text if digits == _DIGITS or "e" not in text else format_number(value, digits))
+
+
+def shows_error(value: float, error: float, bound: float = np.nan) -> bool:
+    """Whether a standard error is there and large enough to be shown, beside a relative error `bound` too."""
+    return bool(np.isfinite(value) and np.isfinite(error) and error > np.fmax(_LEAST_ERROR, bound) * abs(value))
+
+
+def measured(value: float, error: float, bound: float = np.nan, sign: str = "") -> str:
+    """A number of a relative error `bound`, and its standard error; `sign` is "+" to show it always."""
     if not _SMALLEST < error < _LARGEST:
         return f"{value:{sign}.4g} +- {error:.2g}"
-    decimals = 1 - floor(log10(float(f"{error:.1e}")))
+    decimals = places_borne(value, bound * abs(value), error)
     shown = max(decimals, 0)
     return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
 
 
-def printed(value: float, unit: str, error: float = np.nan) -> str:
+def printed(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
     """A value as it is printed, on one line with its unit."""
-    return typeset(with_unit(value, unit, error)).replace(" ", _NO_BREAK_SPACE)
+    return typeset(with_unit(value, unit, error, bound)).replace(" ", _NO_BREAK_SPACE)
 
 
 def together(text: str) -> str:
@@ -233,14 +266,17 @@ def together(text: str) -> str:
     return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
 
 
-def percent(value: float, error: float = np.nan) -> str:
-    """An improvement with its sign, and its standard error if there is one; "-inf %", or "n/a" where there is none."""
+def percent(value: float, error: float = np.nan, bound: float = np.nan) -> str:
+    """An improvement with its sign, and its standard error if there is one; "-inf %", or "n/a" where there is none.
+
+    `bound` is its largest other error [%]: beyond a tenth of a per cent there are no tenths.
+    """
     if np.isnan(value):
         return "n/a"
-    if error >= _LEAST_PERCENT and np.isfinite(error) and abs(value) < _LARGEST:
-        return f"{measured(value, error, '+')} %"
-    text = f"{value:+.1f} %"
-    return "0.0 %" if text in ("+0.0 %", "-0.0 %") else text
+    if error >= _LEAST_PERCENT and np.isfinite(error) and abs(value) < _LARGEST and not error <= bound:
+        return f"{measured(value, error, bound / max(abs(value), 1e-300), '+')} %"
+    text = f"{value:+.{0 if bound > _TENTH else 1}f} %"
+    return text[1:] if text in ("+0.0 %", "-0.0 %", "+0 %", "-0 %") else text
 
 
 def typeset(text: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
 from inerter.errors import StatusKind
@@ -10,9 +10,8 @@ from inerter.figures.labels import printed, with_unit
 from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.study import Study
 from inerter.methods.registry import brief_words_of
+from inerter.report.findings import Writer
 from inerter.report.tables import Cell, Row, Table
-
-Writer = Callable[[float, str, float], str]
 
 
 def budget_lines(budgets: Sequence[BudgetOutcome], study: Study, width: int) -> Iterator[str]:

@@ -12,17 +12,19 @@ import xarray as xr
 
 from inerter.figures.labels import (
     Scale,
+    bound_of,
     by_method,
     capital,
     compared,
+    digits_of,
     error_of,
+    improvement_text,
     index_title,
     index_unit,
     indices,
     layouts,
     measured,
     methods,
-    percent,
     scale,
     shows_error,
     swept_places,
@@ -100,24 +102,25 @@ def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
     """Value and improvement; over a sweep the largest improvement, or the least value, and where it is."""
     row, baseline = results.sel(layout=layout, index=index), results.attrs["baseline"]
     if not swept_places(results):
-        value, error = float(row["value"]) * unit.factor, error_of(row) * unit.factor
-        better = "" if layout == baseline or not baseline else _percent(row)
-        return _Entry(measured(value, error) if shows_error(value, error) else _plain(value), better)
+        value, error, bound = float(row["value"]) * unit.factor, error_of(row) * unit.factor, bound_of(row)
+        better = "" if layout == baseline or not baseline else improvement_text(row)
+        return _Entry(
+            measured(value, error, bound) if shows_error(value, error, bound) else _plain(value, bound), better
+        )
     ends = extremes(row["improvement" if compared(results) else "value"])
     if ends is None:
         return _Entry("n/a")
     place = ends[1] if compared(results) else ends[0]
     here = row.sel(place[1])
-    text = _percent(here) if compared(results) else with_unit(place[0], index_unit(results, index), error_of(here))
+    if compared(results):
+        text = improvement_text(here)
+    else:
+        text = with_unit(place[0], index_unit(results, index), error_of(here), bound_of(here))
     return _Entry(text, f"at {place_text(results, place[1])}")
 
 
-def _percent(design: xr.Dataset) -> str:
-    return percent(float(design["improvement"]), error_of(design, "improvement"))
-
-
-def _plain(value: float) -> str:
-    return f"{value:.4g}" if np.isfinite(value) else with_unit(value, "")
+def _plain(value: float, bound: float) -> str:
+    return f"{value:.{digits_of(value, bound)}g}" if np.isfinite(value) else with_unit(value, "")
 
 
 def _typeset(text: str) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 import scipy
@@ -12,10 +12,12 @@ import xarray as xr
 
 from inerter.figures.labels import (
     NOTICEABLE,
+    bound_of,
     by_method,
     by_which,
     compared,
     error_of,
+    improvement_text,
     index_title,
     index_unit,
     indices,
@@ -34,7 +36,14 @@ from inerter.figures.labels import (
 from inerter.indices.registry import INDICES
 from inerter.methods.ties import equally_least
 
-Writer = Callable[[float, str, float], str]
+
+class Writer(Protocol):
+    """A function that turns a number, its unit, its standard error and its relative error bound into text."""
+
+    def __call__(self, value: float, unit: str, error: float = ..., bound: float = ...) -> str:
+        """The number for people."""
+        ...
+
 
 _STATIC = "the static limit, which no damper or inerter lowers"
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
@@ -42,7 +51,7 @@ _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
 @dataclass(frozen=True)
 class Wording:
-    """How findings are told: `write` turns a number, its unit and its error into text.
+    """How findings are told: `write` turns a number, its unit and its errors into text.
 
     `static` are indices and layouts whose largest gain is that under a steady force.
     """
@@ -241,7 +250,7 @@ def _verdict(results: xr.Dataset, index: str, wording: Wording) -> str:
     if not names:
         return _none(results, index)
     design = results.sel(layout=names[0], index=index)
-    value = wording.write(float(design["value"]), index_unit(results, index), error_of(design))
+    value = wording.write(float(design["value"]), index_unit(results, index), error_of(design), bound_of(design))
     limit = f", {_STATIC}" if (index, names[0]) in wording.static else ""
     answer = f"{_alike(names)}, {value}{limit}"
     if names[0] == baseline:
@@ -263,7 +272,7 @@ def _still(results: xr.Dataset, index: str, name: str) -> str:
 
 
 def _better(design: xr.Dataset) -> str:
-    return percent(float(design["improvement"]), error_of(design, "improvement")).removeprefix("+")
+    return improvement_text(design).removeprefix("+")
 
 
 def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from textwrap import indent
 from typing import Any
 
 import numpy as np
 
+from inerter.figures.labels import decimals_of
 from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult
 from inerter.report.json_data import json_data
 
+_DIGITS = 5  # of a value, at most, without a standard error
 _JSON = {"improvement_error": "improvement_error_percent"}
 
 
@@ -38,6 +40,7 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
     """What there is to say of each design and method."""
     data = result.data
     errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
+    errors = ["error_bound", *errors] if "error_bound" in data else errors
     arrays = {name: data[name].values for name in ("value", "improvement", "status", "parameter_value", *errors)}
     labels = {str(dim): data[dim].values.tolist() for dim in data.value.dims}
     units = dict(zip(labels["index"], data.index_unit.values.tolist(), strict=True))
@@ -50,9 +53,18 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
         yield {
             **names,
             "value": json_data(arrays["value"][place].item()),
+            "decimals": _decimals(arrays, place),
             "unit": units[names["index"]],
             "improvement_percent": json_data(arrays["improvement"][place].item()),
             **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
             "status": arrays["status"][design],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }
+
+
+def _decimals(arrays: Mapping[str, Any], place: tuple[int, ...]) -> int | None:
+    """Decimal places that the value of one design and method bears."""
+    error, bound = (
+        arrays[name][place].item() if name in arrays else np.nan for name in ("standard_error", "error_bound")
+    )
+    return decimals_of(arrays["value"][place].item(), error, bound, _DIGITS)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import (
+    Scale,
+    bound_of,
     by_method,
     by_which,
     capital,
     compared,
     error_of,
     flat_range,
+    improvement_text,
     index_title,
     index_unit,
     indices,
@@ -23,7 +25,7 @@ from inerter.figures.labels import (
     measured,
     methods,
     one_method,
-    percent,
+    plain_number,
     printed,
     scale,
     shows_error,
@@ -124,7 +126,7 @@ def _improvement(design: xr.Dataset, baseline: str) -> str:
 
 
 def _percent(design: xr.Dataset) -> str:
-    text = percent(float(design["improvement"]), error_of(design, "improvement"))
+    text = improvement_text(design)
     return typeset(text) if " +- " not in text else typeset(text).replace(" ", "\N{NO-BREAK SPACE}")
 
 
@@ -136,7 +138,8 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
     rows = []
     for name in layouts(results):
         design = at_index.sel(layout=name)
-        cells = [Cell(printed(float(design["value"]), index_unit(results, index), error_of(design)))]
+        unit = index_unit(results, index)
+        cells = [Cell(printed(float(design["value"]), unit, error_of(design), bound_of(design)))]
         cells += [Cell(_improvement(design, baseline))] if compared(results) else []
         cells += [_parameter(design.sel(parameter=parameter)) for parameter in parameters]
         cells += [Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []
@@ -166,13 +169,16 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
     rows = []
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
-        values = [float(design["other_value"].sel(other=other)) for other in others]
-        units = [index_unit(results, other) for other in others]
-        texts = [printed(value, unit) for value, unit in zip(values, units, strict=True)]
+        texts = [_other(results, design.sel(other=other), other) for other in others]
         missed = "misses the limits" if bool(infeasible(design)) else ""
         own = [other == index for other in others]
         rows.append(Row(name, [Cell(t, missed * is_own, strong=is_own) for t, is_own in zip(texts, own, strict=True)]))
     return Table(f"Designs that are best for {_title(results, index)}{by_which(results)}", ["Layout", *others], rows)
+
+
+def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> str:
+    bound = float(design["other_error_bound"]) if "other_error_bound" in design else np.nan
+    return printed(float(design["other_value"]), index_unit(results, other), bound=bound)
 
 
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
@@ -187,8 +193,7 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
         for name in layouts(results):
             design = here.sel(layout=name)
             improvement = _improvement(design, results.attrs["baseline"]) if name in compared(results) else ""
-            value, error = float(design["value"]) * values.factor, error_of(design) * values.factor
-            cells.append(Cell(_number(value, error), improvement))
+            cells.append(Cell(_number(design, values), improvement))
         rows.append(Row(typeset(f"{float(here[element]) * swept.factor:.4g}"), cells))
     names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
@@ -211,7 +216,7 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
         cells = []
         for j in _spread(data.sizes[second], _MOST_ACROSS):
             design = data.isel({first: i, second: j})
-            number = _number(float(design["value"]) * values.factor, error_of(design) * values.factor)
+            number = _number(design, values)
             cells.append(Cell(_percent(design), number) if compared(results) else Cell(number))
         rows.append(Row(typeset(f"{float(data[first][i]) * down.factor:.4g}"), cells))
     columns = data[second].values[list(_spread(data.sizes[second], _MOST_ACROSS))] * across.factor
@@ -264,12 +269,11 @@ def _are_far(size: int) -> bool:
     return _step(size) > _MOST_BETWEEN
 
 
-def _number(value: float, error: float) -> str:
-    if shows_error(value, error):
-        return typeset(measured(value, error))
-    if not np.isfinite(value):
-        return with_unit(value, "").strip()
-    return typeset(re.sub(r"\.(?=e|$)", "", f"{value:#.4g}"))
+def _number(design: xr.Dataset, unit: Scale) -> str:
+    value, error, bound = float(design["value"]) * unit.factor, error_of(design) * unit.factor, bound_of(design)
+    if shows_error(value, error, bound):
+        return typeset(measured(value, error, bound))
+    return typeset(plain_number(value, bound)) if np.isfinite(value) else with_unit(value, "").strip()
 
 
 def _failures(data: xr.Dataset) -> list[str]:

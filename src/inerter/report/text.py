@@ -11,10 +11,12 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import (
+    bound_of,
     by_which,
     compared,
     error_of,
     flat_range,
+    improvement_text,
     index_title,
     index_unit,
     indices,
@@ -81,7 +83,7 @@ def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
         cells = [
-            with_unit(float(design["value"]), unit, error_of(design)),
+            with_unit(float(design["value"]), unit, error_of(design), bound_of(design)),
             *([_improvement(design)] if versus else []),
         ]
         table.append(_TextRow(name, cells, _parameters(design), str(design["status"].item())))
@@ -91,7 +93,7 @@ def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
 def _improvement(design: xr.Dataset) -> str:
     if design["layout"].item() == design.attrs["baseline"]:
         return "baseline"
-    return percent(float(design["improvement"]), error_of(design, "improvement"))
+    return improvement_text(design)
 
 
 def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:

@@ -4,7 +4,7 @@ import { kindOf } from "../kinds.js";
 import { isQuick, judging, methodsOf, quickMethod } from "../methods.js";
 import { baselineOf, designOf } from "../questions.js";
 import { namesIn } from "../state/document.js";
-import { estimated, printed, shown, withUnit } from "../state/scale.js";
+import { estimated, placed, printed, shown, withUnit } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { AskedPanel } from "./asked.js";
@@ -72,11 +72,11 @@ function Indices({ value, layout, baseline, stale }) {
   </table></div>`;
 }
 
-/** A value, and below it its standard error. @param {{result: {value: any, standard_error?: any}}} props */
-export function Measured({ result: { value, standard_error: error } }) {
+/** A value, and below it its standard error where that is more than its other errors. @param {{result: {value: any, standard_error?: any, error_bound?: any, decimals?: any}}} props */
+export function Measured({ result: { value, standard_error: error, error_bound: bound, decimals } }) {
   if (typeof value === "string") return html`${value.replace("inf", "∞")}`;
-  if (typeof error !== "number" || !(error > 0)) return html`${shown(value)}`;
-  const [number, scatter] = estimated(value, error);
+  if (typeof error !== "number" || !(error > (bound ?? 0) * Math.abs(value))) return html`${placed(value, decimals)}`;
+  const [number, scatter] = estimated(value, error, decimals ?? Infinity);
   return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 

@@ -5,7 +5,7 @@ import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody } from "./front.js";
 import { Plot } from "../plot.js";
 import { html, useState } from "../parts/html.js";
-import { printed, quantity, shown, takenApart, withUnit } from "../state/scale.js";
+import { placed, printed, quantity, shown, takenApart, withUnit } from "../state/scale.js";
 import { begin, stop, takeOptima } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -97,7 +97,7 @@ function RunResult({ store, api, job }) {
   const many = 60;
   return html`<div class="scroll" tabindex="0" role="region" aria-label="Results"><table>
     <thead><tr><th scope="col">layout</th><th scope="col">index</th><th scope="col">method</th><th scope="col">value</th><th scope="col">better by</th><th scope="col"></th></tr></thead>
-    <tbody>${rows.slice(0, many).map((row, i) => html`<tr key=${i}><td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td><td class="number">${shown(row.value)} <span class="unit">${printed(row.unit ?? "")}</span></td><td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
+    <tbody>${rows.slice(0, many).map((row, i) => html`<tr key=${i}><td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td><td class="number">${placed(row.value, row.decimals)} <span class="unit">${printed(row.unit ?? "")}</span></td><td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
       <td>${row.parameters && Object.keys(row.parameters).length > 0 && html`<button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptima(store, [row]) })}>Take</button>`}</td></tr>`)}</tbody>
   </table></div>
   ${rows.length > many && html`<p class="quiet">${rows.length} rows in all: they are in summary.csv.</p>`}
@@ -150,7 +150,7 @@ function SweepResult({ store, api, job }) {
 
 /** How the swept value is read from a row, if there is one. @param {any[]} rows @returns {((row: any) => number) | null} */
 function sweptIn(rows) {
-  const known = new Set(["layout", "index", "method", "value", "unit", "improvement_percent", "improvement_error_percent", "standard_error", "realisations", "status", "parameters"]);
+  const known = new Set(["layout", "index", "method", "value", "decimals", "unit", "error_bound", "improvement_percent", "improvement_error_percent", "standard_error", "realisations", "status", "parameters"]);
   const key = Object.keys(rows[0] ?? {}).find((each) => !known.has(each) && typeof rows[0][each] === "number");
   return key === undefined ? null : (row) => row[key];
 }

@@ -44,15 +44,23 @@ export function shown(number, digits = 5) {
   return minus(Number(number.toPrecision(digits)));
 }
 
-/** A value and its error with as many places as the error tells: one digit of it, or two if the first is 1; both times the same power of
- * ten. @param {number} value @param {number} error @returns {[string, string]} */
-export function estimated(value, error) {
+/** A number with so many places after the point, or before it where these are negative, as answers show it; five digits where there is no
+ * number of places. @param {number | null | undefined} number @param {number | null | undefined} places */
+export function placed(number, places) {
+  if (typeof number !== "number" || typeof places !== "number" || number === 0) return shown(number);
+  return shown(number, Math.min(5, Math.max(1, places + 1 + Number(number.toExponential(15).split("e")[1]))));
+}
+
+/** A value and its error with as many places as the error tells, and no more than `most`: one digit of it, or two if the first is 1; both
+ * times the same power of ten. @param {number} value @param {number} error @param {number} most @returns {[string, string]} */
+export function estimated(value, error, most = Infinity) {
   const power = Math.floor(Math.log10(Math.max(Math.abs(value), error)));
   const far = power >= 6 || power < -3;
   const factor = far ? 10 ** -power : 1;
   const [number, scatter] = [value * factor, error * factor];
   const leading = scatter.toExponential(0);
-  const places = Math.min(20, Math.max(0, (leading.startsWith("1") ? 1 : 0) - Number(leading.split("e")[1])));
+  const one = -Number(leading.split("e")[1]);
+  const places = Math.min(20, Math.max(0, one, Math.min(one + (leading.startsWith("1") ? 1 : 0), most + (far ? power : 0))));
   const times = far ? `·10${superscript(power)}` : "";
   /** @param {number} each */
   const written = (each) => each.toFixed(places).replace("-", "−") + times;

@@ -107,6 +107,7 @@ class Outcome:
     samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
     limits: list[list[float]] = field(default_factory=list)  # of each: value, whether it holds back, its cost
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
+    error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
 
     @property
     def case(self) -> Case:
@@ -225,4 +226,5 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         realisations={m: e.realisations for m, e in own.items() if e.realisations},
         samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
         over_linear=None if over is None else (-over.percent, over.percent_error),
+        error_bounds={m: {i: e.error_bound for i, e in by_index.items()} for m, by_index in estimates.items()},
     )

@@ -91,6 +91,9 @@ class Gathered:
             base = data["value"].sel(layout=study.baseline, drop=True)
             base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
             data["improvement"][:] = (100.0 * (1.0 - data["value"] / base)).transpose(*data["value"].dims).values
+            of_base = data["error_bound"].sel(layout=study.baseline, drop=True)
+            widest = 100.0 * abs(data["value"] / base) * (data["error_bound"] + of_base) / (1.0 - of_base)
+            data["improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*data["value"].dims).values
             self._enter_errors()
         if study.sweeps:
             return data
@@ -108,6 +111,9 @@ class Gathered:
             value = values.get(index, np.nan)
             arrays["value"][number, m] = np.nan if outcome.status.get(method) == _INFEASIBLE else value
             arrays["other_value"][number, m] = [values.get(other, np.nan) for other in self.study.indices]
+            bounds = outcome.error_bounds.get(method, {})
+            arrays["error_bound"][number, m] = bounds.get(index, np.nan)
+            arrays["other_error_bound"][number, m] = [bounds.get(other, np.nan) for other in self.study.indices]
             error = outcome.standard_errors.get(method, {}).get(index)
             arrays["standard_error"][number, m] = np.nan if error is None else error
             best = best or isfinite(value)
@@ -234,8 +240,11 @@ def is_uncertain(study: Study) -> bool:
 _VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "value": (("method",), np.nan, "index at the optimum of that index"),
     "standard_error": (("method",), np.nan, "standard error of the value"),
+    "error_bound": (("method",), np.nan, "largest relative error of the value, sampling apart"),
     "improvement": (("method",), np.nan, "improvement over the baseline"),
+    "improvement_bound": (("method",), np.nan, "largest error of the improvement, sampling apart"),
     "other_value": (("method", "other"), np.nan, "other indices of the same design"),
+    "other_error_bound": (("method", "other"), np.nan, "their largest relative errors, sampling apart"),
     "parameter_value": (("parameter",), np.nan, "parameter at the optimum"),
     "parameter_low": (("parameter",), np.nan, "least among equally good optima"),
     "parameter_high": (("parameter",), np.nan, "largest among equally good optima"),
@@ -258,7 +267,7 @@ UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "over_linear": ((), np.nan, "improvement over the best linear design by the method of the search"),
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
 }
-PERCENT = {"limit_cost", "improvement", "improvement_error", "over_linear", "over_linear_error"}
+PERCENT = {"limit_cost", "improvement", "improvement_bound", "improvement_error", "over_linear", "over_linear_error"}
 
 
 def _ratio_error(one: Estimate, other: Estimate) -> float:

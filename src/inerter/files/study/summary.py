@@ -32,7 +32,7 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
     return [
         *("layout", "index", "method"),
         *(headed(sweep.label, sweep.unit) for sweep in study.sweeps),
-        *("value", "unit", "improvement_percent", "standard_error", "status"),
+        *("value", "unit", "improvement_percent", "standard_error", "error_bound", "status"),
         *(f"{name}_percent" if name in PERCENT else name for name in _more(study)),
         *(headed(name, unit) for name, unit in parameters),
         *("at_bound", "starts", "agreed"),
@@ -71,7 +71,7 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
                     method,
                     *map(_number, case.swept),
                     *(_number(row["value"]), units[case.index], _number(row["improvement"])),
-                    *(_number(row["standard_error"]), row["status"]),
+                    *(_number(row["standard_error"]), _number(row["error_bound"]), row["status"]),
                     *(_number(row[name]) if name in PERCENT else row[name] for name in more),
                     *map(_number, row["parameter_value"]),
                     *(at_bound, row["starts"], row["agreed"]),

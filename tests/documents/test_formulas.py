@@ -63,6 +63,8 @@ ANNEX_A = {
     "Wd": (0.4, 100.0, 2.0, 2.0, 0.63, None, None, None, None),
     "We": (0.4, 100.0, 1.0, 1.0, 0.63, None, None, None, None),
     "Wf": (0.08, 0.63, None, 0.25, 0.86, 0.0625, 0.80, 0.1, 0.80),
+    "Wc": (0.4, 100.0, 8.0, 8.0, 0.63, None, None, None, None),
+    "Wj": (0.4, 100.0, None, None, None, 3.75, 0.91, 5.32, 0.91),
 }
 
 
@@ -73,11 +75,12 @@ def test_weightings_are_the_formulas_of_annex_a(name: str) -> None:
     f1, f2, f3, f4, q4, f5, q5, f6, q6 = ANNEX_A[name]
     assert f1 is not None
     assert f2 is not None
-    assert f4 is not None
-    assert q4 is not None
     found = np.sqrt(f**4 / (f**4 + f1**4)) * np.sqrt(f2**4 / (f**4 + f2**4))
-    top = 1.0 if f3 is None else np.sqrt((f**2 + f3**2) / f3**2)
-    found = found * top * np.sqrt(f4**4 * q4**2 / (f**4 * q4**2 + f**2 * f4**2 * (1.0 - 2.0 * q4**2) + f4**4 * q4**2))
+    if f3 is not None:
+        found = found * np.sqrt((f**2 + f3**2) / f3**2)
+    if f4 is not None and q4 is not None:
+        lower = f**4 * q4**2 + f**2 * f4**2 * (1.0 - 2.0 * q4**2) + f4**4 * q4**2
+        found = found * np.sqrt(f4**4 * q4**2 / lower)
     if f5 is not None and q5 is not None and f6 is not None and q6 is not None:
         upper = f**4 * q5**2 + f**2 * f5**2 * (1.0 - 2.0 * q5**2) + f5**4 * q5**2
         lower = f**4 * q6**2 + f**2 * f6**2 * (1.0 - 2.0 * q6**2) + f6**4 * q6**2

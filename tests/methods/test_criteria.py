@@ -93,6 +93,17 @@ def test_a_simulation_is_felt_as_the_norm_says() -> None:
     assert abs(np.mean(found) - wanted**2) < 4.0 * error + 0.01 * wanted**2
 
 
+def test_gravity_in_a_record_is_no_step() -> None:
+    """A sensor that reads gravity gives the values of one that does not, and what was taken away."""
+    time = np.arange(0.0, 20.0, 2e-3)
+    motion = 1.5 * np.sin(2.0 * np.pi * 5.0 * time)
+    plain, record = it.weighted(time, motion), it.weighted(time, motion + 9.81)
+    assert record.constant == pytest.approx(9.81)
+    assert plain.constant == 0.0
+    for name in ("rms", "mtvv", "vdv"):
+        assert getattr(record, name) == pytest.approx(getattr(plain, name), rel=1e-6)
+
+
 BAD_SIGNALS = {
     "text": (("a", "b"), "two lists of numbers"),
     "unlike": (([0.0, 1.0, 2.0], [1.0]), "as many finite numbers"),

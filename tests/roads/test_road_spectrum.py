@@ -59,3 +59,24 @@ BAD = {
 def test_bad_requests(ask, sentence):
     with pytest.raises(RecordError, match=sentence):
         ask()
+
+
+def random_profile(length, seed, interval=0.05):
+    """Heights of a random road of class B, waviness 2, cut out of one that is eight times as long."""
+    rng, count = np.random.default_rng(seed), int(8 * length / interval)
+    n = np.arange(1, count // 2 + 1) / (count * interval)
+    lines = np.zeros(count // 2 + 1, complex)
+    noise = rng.normal(size=n.size) + 1j * rng.normal(size=n.size)
+    lines[1:] = 0.5 * count * noise * np.sqrt(64e-6 * (n / 0.1) ** -2.0 * n[0])
+    points = int(length / interval)
+    return it.Profile(interval * np.arange(points), np.fft.irfft(lines, count)[:points])
+
+
+@pytest.mark.parametrize(("length", "roads"), [(300.0, 60), (2000.0, 20)])
+def test_a_line_through_logarithms_is_not_too_low(length, roads):
+    """Mean over random roads, within four standard errors; logarithms of few degrees of freedom have a lower mean."""
+    found = [it.road_spectrum(random_profile(length, seed)) for seed in range(roads)]
+    for values, true in (([f.standard for f in found], 64e-6), ([f.waviness for f in found], 2.0)):
+        error = np.std(values, ddof=1) / np.sqrt(roads)
+        assert abs(np.mean(values) - true) < 4.0 * error
+        assert error < 0.012 * true

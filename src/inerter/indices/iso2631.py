@@ -1,8 +1,8 @@
 """Frequency weightings of ISO 2631-1:1997 for what people feel, from the parameters of its Annex A.
 
 A weighting is a band pass (f1, f2, both of second order and Butterworth), a transition from acceleration to velocity
-(f3, f4, Q4), which has no zero without f3, and perhaps an upward step (f5, Q5, f6, Q6), from (f5/f6)^2 at low
-frequencies to one.
+(f3, f4, Q4), which has no zero without f3 and may be left out, and perhaps an upward step (f5, Q5, f6, Q6), from
+(f5/f6)^2 at low frequencies to one.
 """
 
 from __future__ import annotations
@@ -30,21 +30,22 @@ class Weighting:
     name: str
     purpose: str
     band: tuple[float, float]  # f1, f2
-    transition: tuple[float | None, float, float]  # f3, f4, Q4
+    transition: tuple[float | None, float, float] | None = None  # f3, f4, Q4
     step: tuple[float, float, float, float] | None = None  # f5, Q5, f6, Q6
 
     @property
     def sections(self) -> tuple[Filter, ...]:
         """Filters of second order, one behind the other, each with a gain of one where it passes."""
         f1, f2 = map(_rate, self.band)
-        f3, f4, q4 = self.transition
-        w4 = _rate(f4)
-        top = (1.0,) if f3 is None else (1.0 / _rate(f3), 1.0)
         found = [
             Filter((1.0, 0.0, 0.0), (1.0, f1 / _BUTTERWORTH, f1**2)),
             Filter((f2**2,), (1.0, f2 / _BUTTERWORTH, f2**2)),
-            Filter(top, (1.0 / w4**2, 1.0 / (q4 * w4), 1.0)),
         ]
+        if self.transition is not None:
+            f3, f4, q4 = self.transition
+            w4 = _rate(f4)
+            top = (1.0,) if f3 is None else (1.0 / _rate(f3), 1.0)
+            found.append(Filter(top, (1.0 / w4**2, 1.0 / (q4 * w4), 1.0)))
         if self.step is not None:
             f5, q5, f6, q6 = self.step
             w5, w6 = _rate(f5), _rate(f6)
@@ -63,6 +64,8 @@ WEIGHTINGS = {
         Weighting("Wd", "horizontal, seated or standing", (0.4, 100.0), (2.0, 2.0, 0.63)),
         Weighting("Wf", "motion sickness, vertical", (0.08, 0.63), (None, 0.25, 0.86), (0.0625, 0.80, 0.1, 0.80)),
         Weighting("We", "rotation, seated", (0.4, 100.0), (1.0, 1.0, 0.63)),
+        Weighting("Wc", "fore and aft, seat back", (0.4, 100.0), (8.0, 8.0, 0.63)),
+        Weighting("Wj", "vertical, head of a recumbent person", (0.4, 100.0), None, (3.75, 0.91, 5.32, 0.91)),
     )
 }
 ROTATIONS = {"roll": 0.63, "pitch": 0.4}  # [m/rad] by what rotations of a seat are multiplied: k of 7.2.3
@@ -87,7 +90,9 @@ def weighting_filter(name: str) -> Filter:
 
 @cache
 def iso2631(name: str) -> LinearSystem:
-    """The frequency weighting "Wk", "Wd", "Wf" or "We" of ISO 2631-1:1997, from acceleration to weighted acceleration.
+    """The frequency weighting "Wk", "Wd", "Wf", "We", "Wc" or "Wj" of ISO 2631-1:1997.
+
+    Its input is an acceleration, its output the weighted one.
 
     Raises `PerformanceIndexError` for another name.
 

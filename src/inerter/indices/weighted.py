@@ -14,6 +14,7 @@ from inerter.systems.linear import LinearSystem
 
 Array = NDArray[np.float64]
 _RUNNING = 1.0  # [s] of a running r.m.s. value
+_CONSTANT = 0.05  # of the standard deviation: a mean that is no motion
 _EVEN = 1e-6  # of a step, by which steps of time may differ
 
 
@@ -29,14 +30,16 @@ class WeightedMotion:
     vdv: float  # [m/s^1.75] fourth-power vibration dose value, 6.3.2
     time: Array = field(repr=False)  # [s]
     values: Array = field(repr=False)  # [m/s^2]
+    constant: float = 0.0  # [m/s^2] what was taken from the acceleration before, such as gravity
 
 
 def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") -> WeightedMotion:
     """An acceleration [m/s^2] at even steps of `time` [s] through a weighting of ISO 2631-1, from rest.
 
-    `run.time` and `run["sprung_acceleration"]` of a simulation will do, and so will the columns of a record. The
-    acceleration is taken as linear between its samples, which therefore come some ten times in the shortest wave that
-    matters: that of 100 Hz with "Wk", "Wd" and "We", of 0.63 Hz with "Wf".
+    `run.time` and `run["sprung_acceleration"]` of a simulation will do, and so will the columns of a record. The mean
+    is taken away first if it is more than a twentieth of the standard deviation, since a sensor that reads gravity
+    would begin with a step; `constant` has it. The acceleration is taken as linear between its samples, which
+    therefore come some ten times in the shortest wave that matters: that of 100 Hz, of 0.63 Hz with "Wf".
 
     Raises `PerformanceIndexError` for another weighting, for steps that are not even, for values that are no finite
     numbers, and for less than 1 s.
@@ -48,6 +51,9 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
     """
     system = iso2631(weighting)
     times, given = _checked(time, acceleration)
+    mean = float(given.mean())
+    constant = mean if abs(mean) > _CONSTANT * float(given.std()) else 0.0
+    given = given - constant if constant else given
     step = float(times[-1] - times[0]) / (times.size - 1)
     values = _passed(system, given, step)
     energy = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] ** 2 + values[:-1] ** 2))])
@@ -60,6 +66,7 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
         vdv=float(np.trapezoid(values**4, dx=step) ** 0.25),
         time=times,
         values=values,
+        constant=constant,
     )
 
 

@@ -19,6 +19,7 @@ N0 = 0.1  # [cycle/m]
 LOWEST, HIGHEST = 0.011, 2.83  # [cycle/m] of the line of ISO 8608
 _OCTAVE = 12  # parts of an octave in which densities are averaged before the line is laid
 _FEWEST = 3  # bands that make a line
+_FIRST = 3  # line that counts: the straight lines that are taken away are felt below
 _SEGMENTS = 8  # of the profile, which overlap by half
 
 
@@ -75,13 +76,14 @@ def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIG
     density = np.mean(densities, axis=0)
     if not np.any(density[1:] > 0.0):
         raise RecordError(f"{profile.source!r} is flat: there is no spectrum to lay a line through.")
-    n, smooth = _bands(wavenumber[1:], density[1:], lowest, highest)
+    leaked = _leakage(np.arange(_FIRST, density.size))
+    n, smooth, lines = _bands(wavenumber[_FIRST:], density[_FIRST:] / leaked, lowest, highest)
     if n.size < _FEWEST:
         raise RecordError(
             f"{profile.source!r} is {profile.length:g} m long with a point every {even.interval:g} m: too short, or "
             f"too widely spaced, for a line from {lowest:g} to {highest:g} cycle/m."
         )
-    x, y = np.log(n / N0), np.log(smooth)
+    x, y = np.log(n / N0), np.log(smooth) - _bias_of_logarithm(_freedom(even.distance.size, size, lines))
     slope, intercept = np.polyfit(x, y, 1)
     return RoadSpectrum(
         wavenumber=wavenumber[1:],
@@ -96,11 +98,40 @@ def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIG
     )
 
 
-def _bands(wavenumber: Matrix, density: Matrix, lowest: float, highest: float) -> tuple[Matrix, Matrix]:
-    """Means in bands of a twelfth of an octave, where there are lines: wavenumber (geometric mean) and density."""
+def _leakage(line: Matrix) -> Matrix:
+    """Mean of a line by Hann's window over the density there, for a density of waviness 2 [1].
+
+    The window lets a sixth of each neighbour's power in, and the lower one has more.
+    """
+    return np.asarray(2.0 / 3.0 + ((line / (line - 1.0)) ** 2 + (line / (line + 1.0)) ** 2) / 6.0)
+
+
+def _freedom(points: int, size: int, lines: Matrix) -> Matrix:
+    """Degrees of freedom of a mean over so many neighbouring lines of Welch's method with Hann's window.
+
+    Pieces that overlap by half have squared correlations of 1/36 with the next, lines of (2/3)^2 and (1/6)^2 with the
+    next two. Source: Welch (1967); Harris (1978), Table 1. Of two tracks one is counted, since they may be alike.
+    """
+    pieces = max((points - size) // (size - size // 2) + 1, 1)
+    single = 2.0 * pieces / (1.0 + 2.0 / 36.0 * (pieces - 1) / pieces)
+    spread = 1.0 + 2.0 * sum(np.maximum(1.0 - j / lines, 0.0) * r for j, r in ((1, 4.0 / 9.0), (2, 1.0 / 36.0)))
+    return np.asarray(single * lines / spread)
+
+
+def _bias_of_logarithm(freedom: Matrix) -> Matrix:
+    """Mean logarithm of a density that is chi-squared with these degrees of freedom, less that of its mean."""
+    return np.asarray(scipy.special.digamma(0.5 * freedom) - np.log(0.5 * freedom))
+
+
+def _bands(wavenumber: Matrix, density: Matrix, lowest: float, highest: float) -> tuple[Matrix, Matrix, Matrix]:
+    """Means in bands of a twelfth of an octave, where there are lines: wavenumber, density, and how many lines.
+
+    The wavenumber of a band is the one at which a density of waviness 2 has its mean over the band.
+    """
     inside = (wavenumber >= lowest) & (wavenumber <= highest) & (density > 0.0)
     n, d = wavenumber[inside], density[inside]
     number = np.floor(_OCTAVE * np.log2(n / lowest)).astype(int) if n.size else np.zeros(0, int)
     found = np.unique(number)
-    centre = np.array([np.exp(np.mean(np.log(n[number == band]))) for band in found])
-    return centre, np.array([np.mean(d[number == band]) for band in found])
+    centre = np.array([np.mean(n[number == band] ** -2.0) ** -0.5 for band in found])
+    means, lines = (np.array([what(d[number == band]) for band in found], float) for what in (np.mean, np.size))
+    return centre, means, lines

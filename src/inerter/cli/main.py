@@ -110,8 +110,11 @@ def new(
         Path | None,
         Parameter(name=["--output", "-o"], allow_leading_hyphen=True, help="The file to write, or - to print it."),
     ] = None,
+    force: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Replace a file that it wrote and nobody edited.")
+    ] = False,
 ) -> int:
-    """Write a study file to start from, with a remark beside every key. It never replaces a file.
+    """Write a study file to start from, with a remark beside every key. It never replaces a file of yours.
 
     Parameters
     ----------
@@ -120,7 +123,7 @@ def new(
     """
     from inerter.cli.new import new as command
 
-    return command(vehicle, output)
+    return command(vehicle, output, force)
 
 
 @app.command(

@@ -8,14 +8,16 @@ from pathlib import Path
 from inerter.errors import StudyError
 from inerter.files.study.shape import judged_models
 from inerter.files.study.starting import starting_text
+from inerter.writing import write_text
 
 _STDOUT = Path("-")
 
 
-def new(vehicle: str | None, output: Path | None) -> int:
+def new(vehicle: str | None, output: Path | None, force: bool = False) -> int:
     """Write a study file to start from, of the first vehicle that there is if none is named; returns the exit code.
 
-    Raises `StudyError` for an unknown vehicle, or where a file is there already.
+    Raises `StudyError` for an unknown vehicle, or where a file is there already that `force` may not replace: it
+    replaces what this command has written, as it was written.
     """
     vehicle = vehicle or judged_models()[0]
     path = output or Path(f"{vehicle}.toml")
@@ -24,11 +26,27 @@ def new(vehicle: str | None, output: Path | None) -> int:
         print(text, end="")
         return 0
     try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(text)
+        if force and path.exists():
+            _check_own(path)
+            write_text(path, text)
+        else:
+            with path.open("x", encoding="utf-8") as stream:
+                stream.write(text)
     except FileExistsError:
-        raise StudyError(f"{path}: there is such a file, which stays as it is. Give another by -o FILE.") from None
+        raise StudyError(
+            f"{path}: file exists and stays as it is. Give another by -o FILE, or replace one that inerter new wrote "
+            "by --force."
+        ) from None
     except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
         raise StudyError(f"{path}: there is no such folder to write a file into. Give another file by -o.") from None
     print(f"inerter: wrote {path}; run it: inerter run {path}", file=sys.stderr)
     return 0
+
+
+def _check_own(path: Path) -> None:
+    """Raises `StudyError` unless the file is one that this command writes, unchanged."""
+    present = path.read_bytes() if path.is_file() else b""
+    if all(present != starting_text(model, path.name).encode("utf-8") for model in judged_models()):
+        raise StudyError(
+            f"{path}: is not as inerter new wrote it, and stays as it is. Give another by -o FILE, or remove it first."
+        )

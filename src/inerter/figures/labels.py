@@ -275,6 +275,8 @@ def percent(value: float, error: float = np.nan, bound: float = np.nan) -> str:
         return "n/a"
     if error >= _LEAST_PERCENT and np.isfinite(error) and abs(value) < _LARGEST and not error <= bound:
         return f"{measured(value, error, bound / max(abs(value), 1e-300), '+')} %"
+    if abs(value) >= _LARGEST:
+        return f"{value:+.3g} %"
     text = f"{value:+.{0 if bound > _TENTH else 1}f} %"
     return text[1:] if text in ("+0.0 %", "-0.0 %", "+0 %", "-0 %") else text
 

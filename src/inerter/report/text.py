@@ -35,6 +35,7 @@ from inerter.report.limits import limit_lines
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?|\d %")
+_NARROWEST = 20  # of the last column, which goes beyond the width where numbers are enormous
 _LONGEST_NAME = 20  # a longer name of a layout has a line of its own
 
 
@@ -156,7 +157,7 @@ def _lines(header: list[str], last: str, table: Sequence[_TextRow]) -> Iterator[
         if not cells[0]:
             yield f"  {row.name}"
         first = "  " + "".join(f"{text:<{width}}  " for text, width in zip(cells, widths, strict=True))
-        items = _packed(row.items, WIDTH - indent) or [""]
+        items = _packed(row.items, max(WIDTH - indent, _NARROWEST)) or [""]
         yield (first + items[0]).rstrip()
         yield from (" " * indent + line for line in items[1:])
         if row.status != "ok":

@@ -10,6 +10,7 @@ from pydantic import PlainValidator, ValidationInfo
 from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import checked, list_schema, or_range_schema, quantity_schema, words_schema
+from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
@@ -17,6 +18,7 @@ from inerter.units import format_quantity, parse_quantity, shown, unit_in
 
 MOST_POINTS = 10_000_000
 _LONGEST_EXPRESSION = 500
+_WIDEST = 1e24  # ratio of the bounds of a free value
 _MOST_BRACKETS = 50  # far from the depth at which Python's stack ends
 TEXT_SCHEMA: dict[str, Any] = {"type": "string", "minLength": 1, "maxLength": 200}
 SHARE_SCHEMA: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
@@ -54,7 +56,7 @@ def not_negative(unit: str) -> PlainValidator:
 
 def not_negative_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is zero or more."""
-    value = parse_quantity(text, unit)
+    value = check_size(parse_quantity(text, unit), text, unit)
     if value < 0.0:
         raise EntryError(got=shown(text), fault="negative", expected=f"0 {unit} or more")
     return value
@@ -82,7 +84,7 @@ def or_free(unit: str, name: str, *, may_vanish: bool) -> PlainValidator:
 
 def positive_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is greater than zero."""
-    value = parse_quantity(text, unit)
+    value = check_size(parse_quantity(text, unit), text, unit)
     if value <= 0.0:
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
     return value
@@ -136,6 +138,7 @@ SWEPT = checked(quantity_text, quantity_schema)
 
 def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
     unit, value = parse_element(text, known)
+    check_size(value, text, unit)
     if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
         hint = "To leave the element out, drop its branch from the layouts."
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}", hint=hint)
@@ -283,6 +286,10 @@ def check_order(lower: Amount, upper: Amount) -> None:
         first, last = (format_quantity(end.value, end.unit, digits=12) for end in (lower, upper))
         ends = f'{how} ends, from = "{first}" and to = "{last}"'
         raise EntryError(got=ends, expected="from less than to", hint=remedy)
+    if lower.value > 0.0 and upper.value > _WIDEST * lower.value:
+        ends = " to ".join(format_quantity(end.value, end.unit, digits=12) for end in (lower, upper))
+        expected = f"an upper bound of at most {_WIDEST:g} times the lower one"
+        raise EntryError(got=ends, fault="wider than a search can cover", expected=expected)
 
 
 def quantity_list(values: Any) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from inerter.errors import UnitError
 from inerter.fields import Field
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import or_range_schema, quantity_schema
+from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
 from inerter.files.common.ties import TIED, tie_text
 from inerter.networks.elements import Element, Free, Tied
@@ -94,6 +95,7 @@ def _amount(field: Field, text: Any, may_vanish: bool) -> float:
         amount = parse_quantity(text, field.unit)
     except UnitError as error:
         raise ValueError(f"{field.name}: {error}") from None
+    check_size(amount, text, field.unit)
     if amount < 0.0 or (amount == 0.0 and not may_vanish):
         given = f"{field.name} = {shown(text)}"
         raise EntryError(got=given, fault="not positive", expected=f"more than 0 {field.unit}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -104,9 +105,28 @@ def test_a_cache_is_used_and_its_files_that_were_cut_short_are_made_anew(tmp_pat
     assert said == ["inerter: compiling the numerical kernels; this happens once.\n", ""]
     for number, path in enumerate(sorted(cache.rglob("*.nb?"))):
         path.write_bytes(path.read_bytes()[: (0, 10, path.stat().st_size // 2)[number % 3]])
-    for _ in range(2):
-        assert compile_with(cache, temporary) == ("42.0\n", "")
+    number, said = compile_with(cache, temporary)
+    assert number == "42.0\n"
+    assert "are not as they were written; they are compiled anew" in said
+    assert compile_with(cache, temporary) == ("42.0\n", "")
     assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", range(8))
+def test_a_changed_bit_is_found_before_the_code_runs(tmp_path: Path, temporary: Path, seed: int) -> None:
+    """Three bits of machine code, or one of the constant in it: compiled anew with a word, and never another number."""
+    cache, rng = tmp_path / "cache", random.Random(seed)
+    compile_with(cache, temporary)
+    path = rng.choice(sorted(cache.rglob("*.nb?")))
+    content = bytearray(path.read_bytes())
+    for _ in range(3 if seed % 2 else 1):
+        content[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
+    path.write_bytes(content)
+    number, said = compile_with(cache, temporary)
+    assert number == "42.0\n"
+    assert "are not as they were written; they are compiled anew" in said
+    assert compile_with(cache, temporary) == ("42.0\n", "")
 
 
 SEVERAL = """

@@ -20,7 +20,7 @@ from threading import Event
 
 from inerter.kernels.declare import Kernel, way
 
-_TOLD = Event()
+_TOLD, _DAMAGED = Event(), Event()
 _SHOWN: list[bool] = []  # not empty if people know that the compiler is at work
 _IMPORTED = re.compile(r"^from inerter\.kernels\.(\w+) import", re.MULTILINE)
 
@@ -78,6 +78,14 @@ def told(here: bool) -> Iterator[None]:
         yield
     finally:
         _SHOWN.pop()
+
+
+def tell_of_damage(folder: Path) -> None:
+    """Say once that compiled code in the cache is not as it was written, and is compiled again."""
+    if not _DAMAGED.is_set():
+        what = f"compiled kernels in {folder} are not as they were written"
+        print(f"inerter: {what}; they are compiled anew.", file=sys.stderr, flush=True)
+    _DAMAGED.set()
 
 
 def tell_of_no_cache(folder: object, error: Exception) -> None:

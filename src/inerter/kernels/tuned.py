@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import errno
 import gc
+import hashlib
+import io
 import os
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast, get_type_hints
@@ -17,14 +19,16 @@ from typing import Any, cast, get_type_hints
 import numba
 import numpy as np
 from numba.core import cgutils, sigutils, typeinfer
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.experimental import function_type
 
-from inerter.kernels.cache import tell, tell_of_no_cache
+from inerter.kernels.cache import tell, tell_of_damage, tell_of_no_cache
 from inerter.kernels.compiler import FUSED
 from inerter.kernels.declare import Signature
+
+_SUM = hashlib.sha256().digest_size
 
 
 def tuned(
@@ -87,13 +91,45 @@ def _type_of(hint: Any) -> Any:
     return numba.from_dtype(said[0])[::1] if isinstance(said, tuple) else eval(said, {}, vars(numba.types))
 
 
+class _CheckedFiles(IndexDataCacheFile):
+    """Files of the cache with a check sum at their end: machine code in which a bit has changed crashes, or worse."""
+
+    def _load_index(self) -> Any:
+        _check(self._index_path)
+        return super()._load_index()  # type: ignore[no-untyped-call]
+
+    def _load_data(self, name: str) -> Any:
+        _check(self._data_path(name))  # type: ignore[no-untyped-call]
+        return super()._load_data(name)  # type: ignore[no-untyped-call]
+
+    @contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:
+        with super()._open_for_write(filepath) as file:
+            content = io.BytesIO()
+            yield content
+            file.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+
+
+def _check(path: str) -> None:
+    """Raises `ValueError` unless the file ends in the check sum of what comes before; one that is missing may be."""
+    with suppress(FileNotFoundError):
+        content = Path(path).read_bytes()
+        if hashlib.sha256(content[:-_SUM]).digest() != content[-_SUM:]:
+            raise ValueError(f"{Path(path).name} does not have its check sum")
+
+
 class _Cache(FunctionCache):
     """The compiler's cache, which may fail: what cannot be read is compiled, and what cannot be kept is not."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        self._cache_file.__class__ = _CheckedFiles
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:
             return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception:  # a file cut short may raise anything
+            tell_of_damage(Path(self.cache_path).parents[1])
             self._forget()
             return None
 
@@ -116,7 +152,7 @@ def _cache_in(folder: Path | None, function: Callable[..., Any]) -> _Cache | Non
     if folder is None:
         return None
     try:
-        found: Any = _Cache(function)  # type: ignore[no-untyped-call]
+        found: Any = _Cache(function)
     except RuntimeError:  # no place at all can be written
         found = None
     if found is not None and Path(found.cache_path).is_relative_to(folder):

@@ -372,4 +372,4 @@ def assert_near_the_norm(car, linear, index):
     """To 1e-6, and within what the method says of itself."""
     found, norm = it.evaluate(car, index, TWO), it.evaluate(linear, index, Norm()).value
     assert found.value == pytest.approx(norm, rel=1e-6)
-    assert abs(found.value - norm) < 3.0 * found.standard_error + 1e-8 * norm
+    assert abs(found.value - norm) < 3.0 * found.standard_error + found.error_bound * norm

@@ -15,10 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, PerformanceIndexError, Status, StatusKind, worst_of
+from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind, worst_of
+from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
+from inerter.methods.error_bounds import checked
 from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
@@ -38,6 +40,9 @@ from inerter.vehicle.vehicle import Vehicle
 Array = NDArray[np.float64]
 _ROAD_RMS = math.sqrt(1e-8 / 1e-3)  # [m] noise of 1e-8 m^2/Hz, held for 1 ms
 _FORCE_RMS = math.sqrt(200.0 / 1e-3) / 181.75  # [N/kg] 200 N^2/Hz on the quarter car, twice the size on the half car
+PROMISE = 0.05  # relative error of a value that is ok, sampling apart
+_STEPPED = 1e-5  # relative error of gains by the time step
+_UNSETTLED = 20.0  # times the change of the state over a period that gains may be off by
 _LOST = 1e-2  # of a mean square that may hide between the harmonics, beyond which nothing is known
 _UNLIKE = "no linear design resembles the motion: gains stand alone, up to the highest frequency excited"
 _HELD = "noise is held: gains at the instants of its samples stand alone"
@@ -94,6 +99,7 @@ class ApproximateLinear:
     sees = Sees.BOTH
     needs_amplitude = False
     searches = True
+    promise = PROMISE
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)
@@ -203,7 +209,12 @@ class ApproximateLinear:
             gains = _gains(squares[:, places], inputs[:, None], pooled)
             factor = _factor(question, question.arrivals(runs.system.mechanism)[0], runs)
             estimate = self._from_gains(question, linear, gains * factor, runs)
+        settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch)
+        own = ErrorSource("time step", _STEPPED), settled, *estimate.error_sources
+        stand_ins = stand_ins_of(question.drive, runs.system.mechanism)
         status = worst_of([estimate.status, runs.warning])
+        estimate = checked(replace(estimate, status=status, error_sources=stand_ins), own, PROMISE)
+        status = estimate.status
         if status.ok and self.relative_error is not None and not self._reached(estimate):
             status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
         return replace(estimate, status=status, notes=(*estimate.notes, *notes))
@@ -241,19 +252,21 @@ class ApproximateLinear:
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
         weights = question.drive.size * np.array([abs(output.weight) for output in question.outputs])
+        smoothed: tuple[ErrorSource, ...] = ()
         if question.is_peak:
             weight = float(weights[0])
             windows = [self._window(drive.omega, times) for times in (1.0, 2.0)]
             (value, scatter, found), (wider, *_) = (
                 largest_gain(rest[:, 0], lines, known, drive.omega, window) for window in windows
             )
-            value, scatter, smeared = weight * value, weight * scatter, weight * abs(wider - value)
+            smoothed = (ErrorSource("smoothing", abs(wider - value) / max(value, 1e-300)),)
+            value, scatter = weight * value, weight * scatter
             peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in found)
         else:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
-            value, peaks, smeared = float(question.combined(sizes, weights)), (), 0.0
+            value, peaks = float(question.combined(sizes, weights)), ()
             scatter = (sums - sums.mean(axis=0)) @ (0.5 * question.slopes(sizes, weights) / np.maximum(sizes, 1e-300))
             if self._raw:
                 logs = np.log(
@@ -262,9 +275,10 @@ class ApproximateLinear:
                 value = float(np.exp(np.median(logs)))
                 scatter = math.sqrt(0.5 * math.pi) * value * (logs - logs.mean())
         count = scatter.size
-        error = math.hypot(np.sqrt(np.sum(scatter**2) / (count * (count - 1))), 0.5 * unseen * value, smeared)
+        error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
         interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())
-        return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples)
+        sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *smoothed)
+        return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources)
 
     def _window(self, omega: Array, times: float) -> Array:
         reach = min(int(2.0 * math.pi * times * self.smoothing / omega[0] * (1.0 + 1e-9)), (omega.size - 1) // 2)

@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
 from inerter.indices.question import Index, Question
+from inerter.methods.error_bounds import checked
 from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.objective import Objective
-from inerter.methods.on_roads import mean_on_roads, on_roads
+from inerter.methods.on_roads import PROMISE, mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds
 from inerter.methods.sampled import SampledObjective
@@ -88,6 +89,7 @@ class ExpectedValue:
     sees = Sees.BOTH
     needs_amplitude = True
     searches = True
+    promise = PROMISE
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)
@@ -202,13 +204,12 @@ class ExpectedValue:
         expected = _expected_peaks(vehicle, index)
         if expected is None:
             expected = np.concatenate([coarse_maxima(forced, poles, pool), known])
-        peaks, statuses = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool)
-        weighted = tuple(replace(peak, gain=abs(output.weight) * peak.gain) for peak in peaks)
-        value = weighted[0].gain if weighted else np.nan
-        status = worst_of(statuses)
-        if status.kind is StatusKind.FAILED:
-            value = np.nan
-        return Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
+        summits = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool)
+        weighted = tuple(replace(one.peak, gain=abs(output.weight) * one.peak.gain) for one in summits)
+        status = worst_of(one.status for one in summits)
+        value = np.nan if status.kind is StatusKind.FAILED else weighted[0].gain
+        estimate = Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
+        return checked(estimate, summits[0].errors, PROMISE)
 
 
 def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from math import pi, sqrt
@@ -10,12 +11,13 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.errors import OK, Status
-from inerter.methods.steady_squares import steady_squares
+from inerter.errors import ErrorSource, Status
+from inerter.methods.steady_squares import steady_squares, unsettled
 from inerter.norms.hinf import GainPeak
 from inerter.signals.harmonics import sine
 from inerter.simulation.inputs import tabulate
 from inerter.simulation.start import initial_state
+from inerter.simulation.trajectory import Repetition
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
@@ -26,7 +28,8 @@ _LONGEST = 1e-3  # [s] of a step
 _MOST_PERIODS, _REPEATS = 300, 1e-5  # until a motion must repeat, and how well
 _GRID = 32  # frequencies between which peaks are looked for where nothing is known of them
 _WITHIN = 1.25  # ratio to a frequency near which a peak is expected
-_NEAR = 1e-3  # relative distance up to which a peak's frequency is found: its height is then right to 1e-6
+_NEAR = 1e-3  # relative distance up to which a peak's frequency is found
+_STEPPED = 1e-5  # relative error of a ratio by the time step
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +42,8 @@ class Forced:
     amplitude: float  # [N], [m] or [m/s]
     filter: Filter | None = None  # that the output passes through
 
-    def __call__(self, omega: float) -> tuple[float, Status]:
-        """The ratio at `omega` [rad/s]."""
+    def __call__(self, omega: float) -> tuple[float, Status, Repetition]:
+        """The ratio at `omega` [rad/s], how far to trust it, and how well the motion repeats."""
         period = 2.0 * pi / omega
         step = period / max(_POINTS, round(period / _LONGEST))
         mechanism, arrival = self.system.mechanism, self.arrival
@@ -51,13 +54,29 @@ class Forced:
         signals = [signal if name == arrival.input else None for name in names]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, table.value[0], "rest")
-        found, status, _ = steady_squares(
+        found, status, steady = steady_squares(
             self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, repeats=_REPEATS
         )
-        return sqrt(2.0 * float(found[0])) / self.amplitude, status
+        return sqrt(2.0 * float(found[0])) / self.amplitude, status, steady
 
 
-def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> tuple[list[GainPeak], list[Status]]:
+@dataclass(frozen=True)
+class Summit:
+    """A local maximum of the ratio; `missed` is what the search may have left of its height, relative to it."""
+
+    peak: GainPeak
+    status: Status
+    steady: Repetition
+    missed: float
+
+    @property
+    def errors(self) -> tuple[ErrorSource, ...]:
+        """What its height may be off by."""
+        missed = ErrorSource("search for the peak", self.missed)
+        return ErrorSource("time step", _STEPPED), unsettled([self.steady], sqrt(2.0)), missed
+
+
+def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> list[Summit]:
     """The local maxima of the ratio near the frequencies [rad/s] at which they are expected, the highest first.
 
     One that is expected at zero is the ratio at `lowest`.
@@ -69,26 +88,41 @@ def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor)
     found = list(pool.map(lambda ends: _summit(forced, *ends), zip(lower.tolist(), upper.tolist(), strict=True)))
     peaks = [summit for summit in found if summit is not None]
     if near.size < expected.size or not peaks:
-        ratio, status = forced(lowest)
-        peaks.append((GainPeak(0.0, ratio), status))
-    peaks.sort(key=lambda peak: -peak[0].gain)
-    return [peak for peak, _ in peaks], [status for _, status in peaks]
+        ratio, status, steady = forced(lowest)
+        beside = forced(2.0 * lowest)[0]
+        peaks.append(Summit(GainPeak(0.0, ratio), status, steady, abs(beside / ratio - 1.0) if ratio else 0.0))
+    return sorted(peaks, key=lambda summit: -summit.peak.gain)
 
 
-def _summit(forced: Forced, lower: float, upper: float) -> tuple[GainPeak, Status] | None:
+def _summit(forced: Forced, lower: float, upper: float) -> Summit | None:
     """The largest ratio between two frequencies, if it is not at one of them."""
-    statuses: dict[float, Status] = {}
+    visited: dict[float, tuple[float, Status, Repetition]] = {}
 
     def depth(logarithm: float) -> float:
-        ratio, statuses[logarithm] = forced(float(np.exp(logarithm)))
-        return -ratio
+        visited[logarithm] = forced(float(np.exp(logarithm)))
+        return -visited[logarithm][0]
 
     ends = np.log(lower), np.log(upper)
     found = scipy.optimize.minimize_scalar(depth, bounds=ends, method="bounded", options={"xatol": _NEAR})
     at = float(found.x)
     if min(at - ends[0], ends[1] - at) < 3.0 * _NEAR:
         return None
-    return GainPeak(float(np.exp(at)), -float(found.fun)), statuses.get(at, OK)
+    height, status, steady = visited[at]
+    return Summit(GainPeak(float(np.exp(at)), height), status, steady, _above(visited, at) / max(height, 1e-300))
+
+
+def _above(visited: Mapping[float, tuple[float, Status, Repetition]], at: float) -> float:
+    """By how much a parabola through the highest place and its neighbours is higher, twice."""
+    places = sorted(visited)
+    i = places.index(at)
+    if not 0 < i < len(places) - 1:
+        return 0.0
+    x = np.array(places[i - 1 : i + 2]) - at
+    (before, here, after) = (visited[place][0] for place in places[i - 1 : i + 2])
+    rises = (before - here) / x[0], (after - here) / x[2]
+    curvature = (rises[1] - rises[0]) / (x[2] - x[0])
+    slope = rises[0] - curvature * x[0]
+    return float(-0.5 * slope**2 / curvature) if curvature < 0.0 else 0.0
 
 
 def coarse_maxima(forced: Forced, poles: Array, pool: Executor) -> Array:
@@ -97,7 +131,7 @@ def coarse_maxima(forced: Forced, poles: Array, pool: Executor) -> Array:
     Zero stands for one below the grid.
     """
     grid = frequency_grid(poles)
-    ratios = np.array([ratio for ratio, _ in pool.map(forced, grid.tolist())])
+    ratios = np.array([ratio for ratio, *_ in pool.map(forced, grid.tolist())])
     inner = 1 + np.flatnonzero((ratios[1:-1] >= ratios[:-2]) & (ratios[1:-1] > ratios[2:]))
     return np.concatenate([grid[inner], np.zeros(1 if ratios[0] > ratios[1] else 0)])
 

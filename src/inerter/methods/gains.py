@@ -77,6 +77,7 @@ class Runs:
     powers: list[Array] = field(default_factory=list)  # mean squares of the velocities (frictions,)
     status: Status = OK
     warning: Status = OK
+    mismatch: float = 0.0  # the largest change of the state over a period that was recorded, relative to its size
 
     def upto(self, count: int) -> tuple[Array, Array]:
         """Squared sizes of outputs (realisations, outputs, harmonics) and of the input (realisations, harmonics).
@@ -101,6 +102,7 @@ class Runs:
         if not run.status.ok:
             self.status = Status(StatusKind.FAILED, f"realisation {number + 1}: {run.status.message}")
             return
+        self.mismatch = max(self.mismatch, mismatch)
         if mismatch > _REPEATS:
             self.warning = Status(
                 StatusKind.INACCURATE,

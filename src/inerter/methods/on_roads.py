@@ -10,10 +10,12 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import OK, Status, StatusKind, worst_of
+from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
+from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Question
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
+from inerter.methods.error_bounds import checked
 from inerter.methods.linear import Conventions
 from inerter.methods.method import Estimate
 from inerter.methods.realisations import (
@@ -26,12 +28,14 @@ from inerter.methods.realisations import (
     realisation_seeds,
     run,
 )
+from inerter.methods.steady_squares import unsettled
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.work.running import mapped
 
 Array = NDArray[np.float64]
+PROMISE = 0.01  # relative error of a mean that is ok, sampling and what stands in for its excitation apart
 LONGEST = 640  # [s] of a road
 MOST_ROADS = 1000
 _LONGER = 4  # times the length that does not do
@@ -43,6 +47,8 @@ _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _COARSE = 1e-2  # how well what knots of the road take from a mean square is known
 _UNLIKE = "no linear design resembles the motion with play: nothing is added for the road outside 0.1 to 1000 Hz"
+_STEPPED = 2e-6  # relative error of a value by the time step
+_PEAKS = 4.0  # the largest of a random motion over its r.m.s. value
 _FEW = 3  # periods after which a motion with play must repeat, or the period is too short to stand for a long road
 
 
@@ -81,6 +87,7 @@ class Rest:
 
     power: Array
     unseen: float = 0.0  # share of the mean squares that may be missing, or too much
+    beyond: float = 0.0  # the same of the road outside the band
     within_reach: bool = True  # whether longer roads would tell, if the motion stays as it is
     status: Status = OK
     notes: tuple[str, ...] = ()
@@ -124,7 +131,7 @@ def _is_resolved(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> bool:
         return True
     settled = all(ran.status.ok for ran in found)
     if has_play(design.system) or design.linear is None:
-        return settled and max(ran.periods for ran in found) <= _FEW
+        return settled and max(ran.steady.periods for ran in found) <= _FEW
     return bool(np.any(np.isinf(lacking.power))) or (settled and lacking.unseen <= _UNSEEN)
 
 
@@ -135,7 +142,8 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     """
     count, way, linear = len(design.outputs), design.way, design.linear
     if linear is None:
-        return Rest(np.zeros(count), notes=() if way.hold is not None else (_UNLIKE,))
+        held = way.hold is not None
+        return Rest(np.zeros(count), beyond=0.0 if held else np.nan, notes=() if held else (_UNLIKE,))
     power = np.mean([ran.power for ran in found], axis=0)
     if not np.all(np.isfinite(power)):
         return Rest(np.full(count, np.nan))
@@ -152,19 +160,20 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     inside, seen = of_lines @ gains, of_lines @ sampled
     added = (design.question.drive.size * whole.outputs) ** 2 - seen
     (left, pole), (at_last, _) = (memory(system, whole.outputs, time) for time in (way.period, design.longest))
+    share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
+    misfit = float(np.max(np.abs(inside / np.maximum(power[:count], 1e-300) - 1.0)))
+    unlike = min(misfit + linear.unlike(speeds, whole.outputs), 1.0)  # once the lines tell more
     unseen, within_reach = 2.0 * left, True
-    if unseen > _UNSEEN:  # by as much as the counterpart may be another once the lines tell more
-        misfit = float(np.max(np.abs(inside / np.maximum(power[:count], 1e-300) - 1.0)))
-        unlike = min(misfit + linear.unlike(speeds, whole.outputs), 1.0)
+    if unseen > _UNSEEN:
         unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
     if has_play(design.system) and unseen > _UNSEEN:
-        return Rest(np.zeros(count), notes=(_UNLIKE,))
+        return Rest(np.zeros(count), unseen, beyond=share, notes=(_UNLIKE,))
     if unseen > _LOST:
-        return Rest(np.full(count, np.nan), unseen, within_reach, _undamped(pole, design.longest))
-    share = float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left
+        return Rest(np.full(count, np.nan), unseen, share, within_reach, _undamped(pole, design.longest))
     taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
-    return Rest(added, unseen, within_reach, OK if share <= _MOST_BEYOND else _mostly_beyond(share))
+    status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
+    return Rest(added, unseen, share * unlike, within_reach, status)
 
 
 def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array, Array]:
@@ -239,14 +248,26 @@ def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
     samples = question.combined(np.sqrt(np.maximum(power, 0.0)), weights)
     sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))
     if not np.all(np.isfinite(samples)):
-        return Estimate(float(question.combined(sizes, weights)), unit, status, notes=lacking.notes)
+        found_none = Estimate(float(question.combined(sizes, weights)), unit, status, notes=lacking.notes)
+        return checked(found_none, (), PROMISE)
     mean, scatter, _ = mean_and_error(samples)
     value = mean if design.way.hold is not None else float(question.combined(sizes, weights))
-    error = float(np.hypot(scatter, 0.5 * lacking.unseen * value))
-    return Estimate(
-        value, unit, status, error, interval_of(value, error, samples.size), samples.size, notes=lacking.notes,
+    estimate = Estimate(
+        value, unit, status, scatter, interval_of(value, scatter, samples.size), samples.size, notes=lacking.notes,
         samples=tuple(samples.tolist()), period=design.way.period,
+        error_sources=stand_ins_of(question.drive, design.system.mechanism),
     )  # fmt: skip
+    return checked(estimate, _errors(lacking, found), PROMISE)
+
+
+def _errors(lacking: Rest, found: Sequence[Ran]) -> list[ErrorSource]:
+    """What a value on such roads may be off by, sampling apart: half of what its mean squares are."""
+    return [
+        ErrorSource("time step", _STEPPED),
+        unsettled([ran.steady for ran in found], _PEAKS),
+        ErrorSource("lines of the road", 0.5 * lacking.unseen),
+        ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * lacking.beyond),
+    ]
 
 
 def _with_error_reached(estimate: Estimate, relative_error: float | None) -> Estimate:

@@ -20,6 +20,7 @@ from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
 from inerter.simulation.start import initial_state
 from inerter.simulation.steady import FEW_PERIODS
+from inerter.simulation.trajectory import Repetition
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
@@ -96,7 +97,7 @@ class Ran:
 
     power: Array  # mean squares of the filtered outputs and of those without a filter, nan where there are none
     status: Status
-    periods: int  # until it repeated
+    steady: Repetition
 
 
 def drive(system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None) -> Drive:

@@ -97,8 +97,8 @@ def mean_squares(
     state: Matrix,
     most: int = FEW_PERIODS,
     repeats: float = _ENOUGH,
-) -> tuple[Matrix, Integration, int]:
-    """Mean squares of outputs over one period, once the state repeats, the integration, and how many periods it took.
+) -> tuple[Matrix, Integration, Repetition]:
+    """Mean squares of outputs over one period, once the state repeats, the integration, and how well it repeats.
 
     It repeats if it changes by less than `repeats` of its size. Goes through `most` periods at most. What the
     integration's `status` or `warning` say holds for the squares.
@@ -107,7 +107,7 @@ def mean_squares(
     integration, settled = _repeated(begun, repeating(table), repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _unsettled(settled)
-    return integration.record.squares / (table.samples - 1), integration, settled.periods
+    return integration.record.squares / (table.samples - 1), integration, settled
 
 
 def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:

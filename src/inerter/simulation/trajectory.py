@@ -71,6 +71,16 @@ class Repetition:
     periods: int
     mismatch: float  # largest change of the state over one period, relative to its largest value
 
+    @property
+    def left(self) -> float:
+        """How far the state may be from what it settles at, relative to its largest value.
+
+        Changes that have become so small over so many periods, each as much smaller than the last, add up to that.
+        """
+        if not 0.0 < self.mismatch < 1.0:
+            return self.mismatch
+        return float(self.mismatch / (1.0 - self.mismatch ** (1.0 / self.periods)))
+
 
 @dataclass(frozen=True, eq=False)
 class Ending:

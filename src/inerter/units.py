@@ -229,8 +229,10 @@ def places_borne(value: float, bound: float = math.nan, error: float = math.nan,
         fine, least = 1 - _exponent(rounded), -_exponent(rounded)
     else:
         fine, least = digits - 1 - size, 1 - size
-    if not bound > 0.0 or not math.isfinite(bound):
+    if not bound > 0.0:
         return fine
+    if math.isinf(bound):
+        return least
     coarse = -math.ceil(math.log10(bound) - 1e-12)
     return max(min(fine, coarse), least)
 

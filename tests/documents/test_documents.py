@@ -233,7 +233,7 @@ def test_what_friction_adds(row: list[str]) -> None:
         assert_figures(simulated, [one.value - without, one.standard_error], row[0])
         assert_figures(linearised, [other.value - without], row[0])
         assert ("sticks" in linearised) == any("sticks" in note for note in other.notes)
-        assert other.status.ok == (float(row[0]) <= 200.0)
+        assert other.status.ok == (float(row[0]) <= 200.0 or float(row[0]) >= 1000.0)
 
 
 @pytest.mark.parametrize("row", PARTING, ids=lambda row: row[0])

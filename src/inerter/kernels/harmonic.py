@@ -23,8 +23,7 @@ _REFLECTIONS = 2000
 _SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pushes included
 _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
 _STICKS = 4.0 / np.pi  # first harmonic of friction over the force through it if held, from which on it sticks
-_WEAK = 0.6  # the same up to which its velocity may be near a sine ...
-_SMALL = 0.01  # ... if what its third harmonic does to the response is no larger part of it
+_WEAK = 0.6  # the same up to which its velocity may be near a sine
 _LOCK = 1e9  # a damper that holds, over that of reference
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
@@ -390,24 +389,26 @@ def gains(
     reference: float,
     omegas: Array,
 ) -> Any:
-    """Frequencies, the gain at each, whether all went well, and whether one harmonic tells what friction does there.
+    """Frequencies, the gain at each, whether all went well, and the largest `distortion` at any of them.
 
     At `omegas`, or at the `peaks` where none is given, which are not judged. There are none where the system cannot be
     closed.
     """
     A, B, C, D, _, _, good = close(row, descriptor)
     if not good:
-        return np.zeros(0), np.zeros(0), False, False
+        return np.zeros(0), np.zeros(0), False, np.inf
     system = (A, B, C, D, units(A))
     G, third = np.empty((C.shape[0], B.shape[1]), np.complex128), np.empty((C.shape[0], B.shape[1]), np.complex128)
     work = (G, np.empty(limit.size, np.complex128), np.empty(limit.size))
     if omegas.size == 0:
         found, heights, fine = peaks(system, row, limit, dampers, descriptor, amplitude, reference, work)
-        return found, heights, fine, True
-    values, fine, sure = np.empty(omegas.size), True, True
+        return found, heights, fine, 0.0
+    values, fine, unsure = np.empty(omegas.size), True, 0.0
     for k in range(omegas.size):
         values[k], settled = gain_at(system, omegas[k], limit, amplitude, reference, work)
         fine = fine and settled
-        sure = sure and transfer(*system, 3.0 * omegas[k], third)
-        sure = sure and distortion(work, third, limit, reference, values[k] * amplitude) <= _SMALL
-    return omegas, values, fine, sure
+        if transfer(*system, 3.0 * omegas[k], third):
+            unsure = max(unsure, distortion(work, third, limit, reference, values[k] * amplitude))
+        else:
+            unsure = np.inf
+    return omegas, values, fine, unsure

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import OK, PerformanceIndexError, Status, StatusKind
+from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind
 from inerter.indices.question import Question
 from inerter.kernels import harmonic as kernels
-from inerter.methods.equivalent import POORLY, Equivalent, equivalent
+from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly
+from inerter.methods.error_bounds import checked
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import GainPeak
@@ -31,6 +32,9 @@ Array = NDArray[np.float64]
 _PEAKS: Array = np.empty(0)  # frequencies that are not known yet
 _NEAR = 0.5  # of the highest gain: peaks that could be the highest, since an untold one may be off by that much
 _NUDGE = 1e-6  # relative change of a value for differences
+_DISTORTED = 3.0  # times what the third harmonic may do to the response that this may be off by ...
+_STOPS = 1.2  # ... or less: times its power of 3/4, of friction that stops a slow motion at every turn
+_SEARCH = 1e-6  # relative error of a peak's height by its place, and by the limit of low frequencies
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +81,11 @@ class HarmonicBalance:
         rows = np.hstack([points, dampers])[:, self.parts.order(self.descriptor)]
         return np.ascontiguousarray(rows), np.ascontiguousarray(4.0 / math.pi * self.parts.limits(points))
 
-    def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool, bool]]:
+    def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool, float]]:
         """Frequencies and gains at `omegas` or at the peaks, for each row of `points`.
 
-        Whether all went well, and whether frictions are so weak, or so strong, that one harmonic tells what they do (at
-        peaks that is not asked).
+        Whether all went well, and what part of the gain may be wrong because frictions are neither so weak nor so
+        strong that one harmonic tells what they do (at peaks that is not asked).
         """
         for row, limit in zip(*self._rows(points), strict=True):
             yield kernels.gains(row, limit, self.places, self.arrays, self.amplitude, self.parts.scale, omegas)
@@ -90,14 +94,15 @@ class HarmonicBalance:
         """The index at each row of `points`; nan where it could not be found, or is not to be `trusted`."""
         result = np.full(points.shape[0], np.nan)
         for i, (omegas, gains, fine, _) in enumerate(self._gains(points)):
-            if fine and gains.size and (not trusted or self._trusted(points[i], omegas, gains)):
+            if fine and gains.size and (not trusted or self._off_by(points[i], omegas, gains) <= PROMISE):
                 result[i] = self.weight * gains.max() if np.isfinite(gains.max()) or not trusted else np.nan
         return result
 
-    def _trusted(self, point: Array, omegas: Array, gains: Array) -> bool:
-        """Whether one harmonic tells what friction does at the peaks that could be the highest."""
+    def _off_by(self, point: Array, omegas: Array, gains: Array) -> float:
+        """Relative error of the largest gain by taking frictions in one harmonic: at the peaks that could be it."""
         highest = np.maximum(omegas[gains >= _NEAR * gains.max()], _slowest(omegas))
-        return next(self._gains(point[None], highest))[3]
+        third = next(self._gains(point[None], highest))[3]
+        return float(max(_DISTORTED * third, min(_STOPS * third**0.75, PROMISE)))
 
     def values(self, points: Array) -> Array:
         """The index at each row of `points`, also where it is not to be trusted; infinite where there is none."""
@@ -139,17 +144,18 @@ class HarmonicBalance:
         if not peaks:
             return replace(result, status=Status(StatusKind.FAILED, "the frequency response could not be computed"))
         omegas, gains = np.array([peak.omega for peak in peaks]), np.array([peak.gain for peak in peaks])
-        status = (
-            OK
-            if self._trusted(np.zeros(0), omegas, gains)
-            else Status(StatusKind.INACCURATE, f"friction as large as the forces beside it {POORLY}")
-        )
+        bound = self._off_by(np.zeros(0), omegas, gains)
+        status = OK
+        if not bound <= PROMISE:
+            status = poorly("friction as large as the forces beside it", bound)
         if not fine:
             status = Status(StatusKind.INACCURATE, "the frictions did not settle at every frequency")
         if not np.isfinite(peaks[0].gain):
             status = Status(StatusKind.MARGINAL, "a motion that nothing holds: the gain grows without bound")
         words = [f"{said} by its describing function" for said in self.parts.frictions]
-        return replace(result, value=peaks[0].gain, status=status, notes=(*result.notes, *words))
+        result = replace(result, value=peaks[0].gain, status=status, notes=(*result.notes, *words))
+        own = ErrorSource("one harmonic of friction", bound), ErrorSource("search for the peak", _SEARCH)
+        return checked(result, own, PROMISE + _SEARCH)
 
 
 def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalance:

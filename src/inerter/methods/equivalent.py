@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, PerformanceIndexError, with_article
+from inerter.errors import DesignError, PerformanceIndexError, Status, StatusKind, with_article
 from inerter.indices.question import Question
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
 from inerter.networks.elements.roles import Linear, Statistical
@@ -30,9 +30,8 @@ from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
 GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
-POORLY = (
-    "is poorly represented by one damper: the value may be off by more than 3 %. Simulate it, as expected-value does"
-)
+PROMISE = 0.03  # relative error of a value that is ok, what stands in for its excitation apart
+POORLY = "is poorly represented by one damper: the value may be off by more than 3 %"
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 
 
@@ -78,6 +77,12 @@ class Equivalent:
                 f"The free value of {idle} has no effect: its element cannot move beside a closed gap, or carries "
                 f"no force. Fix it, or leave the element out."
             )
+
+
+def poorly(what: str, bound: float) -> Status:
+    """Inaccurate because of `what`, with the error bound if there is one."""
+    most = f", by {100.0 * bound:.2g} % at most" if bound < 1.0 else ""
+    return Status(StatusKind.INACCURATE, f"{what} {POORLY}{most}. Simulate it, as expected-value does")
 
 
 def check_damped(mechanism: Mechanism) -> None:

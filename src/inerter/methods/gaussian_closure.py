@@ -12,12 +12,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
-from inerter.errors import MechanismError, Status, StatusKind
+from inerter.errors import ErrorSource, MechanismError, Status, StatusKind
 from inerter.indices.question import Question
 from inerter.methods.compiled_norm import CompiledQuestion
-from inerter.methods.equivalent import GAUSSIAN, POORLY, STIFFEST, Equivalent, equivalent, slipping_freely
+from inerter.methods.equivalent import GAUSSIAN, PROMISE, STIFFEST, Equivalent, equivalent, poorly, slipping_freely
+from inerter.methods.error_bounds import checked
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
 from inerter.methods.note import Note
@@ -31,10 +33,11 @@ _SETTLED = 1e-10  # relative error of a damper's r.m.s. force
 _NUDGE = 1e-4  # relative change of a damper for differences
 _LOCKED = 0.02  # d log(force) / d log(damper) below which a friction whose force is too small will not slip
 _RIGID = 1e-5  # the same for a damper that stands for a rigid link
-_LINEAR = 0.7  # the same from which on friction is weak enough for the velocity across it to be Gaussian
-_HELD = 0.4  # force through a rigid link over that of friction up to which friction holds all the time
+_UNLIKE = (0.03, 0.45)  # error of the index where that is 1 - x, over x and x^2: velocities are not Gaussian then
+_SHARE = (0.06, 0.82)  # the same as a share of the range that the index has over all dampers
+_SLIPPED = 2.4  # times the share of the time in which the force through a rigid link exceeds friction: the error
+_NEGLIGIBLE = 0.1  # of the promise, up to which the error by one friction is not looked at twice
 _BETWEEN = 13  # dampers that stand for all that a friction may become
-_MATTERS = 0.03  # relative change of the index by a friction, whatever becomes of it, that is of no account
 _FIRM = 1e4  # times a typical damper is as good as a rigid link for that
 
 Speeds = Callable[[Array, NDArray[np.intp]], Array]
@@ -45,17 +48,22 @@ class Dampers:
     """Equivalent dampers (designs, frictions) [N s/m], those that stand for a friction that sticks, and the error.
 
     `error` is the largest relative error of the force of a friction that slips; nan where the covariance was lost.
-    `doubtful` are frictions that stick for a part of the time, or damp so much that their velocity is not Gaussian.
+    `unlike` (designs, frictions) is what the index may be off by, relative to it, because one damper stands for a
+    friction; infinite where that sticks for a part of the time, or damps so much that its velocity is not Gaussian.
+    `share` is the same as a share of the range that the index has over all dampers in that place.
     """
 
     damping: Array
     sticks: NDArray[np.bool_]
     error: Array  # (designs,)
-    doubtful: NDArray[np.bool_]
+    unlike: Array
+    share: Array
 
     def of(self, designs: NDArray[np.intp]) -> Dampers:
         """Those of some designs."""
-        return Dampers(self.damping[designs], self.sticks[designs], self.error[designs], self.doubtful[designs])
+        return Dampers(
+            self.damping[designs], self.sticks[designs], self.error[designs], self.unlike[designs], self.share[designs]
+        )
 
 
 def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.bool_] | None = None) -> Dampers:
@@ -67,7 +75,8 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
     """
     damping, error = start.copy(), np.full(limits.shape[0], np.inf)
     held = np.zeros(limits.shape, dtype=bool) if held is None else held
-    sticks, doubtful, left = held.copy(), held.copy(), np.arange(limits.shape[0])
+    sticks, unlike, left = held.copy(), np.where(held, np.inf, 0.0), np.arange(limits.shape[0])
+    share = np.where(held, 1.0, 0.0)
     for step in range(_STEPS):
         if left.size == 0:
             break
@@ -78,12 +87,23 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
         miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
         settled = (miss <= _SETTLED) | np.isnan(miss)
         error[left], sticks[left] = miss, stuck
-        doubtful[left] = np.where(stuck, GAUSSIAN * ratio > _HELD, own < _LINEAR)
+        unlike[left], share[left] = _off_by(own, GAUSSIAN * ratio, stuck)
         factor = np.where(stuck, 1.0, _newton(ratio, slope, stuck, alone=step % 40 >= 15))
         rigid = np.where(stuck & ~held[left], np.clip(own / _RIGID, 1.0, 1.0 / _RIGID), 1.0)
         damping[left] *= np.where(settled[:, None], rigid, factor)
         left = left[~settled]
-    return Dampers(damping, sticks, error, doubtful)
+    return Dampers(damping, sticks, error, unlike, share)
+
+
+def _off_by(own: Array, ratio: Array, stuck: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """`unlike` and `share` of `Dampers` for each friction, from `own` = d log(force) / d log(damper).
+
+    For one that sticks, from the `ratio` of the r.m.s. force through a rigid link to friction.
+    """
+    apart = np.clip(1.0 - own, 0.0, 1.0)
+    held = _SLIPPED * scipy.special.erfc(np.sqrt(0.5) / np.maximum(ratio, 1e-6))
+    unlike, share = (np.where(stuck, held, apart * (a + b * apart)) for a, b in (_UNLIKE, _SHARE))
+    return np.where(unlike <= PROMISE, unlike, np.inf), np.minimum(share, 1.0)
 
 
 def _forces(speeds: Speeds, damping: Array, limits: Array, designs: NDArray[np.intp]) -> tuple[Array, Array]:
@@ -145,7 +165,7 @@ class Pattern:
 
         if not start.shape[1]:
             none = np.zeros(start.shape, dtype=bool)
-            return Dampers(start, none, np.zeros(points.shape[0]), none)
+            return Dampers(start, none, np.zeros(points.shape[0]), np.zeros(start.shape), np.zeros(start.shape))
         return solve_dampers(speeds, GAUSSIAN * self.parts.limits(points), start, held)
 
     def value_and_gradient(self, question: CompiledQuestion, row: Array) -> tuple[float, Array]:
@@ -160,13 +180,15 @@ class Pattern:
 class Solved:
     """Some designs that share a pattern, and their dampers there.
 
-    `doubtful` (designs, frictions) is told of all frictions of the mechanism, those that are links in the pattern too.
+    `unlike` and `share` (designs, frictions) are those of all frictions of the mechanism, those that are links in the
+    pattern too.
     """
 
     pattern: Pattern
     designs: NDArray[np.intp]
     dampers: Dampers
-    doubtful: NDArray[np.bool_]
+    unlike: Array
+    share: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,8 +233,7 @@ class GaussianClosure:
     def solve(self, points: Array) -> list[Solved]:
         """The dampers of every row of `points`, by which frictions stick."""
         start = np.full((points.shape[0], len(self.free.parts.dampers)), self.free.parts.scale)
-        none = np.zeros(start.shape, dtype=bool)
-        return self._solve(points, np.arange(points.shape[0]), start, frozenset(), none)
+        return self._solve(points, np.arange(points.shape[0]), start, frozenset(), np.zeros((2, *start.shape)))
 
     def _solve(
         self,
@@ -220,12 +241,12 @@ class GaussianClosure:
         designs: NDArray[np.intp],
         start: Array,
         locked: frozenset[str],
-        doubtful: NDArray[np.bool_],
+        off_by: Array,
     ) -> list[Solved]:
         pattern = self.pattern(locked)
         assert pattern is not None
         found = pattern.dampers(points[designs], start)
-        doubtful[designs[:, None], self._numbers(pattern)] = found.doubtful
+        off_by[:, designs[:, None], self._numbers(pattern)] = found.unlike, found.share
         kinds, kind_of = np.unique(found.sticks, axis=0, return_inverse=True)
         solved: list[Solved] = []
         for number, sticks in enumerate(kinds):
@@ -235,39 +256,44 @@ class GaussianClosure:
             inner = self.pattern(locked | more) if more else None
             if inner is not None:
                 still = [i for i, name in enumerate(pattern.parts.dampers) if name in inner.parts.dampers]
-                solved += self._solve(points, designs[here], part.damping[:, still], locked | more, doubtful)
+                solved += self._solve(points, designs[here], part.damping[:, still], locked | more, off_by)
                 continue
             if more:
                 too_stiff = np.any(part.sticks & (part.damping > STIFFEST * pattern.parts.scale), axis=1)
                 part = pattern.dampers(points[designs[here]], part.damping, part.sticks)
                 part.error[too_stiff] = np.nan
-            solved.append(Solved(pattern, designs[here], part, doubtful[designs[here]]))
+            solved.append(Solved(pattern, designs[here], part, *off_by[:, designs[here]]))
         return solved
 
     def _numbers(self, pattern: Pattern) -> list[int]:
         """Which of all frictions those that slip in a pattern are."""
         return [self.free.parts.dampers.index(name) for name in pattern.parts.dampers]
 
-    def trusted(self, points: Array, solved: Solved) -> NDArray[np.bool_]:
-        """Which of these designs the closure is right for.
+    def off_by(self, points: Array, solved: Solved, promise: float = PROMISE) -> Array:
+        """What the index may be off by in these designs, relative to it: the sum over all frictions.
 
-        Those without doubtful frictions, and those whose doubtful frictions do not matter: the index is the same
-        without the friction, with a rigid link in its place, and with any damper between. (The ends alone do not tell:
-        the index may have a minimum between two that are alike.)
+        Where that is more than `promise`, a friction counts only by a share of the range that the index has without it,
+        with a rigid link in its place, and with any damper between: it may not matter. (The ends alone do not tell: the
+        index may have a minimum between two that are alike.)
         """
-        free, designs = self.free, solved.designs
+        free, designs, unlike = self.free, solved.designs, solved.unlike.copy()
         damping = np.full((designs.size, len(free.parts.dampers)), _FIRM * free.parts.scale)
         damping[:, self._numbers(solved.pattern)] = np.minimum(solved.dampers.damping, _FIRM * free.parts.scale)
-        sure = np.ones(designs.size, dtype=bool)
-        for i in np.flatnonzero(solved.doubtful.any(axis=0)):
-            here = np.flatnonzero(solved.doubtful[:, i])
+        unsure = unlike.sum(axis=1) > promise
+        for i in range(unlike.shape[1]):
+            here = np.flatnonzero(unsure & (unlike[:, i] > _NEGLIGIBLE * promise))
+            if not here.size:
+                continue
             found = []
             for damper in free.parts.scale * np.geomspace(1.0 / _FIRM, _FIRM, _BETWEEN):
                 damping_there = damping[here].copy()
                 damping_there[:, i] = damper
                 found.append(free.index.known(free.rows(points[designs[here]], damping_there)))
-            sure[here] &= np.ptp(found, axis=0) <= _MATTERS * np.min(found, axis=0)
-        return sure
+            with np.errstate(invalid="ignore"):
+                spread = np.ptp(found, axis=0) / np.min(found, axis=0)
+            part = solved.share[here, i] * np.where(np.isnan(spread), np.inf, spread)
+            unlike[here, i] = np.fmin(unlike[here, i], part)
+        return np.asarray(unlike.sum(axis=1))
 
     def values(self, points: Array) -> Array:
         """The index at each row of `points`, also where it is not to be trusted; infinite where there is none."""
@@ -280,7 +306,7 @@ class GaussianClosure:
         for solved in self.solve(points):
             good = solved.dampers.error <= _SETTLED
             if trusted:
-                good &= self.trusted(points, solved)
+                good &= self.off_by(points, solved) <= PROMISE
             rows = solved.pattern.rows(points[solved.designs[good]], solved.dampers.damping[good])
             result[solved.designs[good]] = solved.pattern.index.known(rows)
         return result
@@ -322,17 +348,22 @@ class GaussianClosure:
         if dampers.error[0] > _SETTLED and result.status.ok:
             message = f"the equivalent dampers are known to {dampers.error[0]:.1e} only"
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
-        if result.status.ok and not self.trusted(np.zeros((1, 0)), solved)[0]:
-            words = " and ".join(self.free.parts.frictions[i] for i in np.flatnonzero(solved.doubtful[0]))
-            result = replace(
-                result, status=Status(StatusKind.INACCURATE, f"{words} sticks for a part of the time, which {POORLY}")
-            )
+        bound = float(self.off_by(np.zeros((1, 0)), solved, promise=0.0)[0])
+        if result.status.ok and not bound <= PROMISE:
+            result = replace(result, status=poorly(self._stick(solved.unlike[0]), bound))
+        result = checked(result, (ErrorSource("one damper for a friction", bound + float(dampers.error[0])),), np.inf)
         told = [Note(f"{words} sticks") for words in parts.locked]
         told += [
             Note(f"{words} sticks") if sticks else Note(f"{words} taken as a damper of ", float(c), " N s/m")
             for words, c, sticks in zip(parts.frictions, dampers.damping[0], dampers.sticks[0], strict=True)
         ]
         return replace(result, notes=(*self.free.index.problem.descriptor.notes, *told))
+
+    def _stick(self, unlike: Array) -> str:
+        """Words on those frictions that one damper represents poorly: each by itself, or all together."""
+        worst = np.flatnonzero(unlike > PROMISE) if np.any(unlike > PROMISE) else np.flatnonzero(unlike)
+        words = " and ".join(self.free.parts.frictions[i] for i in worst)
+        return f"{words} sticks for a part of the time, which"
 
 
 def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozenset[str]) -> Pattern:

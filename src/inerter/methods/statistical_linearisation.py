@@ -13,7 +13,7 @@ from inerter.indices.question import Index, Question
 from inerter.kernels import harmonic
 from inerter.methods.compiled_norm import kernels_of
 from inerter.methods.describing_function import HarmonicBalance, harmonic_balance
-from inerter.methods.equivalent import check_damped, check_outputs, has_friction
+from inerter.methods.equivalent import PROMISE, check_damped, check_outputs, has_friction
 from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.method import Estimate, Sees
@@ -56,6 +56,7 @@ class StatisticalLinearisation:
     needs_amplitude = True
     searches = True
     has_gradients = True
+    promise = PROMISE
 
     def __post_init__(self) -> None:
         Norm(self.conventions)  # refuses what it does not know

@@ -6,10 +6,13 @@ import math
 
 import numpy as np
 import pytest
+from campaigns import sampled
+from nodal import Nodal
 
 import inerter as it
 from inerter.errors import PerformanceIndexError
 from inerter.roads.spectrum import RoadSpectrum
+from inerter.signals.road import RoadShape
 
 
 def line(waviness, unevenness=64e-6):
@@ -53,6 +56,84 @@ def test_at_another_speed_it_is_the_same_road():
             there = use.mean(index(it.measured_road(spectrum, float(first))))
             expected = it.evaluate(car, index(it.measured_road(spectrum, float(second))), it.Norm()).value
             assert it.evaluate(car, there, it.Norm()).value == pytest.approx(expected, rel=1e-12)
+
+
+def measured(rng, waviness):
+    """A spectrum whose bands lie about its line by a third, as those of a road of a kilometre do."""
+    n = np.geomspace(0.011, 2.83, 90)
+    density = 64e-6 * (n / 0.1) ** -waviness * np.exp(0.3 * rng.standard_normal(n.size))
+    slope, level = np.polyfit(np.log(n / 0.1), np.log(density), 1)
+    standard = float(np.exp(np.mean(np.log(density) + 2.0 * np.log(n / 0.1))))
+    averages = tuple(zip(n.tolist(), density.tolist(), strict=True))
+    return RoadSpectrum(n, density, float(np.exp(level)), -float(slope), standard, 1.3, 0.011, 2.83, 90, averages)
+
+
+def by_quadrature(car, output, spectrum, speed, beyond):
+    """R.m.s. of an output over the measured densities, and `beyond` times those of waviness 2 or of the line where
+    nothing was measured; impedances are solved at each frequency.
+    """
+    omega = 2.0 * math.pi * speed * np.unique(np.concatenate([np.geomspace(1e-4, 300.0, 60001), [0.011, 2.83]]))
+    n, density = (np.array(column) for column in zip(*spectrum.averages, strict=True))
+    own = omega / (2.0 * math.pi * speed)
+    inside = (own >= n[0]) & (own <= n[-1])
+    heights = np.exp(np.interp(np.log(own), np.log(n), np.log(density)))
+    heights = np.where(inside, heights, beyond(own)) / speed  # one-sided, per Hz
+    gain = np.abs(Nodal(car.mechanism(), omega).response(output, "road")).astype(float)  # from the road's velocity
+    return math.sqrt(np.trapezoid(gain**2 * omega**2 * heights, omega) / (2.0 * math.pi))
+
+
+@pytest.mark.parametrize("seed", sampled(range(12), [0]))
+def test_the_error_bound_holds_against_the_densities_that_were_measured(seed):
+    rng = np.random.default_rng([8608, seed])
+    spectrum, speed = measured(rng, float(rng.uniform(1.5, 2.6))), float(rng.uniform(5.0, 40.0))
+    damper = float(np.exp(rng.uniform(np.log(300.0), np.log(5e3))))
+    car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(damper))
+    two = 0.5 * spectrum.standard * 0.01
+    for road in (spectrum.road(speed), it.measured_road(spectrum, speed)):
+        filtered = road.filter if hasattr(road, "filter") else None
+
+        def stands(n, filtered=filtered, road=road):
+            """The density that stands for the road where nothing was measured."""
+            if filtered is None:
+                return 2.0 * two / n**2
+            shaped = np.abs(filtered.response(2.0 * np.pi * n * speed)) ** 2
+            return 2.0 * road.road.roughness * shaped / n**2
+
+        for index, output in ((it.RideComfort(road), "sprung_acceleration"), (it.TyreLoad(road), "tyre_load")):
+            found = it.evaluate(car, index, it.Norm())
+            assert found.status.ok == (sum(s.bound for s in found.error_sources if s.name != "rounding") <= 0.1)
+            for factor in (0.0, 1.0, 2.0):
+                truth = by_quadrature(car, output, spectrum, speed, lambda n, factor=factor: factor * stands(n))
+                assert abs(truth / found.value - 1.0) <= found.error_bound * 1.001 + 1e-4, factor
+            line = next(source.bound for source in found.error_sources if source.name == "line of the road")
+            kept = by_quadrature(car, output, spectrum, speed, stands)
+            assert line >= abs(kept / found.value - 1.0) - 3.6e-3
+            assert line <= abs(kept / found.value - 1.0) + 3.6e-3  # by the filter alone
+
+
+def test_a_road_says_how_far_its_line_may_lead_whatever_the_method():
+    rng = np.random.default_rng(5)
+    road = measured(rng, 1.8).road(20.0)
+    car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3) | it.Friction(5.0))
+    names, known = {"line of the road", "road beyond the measured waves"}, []
+    for method in (it.Norm(), it.StatisticalLinearisation(), it.ExpectedValue(realisations=2), it.ApproximateLinear()):
+        found = it.evaluate(car, it.RideComfort(road), method)
+        bounds = {source.name: source.bound for source in found.error_sources if source.name in names}
+        assert bounds.keys() == names
+        known.append(bounds["line of the road"])
+    assert known == pytest.approx([known[0]] * 4, rel=0.1)  # friction changes little
+    assert known[0] > 0.01
+    found = it.evaluate(car, it.RideComfort(it.Road(1e-6, 20.0)), it.Norm())
+    assert [source.name for source in found.error_sources] == ["rounding"]
+
+
+def test_a_waviness_far_from_two_makes_a_line_of_two_inaccurate_and_says_by_how_much():
+    n = np.geomspace(0.011, 2.83, 90)
+    shape = RoadShape(tuple(n.tolist()), tuple(((n / 0.2) ** -1.0).tolist()))
+    car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3))
+    found = it.evaluate(car, it.TyreLoad(it.Road(1e-6, 10.0, shape=shape)), it.Norm())
+    assert found.status.kind == "inaccurate"
+    assert "mostly by line of the road" in found.status.message
 
 
 def test_another_road_takes_its_place():

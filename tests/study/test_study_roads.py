@@ -122,6 +122,10 @@ def test_a_profile_is_its_road_of_waviness_two(load, tmp_path, track):
     study = load('profile = "road.csv"' + (f'\ntrack = "{track}"' if track else ""))
     spectrum = it.road_spectrum(it.read_profile(tmp_path / "road.csv"), track=track)
     assert study.road == spectrum.road(25.0)
+    assert study.road.shape == spectrum.road(25.0).shape
+    case = next(iter(cases(study)))
+    by_python = it.evaluate(study.design(case.layout), it.RideComfort(spectrum.road(25.0)), it.Norm())
+    assert run_case(study, case).error_bounds["norm"]["J1"] == by_python.error_bound > 1e-3  # by the line
     assert study.road.roughness == pytest.approx(0.5 * 64e-6 * 0.01, rel=0.1)  # that it was made with
     assert value(study) == it.evaluate(study.design("S1"), it.RideComfort(spectrum.road(25.0)), it.Norm()).value
 

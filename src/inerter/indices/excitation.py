@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from inerter.checks import check_positive
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.signals.coherence import Coherence
-from inerter.signals.road import Road
+from inerter.signals.road import Road, RoadShape
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter, as_filter
 from inerter.systems.linear import LinearSystem
@@ -254,6 +254,15 @@ def as_excitation(given: object, what: str) -> Excitation:
         )
     found: Excitation = given  # type: ignore[assignment]
     return found
+
+
+def shape_of(excitation: Excitation) -> tuple[RoadShape, float] | None:
+    """The measured shape of the road that drives, and the speed on it [m/s]; None where nothing was measured."""
+    of: Any = excitation
+    while isinstance(of, Shaped | RoadVelocity):
+        of = of.excitation if isinstance(of, Shaped) else of.road
+    shape = getattr(of, "shape", None)
+    return (shape, of.speed) if isinstance(shape, RoadShape) else None
 
 
 def stand_ins_of(excitation: Excitation, mechanism: Mechanism) -> tuple[ErrorSource, ...]:

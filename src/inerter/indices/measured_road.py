@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import check_positive
-from inerter.errors import PerformanceIndexError
-from inerter.indices.excitation import Excitation, Shaped
+from inerter.errors import ErrorSource, PerformanceIndexError
+from inerter.indices.excitation import Excitation, Shaped, stand_ins_of
 from inerter.roads.spectrum import N0, RoadSpectrum
-from inerter.signals.road import Road
+from inerter.signals.road import Road, RoadShape
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
 from inerter.vehicle.mechanism import Mechanism
@@ -37,6 +37,16 @@ class MeasuredRoad:
     lowest: float  # [cycle/m]
     highest: float
     is_random = True
+
+    @property
+    def shape(self) -> RoadShape:
+        """How the measured density lies about the line, or how far that goes."""
+        return self.road.shape or RoadShape((self.lowest, self.highest), (1.0, 1.0))
+
+    @property
+    def speed(self) -> float:
+        """Of the vehicle on it [m/s]."""
+        return self.road.speed
 
     @property
     def filter(self) -> Filter:
@@ -65,6 +75,10 @@ class MeasuredRoad:
         """As those of the road, each through the filter."""
         return self._shaped.arrivals(mechanism)
 
+    def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
+        """Those of the road, and that of the filter, whose density deviates from the line by `DEVIATION` at most."""
+        return *stand_ins_of(self._shaped, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
+
 
 def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
     """The road whose density is the line of a spectrum, Gd(n0) (n / n0)^-waviness, driven at `speed` [m/s].
@@ -83,7 +97,8 @@ def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
             f"The waviness of the spectrum is {spectrum.waviness:.3g}; a road for an index has one between 0 and 4. "
             f"Is the profile in the unit that was named?"
         )
-    road = Road(0.5 * spectrum.unevenness * N0**2, speed)
+    shape = spectrum.shape(spectrum.unevenness, spectrum.waviness)
+    road = Road(0.5 * spectrum.unevenness * N0**2, speed, shape=shape)
     return MeasuredRoad(road, spectrum.waviness, spectrum.lowest, spectrum.highest)
 
 

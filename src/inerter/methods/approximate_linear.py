@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind, worst_of
-from inerter.indices.excitation import stand_ins_of
+from inerter.indices.excitation import shape_of, stand_ins_of
 from inerter.indices.question import Index, Question
 from inerter.methods.averages import interval_of
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
@@ -24,6 +24,7 @@ from inerter.methods.error_bounds import checked
 from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
+from inerter.methods.measured import road_errors
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.objective import Objective
 from inerter.methods.sampled import SampledObjective
@@ -212,6 +213,9 @@ class ApproximateLinear:
         settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch)
         own = ErrorSource("time step", _STEPPED), settled, *estimate.error_sources
         stand_ins = stand_ins_of(question.drive, runs.system.mechanism)
+        if shape_of(question.drive) is not None and linear is not None:
+            model = linear_model(linear, runs.speeds, runs.drive.excitation.period)
+            stand_ins += road_errors(question, model.system, linear.problem.pade_order, model.norms)
         status = worst_of([estimate.status, runs.warning])
         estimate = checked(replace(estimate, status=status, error_sources=stand_ins), own, PROMISE)
         status = estimate.status

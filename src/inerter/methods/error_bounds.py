@@ -13,24 +13,27 @@ if TYPE_CHECKING:
     from inerter.methods.method import Estimate
 
 ROUNDING = "rounding"
+STAND_INS = 0.1  # relative error of a value that is ok by what stands in for its excitation, such as a line for a road
 
 
 def checked(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
-    """The estimate with a method's `own` error sources before its others, inaccurate where those exceed `promise`.
+    """The estimate with a method's `own` error sources before those of stand-ins, which it has already.
 
-    A value that is infinite is so exactly, and one that is not known has no error.
+    Inaccurate where its own exceed `promise`, or the others `STAND_INS`. A value that is infinite is so exactly, and
+    one that is not known has no error.
     """
     if not math.isfinite(estimate.value):
         exact = (ErrorSource(ROUNDING, 0.0),)
         return replace(estimate, error_sources=exact if math.isinf(estimate.value) else ())
     sources = tuple(own)
     result = replace(estimate, error_sources=(*sources, *estimate.error_sources))
-    bound = sum(source.bound for source in sources)
-    if bound <= promise or not estimate.status.ok:
-        return result
-    largest = max(sources, key=lambda source: source.bound)
-    message = f"the value may be off by {bound:.1e} of itself, more than {promise:g}, mostly by {largest.name}"
-    return replace(result, status=Status(StatusKind.INACCURATE, message))
+    for several, most in ((sources, promise), (estimate.error_sources, STAND_INS)):
+        bound = sum(source.bound for source in several)
+        if result.status.ok and not bound <= most:
+            largest = max(several, key=lambda source: source.bound)
+            message = f"the value may be off by {bound:.1e} of itself, more than {most:g}, mostly by {largest.name}"
+            result = replace(result, status=Status(StatusKind.INACCURATE, message))
+    return result
 
 
 def of_weighted_sum(parts: Sequence[Estimate], weights: Sequence[float]) -> tuple[ErrorSource, ...]:

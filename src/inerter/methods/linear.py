@@ -13,6 +13,7 @@ from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Question
 from inerter.methods.error_bounds import ROUNDING, checked
+from inerter.methods.measured import road_errors
 from inerter.methods.method import Estimate
 from inerter.methods.sides import on_one_side
 from inerter.norms.h2 import h2
@@ -25,6 +26,7 @@ from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+_FEW = 1e-14  # relative error by the roundings of weights, sizes and delays
 PROMISE = 1e-9  # relative error of a norm that is ok, beside those of what stands in for its excitation
 
 
@@ -151,7 +153,7 @@ class LinearProblem:
         norms = h2(system, self.pade_order)
         value = float(self.question.combined(norms.outputs, self.weights))
         found = Estimate(value, self.question.unit, norms.status, notes=system.notes)
-        return self._with_errors(found, norms.error)
+        return self._with_errors(found, norms.error, road_errors(self.question, system, self.pade_order, norms.outputs))
 
     def _peak_gain(self, system: LinearSystem) -> Estimate:
         gain = hinf_norm(system)
@@ -160,10 +162,11 @@ class LinearProblem:
         found = Estimate(weight * gain.value, self.question.unit, gain.status, peaks=peaks, notes=system.notes)
         return self._with_errors(found, gain.error)
 
-    def _with_errors(self, found: Estimate, rounding: float) -> Estimate:
+    def _with_errors(self, found: Estimate, rounding: float, more: tuple[ErrorSource, ...] = ()) -> Estimate:
         """The estimate with what rounding, and what stands in for the excitation that is meant, make of it."""
         stand_ins = stand_ins_of(self.question.drive, self.unfiltered.mechanism)
-        return checked(replace(found, error_sources=stand_ins), (ErrorSource(ROUNDING, rounding),), PROMISE)
+        own = ErrorSource(ROUNDING, rounding + _FEW)
+        return checked(replace(found, error_sources=(*stand_ins, *more)), (own,), PROMISE)
 
 
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:

@@ -17,6 +17,7 @@ from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
 from inerter.methods.error_bounds import checked
 from inerter.methods.linear import Conventions
+from inerter.methods.measured import road_errors
 from inerter.methods.method import Estimate
 from inerter.methods.realisations import (
     STEP,
@@ -91,6 +92,7 @@ class Rest:
     within_reach: bool = True  # whether longer roads would tell, if the motion stays as it is
     status: Status = OK
     notes: tuple[str, ...] = ()
+    measured: tuple[ErrorSource, ...] = ()  # of a road that was measured
 
 
 def on_roads(
@@ -173,7 +175,8 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
-    return Rest(added, unseen, share * unlike, within_reach, status)
+    measured = road_errors(design.question, system, pade_order, whole.outputs)
+    return Rest(added, unseen, share * unlike, within_reach, status, measured=measured)
 
 
 def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array, Array]:
@@ -255,7 +258,7 @@ def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
     estimate = Estimate(
         value, unit, status, scatter, interval_of(value, scatter, samples.size), samples.size, notes=lacking.notes,
         samples=tuple(samples.tolist()), period=design.way.period,
-        error_sources=stand_ins_of(question.drive, design.system.mechanism),
+        error_sources=(*stand_ins_of(question.drive, design.system.mechanism), *lacking.measured),
     )  # fmt: skip
     return checked(estimate, _errors(lacking, found), PROMISE)
 

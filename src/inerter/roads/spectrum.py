@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.roads.profile import Profile
-from inerter.signals.road import ROAD_CLASSES, Road, RoadClass
+from inerter.signals.road import ROAD_CLASSES, Road, RoadClass, RoadShape
 
 Matrix = NDArray[np.float64]
 N0 = 0.1  # [cycle/m]
@@ -40,6 +40,7 @@ class RoadSpectrum:
     lowest: float  # [cycle/m] of the line
     highest: float
     bands: int = 0  # of the line
+    averages: tuple[tuple[float, float], ...] = ()  # of the bands: wavenumber and density
 
     @property
     def iso8608_class(self) -> RoadClass:
@@ -48,7 +49,16 @@ class RoadSpectrum:
 
     def road(self, speed: float) -> Road:
         """The road of waviness 2 that is as rough, for indices; it is driven at `speed` [m/s]."""
-        return Road(roughness=0.5 * self.standard * N0**2, speed=speed)
+        shape = self.shape(self.standard, 2.0)
+        return Road(roughness=0.5 * self.standard * N0**2, speed=speed, shape=shape)
+
+    def shape(self, unevenness: float, waviness: float) -> RoadShape | None:
+        """How the averages of the bands lie about a line; None where they are not known."""
+        if not self.averages:
+            return None
+        wavenumbers, densities = zip(*self.averages, strict=True)
+        line = unevenness * (np.array(wavenumbers) / N0) ** -waviness
+        return RoadShape(tuple(wavenumbers), tuple((np.array(densities) / line).tolist()))
 
 
 def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIGHEST, track: str = "") -> RoadSpectrum:
@@ -95,6 +105,7 @@ def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIG
         lowest=float(n[0]),
         highest=float(n[-1]),
         bands=int(n.size),
+        averages=tuple(zip(n.tolist(), smooth.tolist(), strict=True)),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Self
 
 from inerter.checks import check_positive
@@ -63,6 +63,14 @@ def road_class(letter: object) -> RoadClass:
 
 
 @dataclass(frozen=True)
+class RoadShape:
+    """How a measured density lies about the line that stands for it: their ratio at rising wavenumbers."""
+
+    wavenumber: tuple[float, ...]  # [cycle/m], from the longest measured wave to the shortest
+    ratio: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Road:
     """A road whose displacement has the two-sided spectrum S(f) = roughness * speed / f^2, driven at `speed`.
 
@@ -76,6 +84,7 @@ class Road:
     roughness: float  # kappa [m^3/cycle]
     speed: float  # V [m/s]
     coherence: Coherence | None = None  # of left and right track; None: they are alike
+    shape: RoadShape | None = field(default=None, compare=False, repr=False)  # of a road that was measured
 
     def __post_init__(self) -> None:
         for name, unit in (("roughness", "m^3/cycle"), ("speed", "m/s")):

@@ -22,7 +22,7 @@ from inerter.files.common.tables import Shape
 from inerter.roads.reading import read_profile
 from inerter.roads.spectrum import N0, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
-from inerter.signals.road import ROAD_CLASSES, Road
+from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
 from inerter.units import format_quantity, shown
 from inerter.vehicle.mechanism import TRACKS
 
@@ -125,6 +125,7 @@ class MeasuredLine:
     bands: int
     lowest: float  # [cycle/m]
     highest: float
+    shape: RoadShape | None = None  # of the spectrum about the line of waviness 2
 
     @property
     def source(self) -> str:
@@ -209,6 +210,7 @@ def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum) -> Measur
         bands=spectrum.bands,
         lowest=spectrum.lowest,
         highest=spectrum.highest,
+        shape=spectrum.road(1.0).shape,
     )
 
 

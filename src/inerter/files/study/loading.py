@@ -128,7 +128,8 @@ def _road(shape: StudyFile, line: MeasuredLine | None) -> Road | None:
     if shape.road is None:
         return None
     roughness = shape.road.roughness if line is None else line.roughness
-    return Road(roughness, shape.road.speed, coherence_of(coherence_values(shape.road)))
+    measured = None if line is None else line.shape
+    return Road(roughness, shape.road.speed, coherence_of(coherence_values(shape.road)), measured)
 
 
 def _road_problems(study: Study) -> Iterator[Problem]:

@@ -1,0 +1,66 @@
+"""What indices on a measured road may be off by: the line that stands for its spectrum, and what was not measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import ErrorSource
+from inerter.indices.excitation import shape_of
+from inerter.indices.question import Question
+from inerter.norms.response import modal_response
+from inerter.systems.linear import LinearSystem
+
+Array = NDArray[np.float64]
+_POINTS = 800  # frequencies between the ends of what was measured
+_BESIDE = np.concatenate([-np.geomspace(30.0, 0.03, 20), np.geomspace(0.03, 30.0, 20)])  # of a pole, over its damping
+
+
+def road_errors(
+    question: Question, system: LinearSystem, pade_order: int | None, norms: Array
+) -> tuple[ErrorSource, ...]:
+    """Errors of an index of r.m.s. values on a road with a measured shape; none on any other.
+
+    `system` has the outputs of the question over white noise, with these `norms`. The road as it was measured, with the
+    densities of its bands in the place of the line, gives another value: that is the error by the line. What lies
+    beyond the waves that were measured may be missing, or twice as much.
+    """
+    found = shape_of(question.drive)
+    if found is None or question.is_peak or not np.all(np.isfinite(norms)):
+        return ()
+    shape, speed = found
+    ends = [2.0 * math.pi * speed * n for n in (shape.wavenumber[0], shape.wavenumber[-1])]
+    omega = _frequencies(ends[0], ends[1], np.asarray(np.linalg.eigvals(system.A), complex))
+    power = np.sum(np.abs(modal_response(system, omega, pade_order)) ** 2, axis=2) / math.pi
+    total = np.maximum(norms**2, 1e-300)
+    ratio = np.exp(np.interp(np.log(omega / (2.0 * math.pi * speed)), np.log(shape.wavenumber), np.log(shape.ratio)))
+    by_line = np.trapezoid(power * (ratio - 1.0)[:, None], omega, axis=0) / total
+    beyond = np.clip(1.0 - np.trapezoid(power, omega, axis=0) / total, 0.0, 1.0)
+    change = _change_of(question, norms)
+    line, most = change(by_line), max(change(by_line + beyond), change(by_line - beyond))
+    return (
+        ErrorSource("line of the road", line),
+        ErrorSource("road beyond the measured waves", max(most - line, 0.0)),
+    )
+
+
+def _change_of(question: Question, norms: Array) -> Callable[[Array], float]:
+    """The relative change of the index by relative changes of its mean squares."""
+    weights = np.array([abs(output.weight) for output in question.outputs])
+    value = float(question.combined(norms, weights))
+
+    def change(shares: Array) -> float:
+        other = float(question.combined(norms * np.sqrt(np.maximum(1.0 + shares, 0.0)), weights))
+        return abs(other / value - 1.0) if value > 0.0 else 0.0
+
+    return change
+
+
+def _frequencies(low: float, high: float, poles: NDArray[np.complex128]) -> Array:
+    """Frequencies [rad/s] between two, closer together near each resonance."""
+    near = (np.abs(poles.imag)[:, None] + np.abs(poles.real)[:, None] * _BESIDE).ravel()
+    omega = np.unique(np.concatenate([np.geomspace(low, high, _POINTS), near]))
+    return np.asarray(omega[(omega >= low) & (omega <= high)])

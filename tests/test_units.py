@@ -167,9 +167,16 @@ def test_a_roughness_is_given_as_the_standard_gives_it(at_n0, at_omega0):
 
 
 def test_what_is_no_roughness_is_refused():
-    for text in ("5e-7 m^2", "5e-7 m^2/cycle", "5e-7 m/cycle"):
+    for text in ("5e-7 m^2", "5e-7 m^2/cycle", "5e-7 m/cycle", "16e-6 m^3 rad", "16e-6 m^3/deg", "1e-6 m^3/turn"):
         with pytest.raises(UnitError, match="another kind"):
             parse_quantity(text, "m^3/cycle")
+
+
+@pytest.mark.parametrize("given", ["256e-6", 256e-6, "256e-6 m^2", "0.000256 kg"])
+def test_a_refused_roughness_is_never_answered_by_a_rougher_one(given):
+    """The form that a message recommends is that of class C, whatever number was given."""
+    with pytest.raises(UnitError, match=r'such as "256e-6 m\^3"\.$'):
+        parse_quantity(given, "m^3/cycle")
 
 
 def test_an_angular_frequency_in_cycles_is_not_taken_for_radians():

@@ -26,6 +26,7 @@ class Field:
     words: str = ""  # to go before "of ...", if that is not the name
     default: float | None = None  # in `unit`
     may_be_free: bool = False  # whether an optimiser may choose it
+    usual: tuple[float, float] | None = None  # least and largest [SI] beyond which a value is doubted, not refused
 
     @property
     def in_words(self) -> str:
@@ -61,22 +62,30 @@ Stated = TypeVar("Stated", TextChoice, Formed)
 
 
 def quantity(
-    unit: str, sentence: str, example: str, *, key: str = "", words: str = "", may_be_free: bool = False
+    unit: str,
+    sentence: str,
+    example: str,
+    *,
+    key: str = "",
+    words: str = "",
+    may_be_free: bool = False,
+    usual: tuple[float, float] | None = None,
 ) -> Mapping[str, Any]:
     """The metadata of a dataclass field that is a positive quantity, in `unit`.
 
     `example` is a value with its unit, for messages. In files it has the name of the field or this `key`, and in
     sentences these `words` stand for it. One that `may_be_free` is the mass of a coordinate or the value of an element
-    of the mechanism as it stands, so that an optimiser may choose it.
+    of the mechanism as it stands, so that an optimiser may choose it. `inerter check` warns of a value that is not
+    within the `usual` ones, (least, largest).
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
     ...     mass: float = dataclasses.field(metadata=quantity("kg", "With its tyre.", "25 kg"))
     >>> fields_of(Wheel)
     (Field(name='mass', unit='kg', sentence='With its tyre.', example='25 kg', key='mass', words='', default=None,
-    may_be_free=False),)
+    may_be_free=False, usual=None),)
     """
-    return {_QUANTITY: Field("", unit, sentence, example, key, words, may_be_free=may_be_free)}
+    return {_QUANTITY: Field("", unit, sentence, example, key, words, may_be_free=may_be_free, usual=usual)}
 
 
 def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:

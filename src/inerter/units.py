@@ -26,7 +26,9 @@ _PER_FREQUENCY = re.compile(r"\b[kM]?(?:Hz|hertz)\b|\brad(?:ian)?s?\b")
 _FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # the weight of a mass, for those who mean it
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
 PURE = "1"  # the unit of what is a mere number
-_STANDARD_FORMS = {"m^3/cycle": (1.0 / (4.0 * math.pi), 0.5 * 0.1**2)}  # kappa over Gd(Omega0) and over Gd(n0)
+_ROUGHNESS = "m^3/cycle"
+_KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
+_FORMS = "a unit of Gd(n0) (m^3) or Gd(Omega0) (m^3/rad) of ISO 8608 or of kappa (m^3/cycle)", "256e-6 m^3"
 _LONGEST = 100
 _FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
 _MOST_DIGITS = 6  # of a value with an interval
@@ -53,14 +55,14 @@ def parse_quantity(text: str, unit: str) -> float:
     >>> parse_quantity("120 kN/m", "N/m")
     120000.0
     """
-    expected = f"a unit of {unit}"
-    number, given = _split(text, expected, unit)
-    if unit in _STANDARD_FORMS and _dimension(given) == _dimension("m^3"):
-        per_radian, plain = _STANDARD_FORMS[unit]
-        return _converted(text, number, given, "m^3") * (per_radian if "rad" in given else plain)
+    expected, example = _FORMS if unit == _ROUGHNESS else (f"a unit of {unit}", "")
+    number, given = _split(text, expected, unit, example)
+    if unit == _ROUGHNESS and (form := _density_form(given)) is not None:
+        return _converted(text, number, given, "m^3") * _KAPPA_OVER[form]
     if _dimension(given) != _dimension(unit):
         problem = f"{_described(given)} is a unit of another kind"
-        _fail(text, problem, expected, f"{_number_of(text)} {_as_force(given, (unit,)) or _prefixed(given, unit)}")
+        like = f"{_number_of(text)} {_as_force(given, (unit,)) or _prefixed(given, unit)}"
+        _fail(text, problem, expected, example or like)
     _check_density(text, given, unit)
     return _converted(text, number, given, unit)
 
@@ -104,6 +106,24 @@ def is_unit(unit: str) -> bool:
     except Exception:  # pint's errors share no base: AttributeError, TypeError, AssertionError, tokenize's own
         return False
     return True
+
+
+def is_unit_for(given: str, unit: str) -> bool:
+    """Whether `parse_quantity` takes quantities in `given` for one of `unit`.
+
+    >>> is_unit_for("km/h", "m/s"), is_unit_for("m^3", "m^3/cycle"), is_unit_for("m^3", "kg")
+    (True, True, False)
+    """
+    return are_alike(given, unit) or (unit == _ROUGHNESS and _density_form(given) is not None)
+
+
+def _density_form(given: str) -> int | None:
+    """The power of radians in a unit of displacement spectral density, as ISO 8608 has them; None for other units."""
+    if _dimension(given) != _dimension("m^3"):
+        return None
+    base = _registry().get_base_units(_registry().parse_units(given))[1]
+    power = next((n for n in _KAPPA_OVER if base == _registry().parse_units("m^3") * _registry().radian ** n), None)
+    return None if power and "rad" not in given else power  # of a degree, or a turn, nobody knows what is meant
 
 
 def are_alike(unit: str, other: str) -> bool:
@@ -266,9 +286,9 @@ def shown(value: object) -> str:
     return text if len(text) <= 62 else f"{text[:58]}..." + text[-1] * text.startswith('"')
 
 
-def _split(text: object, expected: str, unit: str) -> tuple[str, str]:
-    """The number and the unit in `text`, the latter known to pint; `unit` is for the example in an error."""
-    example = f"{_number_of(text)} {unit}"
+def _split(text: object, expected: str, unit: str, example: str = "") -> tuple[str, str]:
+    """The number and the unit in `text`, the latter known to pint; `unit`, or an `example`, is for an error."""
+    example = example or f"{_number_of(text)} {unit}"
     if not isinstance(text, str):
         is_number = isinstance(text, int | float) and not isinstance(text, bool)
         _fail(text, "a number without a unit" if is_number else "not a quantity in quotes", expected, example)

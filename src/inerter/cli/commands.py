@@ -20,7 +20,7 @@ from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.loading import load_study
-from inerter.files.study.plausibility import road_sentence
+from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
@@ -79,7 +79,7 @@ def run(
         for text in as_text(result):
             print(text, end="")
     else:
-        road = road_sentence(loaded)
+        road = roads_sentence(loaded)
         head = [*wrapped(loaded.title), *(wrapped(f"{road}.") if road else []), ""]
         print("\n".join([*head, summary_table(result.data)]))
         lines = (

@@ -82,18 +82,22 @@ def run(
     return command(study, output, jobs, cluster, resume=resume, force=force, as_json=json)
 
 
-@app.command(help_epilogue="Example: inerter check examples/half-car.toml")
-def check(study: Path, /) -> int:
-    """Check a study file: keys, units, bounds, networks, and whether every layout can be analysed.
+@app.command(
+    help_epilogue="""Examples:
+  inerter check examples/half-car.toml
+  inerter check examples/stick_slip.toml"""
+)
+def check(file: Path, /) -> int:
+    """Check a file: keys, units, bounds, networks, and whether every layout can be analysed or simulated.
 
     Parameters
     ----------
-    study
-        The study file (TOML).
+    file
+        A study, simulation, rig or identification file (TOML); its sections tell which.
     """
     from inerter.cli.check import check as command
 
-    return command(study)
+    return command(file)
 
 
 @app.command(

@@ -15,13 +15,33 @@ from inerter.identification.models import mounted
 from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.signals.signal import Signal
-from inerter.simulation.simulate import simulate
+from inerter.simulation.simulate import RunSettings, check_simulation, simulate
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
 GRAVITY = 9.80665  # [m/s^2] standard, for load cells that are rated in kg
 _FINEST = 1e-4  # [s] between the knots of the table's motion, at most
 _TABLE_DAMPING = 0.7
+
+
+@dataclass(frozen=True)
+class _Times:
+    """The steps of a run and the samples among them."""
+
+    parts: int  # steps in the interval of the samples
+    first: int  # sample, from the beginning of the command
+    samples: int
+    step: float  # [s]
+
+    @property
+    def steps(self) -> int:
+        """From the beginning of the command to the last sample."""
+        return (self.first + self.samples - 1) * self.parts
+
+    @property
+    def sampled(self) -> NDArray[np.int64]:
+        """Numbers of the steps at which samples are taken."""
+        return np.asarray((self.first + np.arange(self.samples)) * self.parts)
 
 
 @dataclass(frozen=True)
@@ -71,6 +91,27 @@ class VirtualRig:
             raise IdentificationError(f"A seed is a whole number from 0 on, got {self.seed!r}.")
         Rig(self.device)
 
+    def check(self, command: Signal, duration: float, start: float = 0.0) -> int:
+        """The number of samples; raises what `run` would raise before it simulates."""
+        check_positive(IdentificationError, "The duration of a run", duration, "s")
+        if not is_number(start) or start < 0.0:
+            raise IdentificationError(f"A record starts at a time from 0 s on, got {start!r}.")
+        if not isinstance(command, Signal):
+            raise IdentificationError(f"A table is moved by a signal, such as cosine(...), got {command!r}.")
+        times = self._times(duration, start)
+        if times.samples < 4:
+            raise IdentificationError(f"{duration:g} s are less than 4 samples at {self.sampling:g} Hz.")
+        rig, end = Rig(mounted(self.device), self.force_bandwidth), times.steps * times.step
+        command.sample(end)
+        table = Signal.sampled([0.0, end], [0.0, 0.0], label=command.label)  # at rest: the motion does not matter
+        check_simulation(rig, {"displacement": table}, RunSettings(duration=end, step=times.step))
+        return times.samples
+
+    def _times(self, duration: float, start: float) -> _Times:
+        parts = math.ceil(1.0 / self.sampling / _FINEST)
+        first, count = round(start * self.sampling), round(duration * self.sampling) + 1
+        return _Times(parts, first, count, 1.0 / self.sampling / parts)
+
     def run(self, command: Signal, duration: float, start: float = 0.0) -> Record:
         """What the sensors read from `start` to `start` + `duration` [s] while the table is moved as commanded.
 
@@ -79,18 +120,9 @@ class VirtualRig:
 
         Raises `IdentificationError` for a command or times that cannot be, and as `simulate` does.
         """
-        check_positive(IdentificationError, "The duration of a run", duration, "s")
-        if not is_number(start) or start < 0.0:
-            raise IdentificationError(f"A record starts at a time from 0 s on, got {start!r}.")
-        if not isinstance(command, Signal):
-            raise IdentificationError(f"A table is moved by a signal, such as cosine(...), got {command!r}.")
-        interval = 1.0 / self.sampling
-        parts = math.ceil(interval / _FINEST)
-        first, count = round(start * self.sampling), round(duration * self.sampling) + 1
-        if count < 4:
-            raise IdentificationError(f"{duration:g} s are less than 4 samples at {self.sampling:g} Hz.")
-        step = interval / parts
-        steps = (first + count - 1) * parts
+        self.check(command, duration, start)
+        times = self._times(duration, start)
+        step, steps, interval = times.step, times.steps, 1.0 / self.sampling
         position, velocity = self._moved(command.grid(0.0, step, steps + 1)[0], step)
         time, moved = (
             step * np.arange(steps + 1),
@@ -101,7 +133,7 @@ class VirtualRig:
         run = simulate(rig, displacement=table, duration=steps * step, step=step)
         if not run.status.ok:
             raise IdentificationError(f"The virtual rig cannot be simulated: {run.status}.")
-        at = (first + np.arange(count)) * parts
+        at = times.sampled
         delayed = np.interp(step * at - self.force_delay, table.time, run[rig.reading])
         return self._read(position[at], delayed, interval, command)
 

@@ -16,6 +16,7 @@ from inerter.figures.labels import capital, printed, swept_places, together, typ
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study, Sweep
 from inerter.files.study.tolerances import ToleranceOutcome
@@ -86,7 +87,10 @@ def report(
             title=results.attrs["title"],
             swept=bool(swept),
             searched=study.optimise is not None,
-            headlines=[printed_sentence(sentence) for sentence in answers(results, study, budgets, printed)],
+            headlines=[
+                *map(printed_sentence, answers(results, study, budgets, printed)),
+                *([f"{road}."] if (road := roads_sentence(study)) else []),
+            ],
             vehicle=vehicle_rows(study),
             on_road=study.road is not None,
             elements=element_rows(study),

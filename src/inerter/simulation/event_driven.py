@@ -219,6 +219,15 @@ KERNELS: tuple[Any, ...] = (build, integrate, discretise, evaluate)
 _SINGULAR = "the forces in a combination of slip, stick and contact are not determined"
 
 
+def check_elements(system: PiecewiseSystem) -> None:
+    """Raises `SimulationError` if there are more frictions and gaps than combinations of states can be numbered."""
+    if len(system.nonlinear) > MOST_ELEMENTS:
+        raise SimulationError(
+            f"The event-driven integrator takes up to {MOST_ELEMENTS} frictions and gaps, got {len(system.nonlinear)}. "
+            f'Take integrator="time-stepping", or join those that always act together.'
+        )
+
+
 def start(
     system: PiecewiseSystem,
     table: InputTable,
@@ -235,14 +244,10 @@ def start(
     `keep` the states at all samples; `outputs` are to be squared and added up from knot `settled` on; `account` for
     the energy. It goes on in the mode in which another one of the same mechanism ended, if it comes `after` one.
 
-    Raises `SimulationError` if there are more frictions and gaps than combinations of their states can be numbered.
+    Raises `SimulationError` as `check_elements` does.
     """
     prepare(KERNELS)
-    if len(system.nonlinear) > MOST_ELEMENTS:
-        raise SimulationError(
-            f"The event-driven integrator takes up to {MOST_ELEMENTS} frictions and gaps, got {len(system.nonlinear)}. "
-            f'Take integrator="time-stepping", or join those that always act together.'
-        )
+    check_elements(system)
     rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])
     mechanics = _mechanics(system, rows, len(outputs))
     sizes, used = mechanics.sizes, _used(system, table, bool(rows))

@@ -3,29 +3,68 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any, Literal, Unpack
+
+import numpy as np
 
 from inerter.checks import is_number
 from inerter.errors import SimulationError
+from inerter.signals.signal import Signal
 from inerter.simulation import event_driven, stepped
+from inerter.simulation.event_driven import check_elements
 from inerter.simulation.inputs import (
     MEMORY_LIMIT,
     Driven,
     assign,
     check_driven,
     check_holds,
+    check_steps,
     starting_from,
     tabulate,
     whole_steps,
 )
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.start import ending_of, initial_state
+from inerter.simulation.start import Initial, ending_of, initial_state
 from inerter.simulation.steady import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.vehicle import Vehicle
 
 _REPORTS = 100  # of progress
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """How `simulate` is to integrate: its keywords of the same names."""
+
+    duration: float | None = None  # [s]
+    step: float = 2e-4  # [s]
+    integrator: str = "event-driven"
+    every: int = 1
+    energy: bool = False
+    memory_limit: float = MEMORY_LIMIT  # [bytes]
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """A run whose arguments go together."""
+
+    system: PiecewiseSystem
+    signals: tuple[Signal | None, ...]  # of roads, then forces
+    delays: tuple[float, ...]  # [s]
+    initial: Initial
+    length: float = 0.0  # [s]
+
+    @property
+    def is_periodic(self) -> bool:
+        """Whether the steady state is asked for."""
+        return isinstance(self.initial, str) and self.initial == "periodic"
+
+    @property
+    def begin(self) -> float:
+        """The time at which it begins [s]."""
+        return self.initial.end if isinstance(self.initial, Trajectory) else 0.0
 
 
 def simulate(
@@ -62,27 +101,15 @@ def simulate(
     vehicles do. An integration that cannot go on ends in the trajectory's `status`.
     """
     check_driven("simulate", driven)
-    initial = starting_from(driven)
-    moved: dict[str, Any] = {name: given for name, given in driven.items() if name != "initial"}
-    system = piecewise(vehicle)
-    signals, delays = assign(system.mechanism, **moved)
-    periodic = isinstance(initial, str) and initial == "periodic"
-    length = _length(duration, common_period(signals) if periodic or duration is None else None, periodic)
-    _check_every(every)
-    _check_memory(system, whole_steps(length, step), int(every), memory_limit)
-    if integrator not in ("event-driven", "time-stepping"):
-        raise SimulationError(f'The integrator is "event-driven" or "time-stepping", got {integrator!r}.')
-    check_holds(system, signals)
-    joined = isinstance(initial, Trajectory)
-    begin = initial.end if isinstance(initial, Trajectory) else 0.0
+    plan = _plan(vehicle, driven, RunSettings(duration, step, integrator, every, energy, memory_limit))
+    system, signals, delays, initial, length = plan.system, plan.signals, plan.delays, plan.initial, plan.length
     if integrator == "time-stepping":
-        if periodic or energy:
-            raise SimulationError("A periodic steady state and the energy account need the event-driven integrator.")
-        return stepped.run(system, signals, delays, initial, begin, length, step, int(every))
-    table = tabulate(signals, delays, length, step, int(every), begin, joined)
+        return stepped.run(system, signals, delays, initial, plan.begin, length, step, int(every))
+    joined = isinstance(initial, Trajectory)
+    table = tabulate(signals, delays, length, step, int(every), plan.begin, joined)
     state, steady = initial_state(system, table.value[0], initial, table.slope[0]), None
     integration = event_driven.start(system, table, state, account=energy, after=ending_of(initial))
-    if periodic:
+    if plan.is_periodic:
         integration, steady = settle(system, table, state, energy)
     segments = table.time.size - 1
     reports = 1 if progress is None else _REPORTS
@@ -92,6 +119,38 @@ def simulate(
             progress(integration.segment / segments)
     label = "; ".join(dict.fromkeys(s.label for s in signals if s is not None))
     return trajectory_of(integration, steady, label)
+
+
+def check_simulation(vehicle: Vehicle, driven: Driven, settings: RunSettings) -> int:
+    """The number of steps; raises what `simulate` would raise before it begins to integrate."""
+    plan = _plan(vehicle, driven, settings)
+    if settings.integrator != "time-stepping":
+        check_elements(plan.system)
+    check_steps(plan.signals, settings.step, plan.begin + plan.length)
+    first = np.zeros((2, len(plan.signals)))
+    for i, (signal, delay) in enumerate(zip(plan.signals, plan.delays, strict=True)):
+        if signal is not None:
+            first[:, i] = np.ravel(signal.sample(np.array([plan.begin - delay])))
+    initial_state(plan.system, first[0], plan.initial, first[1])
+    return whole_steps(plan.length, settings.step)
+
+
+def _plan(vehicle: Vehicle, driven: Driven, settings: RunSettings) -> _Plan:
+    initial = starting_from(driven)
+    moved: dict[str, Any] = {name: given for name, given in driven.items() if name != "initial"}
+    system = piecewise(vehicle)
+    signals, delays = assign(system.mechanism, **moved)
+    plan = _Plan(system, tuple(signals), tuple(delays), initial)
+    known = common_period(signals) if plan.is_periodic or settings.duration is None else None
+    plan = replace(plan, length=_length(settings.duration, known, plan.is_periodic))
+    _check_every(settings.every)
+    _check_memory(system, whole_steps(plan.length, settings.step), int(settings.every), settings.memory_limit)
+    if settings.integrator not in ("event-driven", "time-stepping"):
+        raise SimulationError(f'The integrator is "event-driven" or "time-stepping", got {settings.integrator!r}.')
+    check_holds(system, signals)
+    if settings.integrator == "time-stepping" and (plan.is_periodic or settings.energy):
+        raise SimulationError("A periodic steady state and the energy account need the event-driven integrator.")
+    return plan
 
 
 def _length(duration: float | None, period: float | None, periodic: bool) -> float:

@@ -27,29 +27,43 @@ class FullCar(VehicleModel):
     Raises `MechanismError` unless masses, stiffnesses and lengths are positive.
     """
 
-    sprung_mass: float | Free = field(metadata=quantity("kg", "The body.", "1400 kg", may_be_free=True))
+    sprung_mass: float | Free = field(
+        metadata=quantity("kg", "The body.", "1400 kg", may_be_free=True, usual=(4.0, 2e5))
+    )
     pitch_inertia: float | Free = field(
-        metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "2400 kg m^2", may_be_free=True)
+        metadata=quantity(
+            "kg m^2", "Of the body, about its centre of mass.", "2400 kg m^2", may_be_free=True, usual=(0.2, 2e6)
+        )
     )
     roll_inertia: float | Free = field(
-        metadata=quantity("kg m^2", "Of the body, about its centre of mass.", "520 kg m^2", may_be_free=True)
+        metadata=quantity(
+            "kg m^2", "Of the body, about its centre of mass.", "520 kg m^2", may_be_free=True, usual=(0.05, 5e5)
+        )
     )
     unsprung_mass_front: float | Free = field(
-        metadata=quantity("kg", "One front wheel and hub.", "45 kg", may_be_free=True)
+        metadata=quantity("kg", "One front wheel and hub.", "45 kg", may_be_free=True, usual=(0.1, 5e3))
     )
     unsprung_mass_rear: float | Free = field(
-        metadata=quantity("kg", "One rear wheel and hub.", "40 kg", may_be_free=True)
+        metadata=quantity("kg", "One rear wheel and hub.", "40 kg", may_be_free=True, usual=(0.1, 5e3))
     )
     tyre_stiffness_front: float | Free = field(
-        metadata=quantity("N/m", "Of one front tyre.", "220 kN/m", may_be_free=True)
+        metadata=quantity("N/m", "Of one front tyre.", "220 kN/m", may_be_free=True, usual=(2e3, 5e7))
     )
     tyre_stiffness_rear: float | Free = field(
-        metadata=quantity("N/m", "Of one rear tyre.", "220 kN/m", may_be_free=True)
+        metadata=quantity("N/m", "Of one rear tyre.", "220 kN/m", may_be_free=True, usual=(2e3, 5e7))
     )
-    distance_front: float = field(metadata=quantity("m", "From the centre of mass to the front axle.", "1.2 m"))
-    distance_rear: float = field(metadata=quantity("m", "From the centre of mass to the rear axle.", "1.5 m"))
-    track_front: float = field(metadata=quantity("m", "From the left front wheel and strut to the right.", "1.52 m"))
-    track_rear: float = field(metadata=quantity("m", "From the left rear wheel and strut to the right.", "1.5 m"))
+    distance_front: float = field(
+        metadata=quantity("m", "From the centre of mass to the front axle.", "1.2 m", usual=(0.05, 20.0))
+    )
+    distance_rear: float = field(
+        metadata=quantity("m", "From the centre of mass to the rear axle.", "1.5 m", usual=(0.05, 20.0))
+    )
+    track_front: float = field(
+        metadata=quantity("m", "From the left front wheel and strut to the right.", "1.52 m", usual=(0.05, 6.0))
+    )
+    track_rear: float = field(
+        metadata=quantity("m", "From the left rear wheel and strut to the right.", "1.5 m", usual=(0.05, 6.0))
+    )
     front: Network = field(metadata=mount("Between body and each front wheel."))
     rear: Network = field(metadata=mount("Between body and each rear wheel."))
     anti_roll_front: Network | None = field(default=None, metadata=mount("Between left and right travel, in front."))

@@ -31,22 +31,32 @@ class HalfCar(VehicleModel):
     Raises `MechanismError` unless masses, stiffnesses and distances are positive.
     """
 
-    sprung_mass: float | Free = field(metadata=quantity("kg", "Half of the body.", "363.5 kg", may_be_free=True))
+    sprung_mass: float | Free = field(
+        metadata=quantity("kg", "Half of the body.", "363.5 kg", may_be_free=True, usual=(2.0, 1e5))
+    )
     pitch_inertia: float | Free = field(
-        metadata=quantity("kg m^2", "Of that half, about its centre of mass.", "200 kg m^2", may_be_free=True)
+        metadata=quantity(
+            "kg m^2", "Of that half, about its centre of mass.", "200 kg m^2", may_be_free=True, usual=(0.1, 1e6)
+        )
     )
     unsprung_mass_front: float | Free = field(
-        metadata=quantity("kg", "Front wheel and hub.", "25 kg", may_be_free=True)
+        metadata=quantity("kg", "Front wheel and hub.", "25 kg", may_be_free=True, usual=(0.1, 1e4))
     )
-    unsprung_mass_rear: float | Free = field(metadata=quantity("kg", "Rear wheel and hub.", "20 kg", may_be_free=True))
+    unsprung_mass_rear: float | Free = field(
+        metadata=quantity("kg", "Rear wheel and hub.", "20 kg", may_be_free=True, usual=(0.1, 1e4))
+    )
     tyre_stiffness_front: float | Free = field(
-        metadata=quantity("N/m", "Of the front tyre.", "120 kN/m", may_be_free=True)
+        metadata=quantity("N/m", "Of the front tyre.", "120 kN/m", may_be_free=True, usual=(2e3, 1e8))
     )
     tyre_stiffness_rear: float | Free = field(
-        metadata=quantity("N/m", "Of the rear tyre.", "100 kN/m", may_be_free=True)
+        metadata=quantity("N/m", "Of the rear tyre.", "100 kN/m", may_be_free=True, usual=(2e3, 1e8))
     )
-    distance_front: float = field(metadata=quantity("m", "From the centre of mass to the front axle.", "0.775 m"))
-    distance_rear: float = field(metadata=quantity("m", "From the centre of mass to the rear axle.", "1.265 m"))
+    distance_front: float = field(
+        metadata=quantity("m", "From the centre of mass to the front axle.", "0.775 m", usual=(0.05, 20.0))
+    )
+    distance_rear: float = field(
+        metadata=quantity("m", "From the centre of mass to the rear axle.", "1.265 m", usual=(0.05, 20.0))
+    )
     front: Network = field(metadata=mount("Between body and front wheel."))
     rear: Network = field(metadata=mount("Between body and rear wheel."))
     key: ClassVar[str] = "half-car"

@@ -31,12 +31,16 @@ class QuarterCar(VehicleModel):
     Raises `MechanismError` unless masses and tyre stiffness are positive, `NetworkError` if `strut` is no network.
     """
 
-    sprung_mass: float | Free = field(metadata=quantity("kg", "A quarter of the body.", "181.75 kg", may_be_free=True))
+    sprung_mass: float | Free = field(
+        metadata=quantity("kg", "A quarter of the body.", "181.75 kg", may_be_free=True, usual=(1.0, 5e4))
+    )
     unsprung_mass: float | Free = field(
-        metadata=quantity("kg", "Wheel, hub and their share of the suspension.", "25 kg", may_be_free=True)
+        metadata=quantity(
+            "kg", "Wheel, hub and their share of the suspension.", "25 kg", may_be_free=True, usual=(0.1, 5e3)
+        )
     )
     tyre_stiffness: float | Free = field(
-        metadata=quantity("N/m", "Of the tyre, vertically.", "120 kN/m", may_be_free=True)
+        metadata=quantity("N/m", "Of the tyre, vertically.", "120 kN/m", may_be_free=True, usual=(2e3, 5e7))
     )
     strut: Network = field(metadata=mount("Between body and wheel."))
     key: ClassVar[str] = "quarter-car"

@@ -27,7 +27,9 @@ class Seat(Stage):
 
     vehicle: Vehicle
     mass: float = field(
-        metadata=quantity("kg", "The occupant, with what moves along of the seat.", "60 kg", may_be_free=True)
+        metadata=quantity(
+            "kg", "The occupant, with what moves along of the seat.", "60 kg", may_be_free=True, usual=(2.0, 500.0)
+        )
     )
     network: Network = field(metadata=mount("Between floor and occupant."))
     place: Port = field(default_factory=lambda: {"sprung": 1.0})

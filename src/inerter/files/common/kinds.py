@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
+from typing import Any
 
 from inerter import files
+
+DEFAULT = "run"  # the command of the kind that a file without any known section is taken for
 
 
 @dataclass(frozen=True)
 class FileKind:
-    """What files of a kind are called, the command that reads them, and sections by which they are known."""
+    """What files of a kind are called, the command that reads them, and sections by which they are known.
+
+    The module `checking` of its `folder` has `check_lines(path)`: sentences about a file that the command accepts. It
+    raises the `StudyError` with which the command would refuse it.
+    """
 
     plural: str
     command: str
     sections: tuple[str, ...]
+    folder: str  # the package
+
+    def check_lines(self, path: Path) -> Iterable[str]:
+        """Sentences about a sound file of this kind; raises `StudyError` for another."""
+        lines: Iterable[str] = import_module(f"{self.folder}.checking").check_lines(path)
+        return lines
 
 
 @cache
@@ -29,3 +44,12 @@ def kinds() -> tuple[FileKind, ...]:
 def kind_with(section: str) -> FileKind | None:
     """The kind of file that is known by a section, if there is one."""
     return next((kind for kind in kinds() if section in kind.sections), None)
+
+
+def kind_of(tables: Mapping[str, Any]) -> FileKind:
+    """The kind of file of whose sections most are in `tables`; a study file where there are none of any."""
+
+    def share(kind: FileKind) -> tuple[float, bool]:
+        return sum(section in tables for section in kind.sections) / len(kind.sections), kind.command == DEFAULT
+
+    return max(kinds(), key=share)

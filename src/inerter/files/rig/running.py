@@ -23,6 +23,10 @@ class RigRequest:
     duration: float  # [s]
     start: float  # [s]
 
+    def check(self) -> int:
+        """The number of samples; raises what `VirtualRig.run` would raise before it simulates."""
+        return self.rig.check(self.signal.make(), self.duration, self.start)
+
     def run(self) -> Record:
         """What the sensors read; raises what `VirtualRig.run` raises."""
         return self.rig.run(self.signal.make(), self.duration, self.start)

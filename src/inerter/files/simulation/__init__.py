@@ -2,4 +2,4 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("simulation files", "simulate", ("simulation", "signal"))
+KIND = FileKind("simulation files", "simulate", ("simulation", "signal"), __name__)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from inerter.files.common.kind_entry import entry_of
 from inerter.files.common.layouts import StrutLayout
@@ -16,7 +16,8 @@ from inerter.files.common.toml import as_toml
 from inerter.files.common.vehicles import in_si, vehicle_entry
 from inerter.networks.elements import Element
 from inerter.signals.signal import Signal
-from inerter.simulation.simulate import simulate
+from inerter.simulation.inputs import Driven
+from inerter.simulation.simulate import RunSettings, check_simulation, simulate
 from inerter.simulation.trajectory import Trajectory
 from inerter.vehicle.vehicle import Vehicle
 
@@ -76,25 +77,26 @@ class SimulationRequest:
         """The signal of each track, as `SignalRequest.tracks` has it."""
         return self.signal.tracks(self.speed, self.roughness, coherence_of(self.coherence))
 
+    def check(self) -> int:
+        """The number of steps; raises what `simulate` would raise before it integrates."""
+        settings = RunSettings(**self._settings)
+        return check_simulation(self.design(), self._driven(), settings)
+
     def run(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Simulate it; raises what `simulate` raises."""
+        return simulate(self.design(), **self._driven(), **self._settings, progress=progress)
+
+    @property
+    def _settings(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in ("duration", "step", "integrator", "every", "energy")}
+
+    def _driven(self) -> Driven:
         signals = self.signals()
         signal = signals.get("", signals)
         moved: Any = {"road": signal} if self.signal.input == "road" else {"forces": {self.signal.input: signal}}
         if self.signal.input == "displacement":
             moved = {"displacement": signal}
-        settings: Any = {"integrator": self.integrator, "initial": self.initial}
-        return simulate(
-            self.design(),
-            **moved,
-            **settings,
-            duration=self.duration,
-            step=self.step,
-            speed=self.speed,
-            energy=self.energy,
-            every=self.every,
-            progress=progress,
-        )
+        return cast(Driven, {**moved, "speed": self.speed, "initial": self.initial})
 
     def resolved(self) -> dict[str, Any]:
         """The request as a simulation file says it: every default filled in, every quantity in SI units."""

@@ -2,4 +2,4 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("study files", "run", ("study",))
+KIND = FileKind("study files", "run", ("study",), __name__)

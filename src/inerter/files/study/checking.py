@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,10 +14,15 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
+from inerter.files.study.budgets import budget_cases
 from inerter.files.study.cases import Cases, cases, design_notes
+from inerter.files.study.fronts import front_cases
 from inerter.files.study.limits import limits_in, questions_limited
+from inerter.files.study.loading import load_study
 from inerter.files.study.notes import road_notes
+from inerter.files.study.plausibility import input_warnings, roads_sentence
 from inerter.files.study.study import Study, elements_used
+from inerter.files.study.tolerances import tolerance_cases
 from inerter.methods.asking import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Compiled, asked_of
@@ -30,6 +36,30 @@ _MOST_TRIED = 200  # swept values
 
 
 _sound: Study | None = None  # the last one without problems: who checks before a run may tell how far that is
+
+
+def check_lines(path: Path) -> Iterator[str]:
+    """Sentences about a sound study file: what it asks, its roads, warnings and notes.
+
+    Raises `StudyError` as `load_study` and `check_study` do.
+    """
+    study = load_study(path)
+    check_study(study)
+    counts = {
+        "budgets": len(budget_cases(study)),
+        "fronts": len(front_cases(study)),
+        "tolerances": len(tolerance_cases(study)),
+    }
+    further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
+    swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in study.sweeps)
+    yield (
+        f"{path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}{swept}"
+        f": {len(cases(study))} designs to {'find' if study.optimise else 'judge'}{further}."
+    )
+    if road := roads_sentence(study):
+        yield f"{road}."
+    yield from input_warnings(study)
+    yield from (f"Note: {note}." for note in study_notes(study))
 
 
 def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, total: None) -> None:

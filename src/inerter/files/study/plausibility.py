@@ -1,77 +1,54 @@
-"""What a study file says that no road or vehicle is, in warnings."""
+"""Sentences about the roads of a study, and about what in it no road or vehicle is."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from itertools import product
 
-from inerter.fields import fields_of
-from inerter.files.study.study import Study
-from inerter.signals.road import ROAD_CLASSES, Road
-from inerter.units import format_number, format_quantity
-from inerter.vehicle.registry import VEHICLES
+from inerter.errors import InerterError
+from inerter.files.common.plausibility import class_words, is_on_road, road_sentence, road_warnings, vehicle_warnings
+from inerter.files.study.places import place_of, with_numbers
+from inerter.files.study.study import Study, elements_used
+from inerter.files.study.written import as_written
+from inerter.signals.road import Road
+from inerter.units import format_quantity
 
-_ROUGHEST = "FGH"  # classes that no public road has (ISO 8608:2016, Annex C: up to E, unpaved)
-_SMOOTHEST = 1e-6  # [m^3] Gd(n0) of a sixteenth of the mean of class A
-_SPEEDS = (0.5, 150.0)  # [m/s] of what rolls on wheels
-_USUAL = {  # of vehicles on roads and rails, by unit [SI]
-    "kg": (0.5, 2e5),
-    "kg m^2": (0.5, 1e7),
-    "N/m": (1e3, 1e9),
-    "m": (0.05, 30.0),
-}
+_ROUGHNESS, _SPEED = "road.roughness", "road.speed"
 
 
-def road_sentence(study: Study) -> str:
-    """The class of the road and the speed; empty where either is varied, or where no index is about a road."""
-    varied = any(sweep.label.startswith("road.") for sweep in study.sweeps) or study.conditions
-    return "" if study.road is None or varied else f"Road: {class_words(study.road)}, at {study.road.speed:.4g} m/s"
+def roads_sentence(study: Study) -> str:
+    """The class of the road and the speed, as far as both are fixed; empty where no index is about a road."""
+    if study.road is None:
+        return ""
+    varied = {sweep.label for sweep in study.sweeps}.union(*(condition.numbers for condition in study.conditions))
+    roads = sorted(_roads(study), key=lambda road: road.roughness)
+    if _ROUGHNESS in varied and len({road.roughness for road in roads}) > 1:
+        return f"Roads: from {class_words(roads[0])} to {class_words(roads[-1])}"
+    speed = as_written(study, study.road.speed, "m/s") or format_quantity(study.road.speed, "m/s")
+    return road_sentence(study.road, "" if _SPEED in varied else speed)
 
 
-def class_words(road: Road) -> str:
-    """The class of a road, with its displacement spectral density Gd(n0)."""
-    return f"class {road.iso8608_class.letter} of ISO 8608 (Gd(n0) = {_millionths(road)} m^3, n0 = 0.1 cycle/m)"
+def input_warnings(study: Study) -> list[str]:
+    """Why roads, speeds or vehicles of the study may not be what is meant."""
+    if study.road is None or not is_on_road(study.model):
+        return []
+    found: dict[str, None] = {}
+    for one in _variants(study):
+        if one.road is not None:
+            elements = [(name, one.elements[name]) for name in elements_used(one)]
+            found |= dict.fromkeys([*road_warnings(one.road), *vehicle_warnings(one.model, one.vehicle, elements)])
+    return list(found)
 
 
-def _density(road: Road) -> float:
-    """Gd(n0) [m^3]."""
-    return 2.0 * road.roughness / 0.1**2
+def _roads(study: Study) -> Iterator[Road]:
+    return (one.road for one in _variants(study) if one.road is not None)
 
 
-def _millionths(road: Road) -> str:
-    return f"{format_number(1e6 * _density(road), 4)}e-6"
-
-
-def input_warnings(study: Study) -> Iterator[str]:
-    """Why the road, the speed or the vehicle may not be what is meant."""
-    if study.road is None or study.model not in VEHICLES:
-        return
-    yield from _road_warnings(study.road)
-    for field in fields_of(VEHICLES[study.model]):
-        value = study.vehicle.get(field.name)
-        low, high = _USUAL.get(field.unit, (0.0, inf))
-        if isinstance(value, float | int) and not low <= value <= high:
-            side = "less than" if value < low else "more than"
-            yield (
-                f"Warning: no vehicle is like this one: {field.in_words} {format_quantity(value, field.unit)}, "
-                f"{side} {format_quantity(low if value < low else high, field.unit)}. Check its unit."
-            )
-
-
-def _road_warnings(road: Road) -> Iterator[str]:
-    letter = road.iso8608_class.letter
-    if letter in _ROUGHEST:
-        yield (
-            f"Warning: no public road is as rough as class {letter} of ISO 8608. The road has Gd(n0) = "
-            f"{_millionths(road)} m^3, class C {ROAD_CLASSES['C'].mean / 1e-6:.0f}e-6 m^3. Give Gd(n0) in m^3 "
-            '(roughness = "256e-6 m^3"), kappa = Gd(n0) n0^2 / 2 in m^3/cycle, or class = "C".'
-        )
-    elif _density(road) < _SMOOTHEST:
-        yield (
-            f"Warning: no road is as smooth as Gd(n0) = {_millionths(road)} m^3 (class A has 16e-6 m^3). Give "
-            "Gd(n0) in m^3, or kappa = Gd(n0) n0^2 / 2 in m^3/cycle."
-        )
-    low, high = _SPEEDS
-    if not low <= road.speed <= high:
-        side = f"slower than {low:g}" if road.speed < low else f"faster than {high:g}"
-        yield f"Warning: no vehicle drives at {road.speed:.4g} m/s, {side} m/s. Check the unit of the speed."
+def _variants(study: Study) -> Iterator[Study]:
+    """The study at the ends of its sweeps, in each of its conditions; what cannot be is left out."""
+    for swept in product(*({min(sweep.values), max(sweep.values)} for sweep in study.sweeps)):
+        for condition in [one.numbers for one in study.conditions] or [{}]:
+            try:
+                yield with_numbers(study.at(swept), [(place_of(name), number) for name, number in condition.items()])
+            except InerterError:
+                continue

@@ -19,7 +19,7 @@ from inerter.files.study.places import Place, element_at, number_at, place_of, p
 from inerter.files.study.shape import SweepRange
 from inerter.files.study.study import Study, Sweep, elements_used
 from inerter.networks.elements import Free, Tied
-from inerter.units import are_alike, format_quantity, parse_quantity, shown, unit_in
+from inerter.units import are_alike, format_quantity, is_unit_for, parse_quantity, shown, unit_in
 
 Entry = SweepRange | tuple[str, ...]
 _MOST = 2  # places at once: what a map shows
@@ -91,8 +91,8 @@ def _sweep(study: Study, place: Place, entry: Entry) -> Sweep:
 
 def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:
     given = dict.fromkeys(map(unit_in, texts))
-    alike = [are_alike(unit, number.unit) for unit in given]
-    if all(alike):
+    alike = [is_unit_for(unit, number.unit) for unit in given]
+    if all(alike) and all(are_alike(unit, next(iter(given))) for unit in given):
         return
     if any(alike) or not all(are_alike(unit, next(iter(given))) for unit in given):
         raise EntryError(got=f"values of unlike units, {', '.join(sorted(given))}", expected="one")

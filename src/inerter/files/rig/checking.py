@@ -1,0 +1,29 @@
+"""What can be known of a rig file before the rig is run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from inerter.errors import InerterError
+from inerter.files.common.problem import at
+from inerter.files.common.problems import refusal
+from inerter.files.rig.loading import load_rig
+from inerter.networks.parser import written
+
+
+def check_lines(path: Path) -> Iterator[str]:
+    """Sentences about a sound rig file: the device, the signal and the samples.
+
+    Raises `StudyError` as `load_rig` does, and for what the rig would refuse.
+    """
+    request = load_rig(path)
+    try:
+        samples = request.check()
+    except InerterError as error:
+        raise refusal(path, [at(("rig",), str(error))]) from None
+    device = written(request.rig.device, [element.label for element in request.rig.device.elements()])
+    yield (
+        f"{path}: ok. Virtual rig with {device}; {request.signal.input}: {request.signal.kind}; "
+        f"{samples} samples over {request.duration:.6g} s, at {request.rig.sampling:.6g} Hz."
+    )

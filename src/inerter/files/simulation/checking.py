@@ -1,0 +1,44 @@
+"""What can be known of a simulation file before the simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from inerter.errors import InerterError
+from inerter.files.common.plausibility import road_sentence, road_warnings, vehicle_warnings
+from inerter.files.common.problem import at
+from inerter.files.common.problems import refusal
+from inerter.files.simulation.loading import load_simulation
+from inerter.networks.parser import names
+from inerter.signals.road import Road
+from inerter.units import format_handy
+
+
+def check_lines(path: Path) -> Iterator[str]:
+    """Sentences about a sound simulation file: what moves, for how long, and what no road or vehicle is.
+
+    Raises `StudyError` as `load_simulation` does, and for what `simulate` would refuse.
+    """
+    request = load_simulation(path)
+    try:
+        steps = request.check()
+        length = request.length or 0.0
+    except InerterError as error:
+        raise refusal(path, [at(("simulation",), str(error))]) from None
+    layout = "; ".join(dict.fromkeys(request.layouts[request.layout].struts.values()))
+    start = "steady state" if request.initial == "periodic" else f"from {request.initial}"
+    yield (
+        f"{path}: ok. Simulation of {request.model} with {request.layout} = {layout}; {request.signal.input}: "
+        f"{request.signal.kind}; {length:.6g} s, {steps} steps of {format_handy(request.step, 's', 6)}, "
+        f"{request.integrator}, {start}."
+    )
+    if request.speed is not None and request.roughness is not None:
+        road = Road(request.roughness, request.speed)
+        yield f"{road_sentence(road, format_handy(road.speed, 'm/s', 4))}."
+        yield from road_warnings(road)
+    used = {name for text in request.layouts[request.layout].struts.values() for name in names(text)}
+    yield from vehicle_warnings(
+        request.model, request.vehicle, [(n, element) for n, element in request.elements.items() if n in used]
+    )
+    yield from (f"Note: {note}." for note in request.notes)

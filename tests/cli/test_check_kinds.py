@@ -1,0 +1,143 @@
+"""`inerter check` of every kind of file: says what it is, and refuses in one sentence what its command would refuse."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from inerter.cli.main import call
+from inerter.files.common.kinds import kind_of, kinds
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SIMULATION = (EXAMPLES / "stick_slip.toml").read_text(encoding="utf-8")
+RIG = (EXAMPLES / "rig_fit.toml").read_text(encoding="utf-8")
+CONFIGURATION = """
+[model]
+layout = "(ks | cs) - (b | f)"
+[elements]
+ks = "1000 kN/m"
+cs = { from = "10 N s/m", to = "20 kN s/m" }
+b = { from = "1 kg", to = "500 kg" }
+f = "10 N"
+"""
+
+
+def check(tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    path = tmp_path / "file.toml"
+    path.write_text(text, encoding="utf-8")
+    code = call(["check", str(path)])
+    out, err = capsys.readouterr()
+    assert "Traceback" not in err
+    return code, " ".join((out + err).split())
+
+
+def replaced(text: str, key: str, value: str) -> str:
+    changed, count = re.subn(rf"^{key} *=.*$", f"{key} = {value}", text, flags=re.MULTILINE)
+    assert count == 1, key
+    return changed
+
+
+@pytest.mark.parametrize("example", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_is_sound(example: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["check", str(example)]) == 0
+    out, err = capsys.readouterr()
+    assert ": ok. " in " ".join(out.split())
+    assert "Warning" not in out
+    assert err == ""
+    assert max(map(len, out.splitlines())) <= max(80, len(str(example)) + 8)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (SIMULATION, "Simulation of quarter-car with strut = k | c | f; road: sine; 4 s, 20000 steps of 0.2 ms"),
+        (RIG, "Virtual rig with (ks | cs) - (b | f); displacement: cosine; 5001 samples over 5 s, at 1000 Hz."),
+        (CONFIGURATION, "inerter identify: the layout (ks | cs) - (b | f); to be identified: cs, b."),
+        ('[model]\nname = "choose"\n', "inerter identify: the best of "),
+        ('[record]\nforce = "Load"\n', "which also needs --model."),
+    ],
+)
+def test_check_says_what_a_file_is(tmp_path, capsys, text, said):
+    code, answer = check(tmp_path, text, capsys)
+    assert code == 0
+    assert said in answer
+
+
+@pytest.mark.parametrize("sections", [(), ("vehicle", "layouts"), ("studdy",)])
+def test_what_is_of_no_kind_is_taken_for_a_study(sections):
+    assert kind_of({section: {} for section in sections}).command == "run"
+
+
+def test_all_sections_of_a_kind_make_it_that_kind():
+    for kind in kinds():
+        assert kind_of({section: {} for section in (*kind.sections, "elements", "layouts")}) is kind
+
+
+BAD_SIMULATIONS = {
+    "duration": ("duration", '"4.00005 s"', "whole number of steps"),
+    "step": ("frequency", '"5 kHz"', "too long"),
+    "memory": ("duration", '"100000 s"', "GiB"),
+    "steps": ("duration", '"1e9 s"', "at most 1e9 are possible"),
+    "kind": ("kind", '"sin"', "signal.kind"),
+    "layout": ("strut", '"k | c | | f"', "layouts.strut"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_SIMULATIONS)
+def test_check_refuses_a_simulation_as_simulate_does(tmp_path, capsys, name):
+    key, value, words = BAD_SIMULATIONS[name]
+    text = replaced(SIMULATION, key, value) if key in SIMULATION else f"{SIMULATION}\n{key} = {value}\n"
+    code, said = check(tmp_path, text, capsys)
+    assert code == 2
+    assert words in said
+    assert call(["simulate", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out")]) == 2
+    assert " ".join(capsys.readouterr().err.split()) == said
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"initial": '"periodic"', "duration": '"4 s"'},
+        {"initial": '"periodic"', "integrator": '"time-stepping"'},
+        {"integrator": '"time-stepping"', "energy": "true"},
+    ],
+    ids=["period", "periodic stepping", "energy of stepping"],
+)
+def test_check_sees_what_only_the_integration_would_refuse(tmp_path, capsys, changes):
+    keys = "|".join(changes)
+    rest = re.sub(rf"^({keys}) *=.*\n", "", SIMULATION, flags=re.MULTILINE)
+    head, _, tail = rest.partition("[simulation]\n")
+    added = "".join(f"{key} = {value}\n" for key, value in changes.items())
+    code, said = check(tmp_path, f"{head}[simulation]\n{added}{tail}", capsys)
+    assert code == 2
+    assert call(["simulate", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out")]) == 2
+    assert " ".join(capsys.readouterr().err.split()) == said
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("duration", '"1 ms"', "less than 4 samples"),
+        ("duration", '"1e9 s"', "rig: "),
+        ("kind", '"multisine"', "signal"),
+    ],
+)
+def test_check_refuses_a_rig_as_rig_does(tmp_path, capsys, key, value, words):
+    code, said = check(tmp_path, replaced(RIG, key, value), capsys)
+    assert code == 2
+    assert words in said
+    assert call(["rig", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out.csv")]) == 2
+    assert " ".join(capsys.readouterr().err.split()) == said
+
+
+def test_a_simulation_on_a_road_says_its_class_and_doubts_what_no_road_is(tmp_path, capsys):
+    text = (EXAMPLES / "half_car_friction.toml").read_text(encoding="utf-8")
+    _, said = check(tmp_path, text, capsys)
+    assert "Road: class B of ISO 8608 (Gd(n0) = 100e-6 m^3, n0 = 0.1 cycle/m), at 25 m/s." in said
+    assert "Warning" not in said
+    _, said = check(tmp_path, replaced(text, "roughness", '"256e-6 m^3/cycle"'), capsys)
+    assert "Warning: no public road is as rough as class G" in said
+    _, said = check(tmp_path, replaced(text, "sprung_mass", '"363.5 g"'), capsys)
+    assert "Warning: no half car is like this one: sprung mass 0.3635 kg, less than 2 kg." in said

@@ -26,10 +26,10 @@ from inerter.papers.wang_su_2008 import between, beyond, curves, rows
 from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import (
     Claim,
+    ClaimVerdict,
     Evidence,
     Measured,
     Statement,
-    Verdict,
     all_of,
     everywhere,
     somewhere_above,
@@ -45,7 +45,7 @@ from inerter.papers.wang_su_2008.rig import Found, RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import simulated_rows, study
 
-SHOWN, CONTRADICTED, UNDETERMINED = Verdict
+SHOWN, CONTRADICTED, UNDETERMINED = ClaimVerdict
 
 
 def judged(table: int, name: str) -> SimulatedRow:
@@ -216,8 +216,8 @@ def test_crossings_in_the_noise_do_not_count() -> None:
     assert crossing.value == pytest.approx((K[9] + K[10]) / 2.0)
     assert crossing.error == pytest.approx(0.015 * (K[10] - K[9]) / 0.2)
     found = noisy.measured("a", "S1", "J1")
-    assert within(found[4], low=between.WORSE) is Verdict.UNDETERMINED
-    assert within(found[10], low=between.WORSE) is Verdict.SHOWN
+    assert within(found[4], low=between.WORSE) is ClaimVerdict.UNDETERMINED
+    assert within(found[10], low=between.WORSE) is ClaimVerdict.SHOWN
 
 
 def test_what_realisations_do_to_both_curves_cancels() -> None:
@@ -268,7 +268,7 @@ def claim_of(number: int, found: list[Claim]) -> Claim:
     return next(claim for claim in found if claim.number == number)
 
 
-def verdict(number: int, found: list[Claim]) -> Verdict:
+def verdict(number: int, found: list[Claim]) -> ClaimVerdict:
     return claim_of(number, found).verdict
 
 

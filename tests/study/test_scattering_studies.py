@@ -87,7 +87,8 @@ def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
     asked = study.asked("J1", "S1")
     assert isinstance(asked, it.Quantile)
     assert it.evaluate(best.design, asked.apart, it.Norm()).value == best.value
-    assert it.evaluate(best.design, asked, it.Norm()).value == it.optimise(study.design("S1"), asked, it.Norm()).value
+    again = it.optimise(study.design("S1"), asked, it.Norm()).value  # from other starts
+    assert it.evaluate(best.design, asked, it.Norm()).value == pytest.approx(again, rel=1e-12)
     assert "quantile" in asked.title
 
 

@@ -205,7 +205,7 @@ def with_unit(value: float, unit: str, error: float = np.nan, bound: float = np.
     With a standard error, which then has two digits, the value has as many decimals; fewer where its largest other
     error, the relative `bound`, allows no more.
 
-    >>> with_unit(7544.2, "N s/m"), with_unit(7544.2, "N s/m", 23.0), with_unit(7544.2, "N s/m", bound=2e-3)
+    >>> with_unit(7544.2, "N s/m"), with_unit(7544.2, "N s/m", 23.0), with_unit(7544.2, "N s/m", bound=1e-3)
     ('7.544 kN s/m', '7.544 +- 0.023 kN s/m', '7.54 kN s/m')
     """
     if np.isnan(value):

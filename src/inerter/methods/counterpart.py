@@ -85,7 +85,13 @@ class Counterpart:
     def unlike(self, speeds: Array, norms: Array) -> float:
         """By what part of a mean square it changes if frictions slip twice as fast; `norms` are those at `speeds`."""
         other = h2(self.system(2.0 * speeds), self.problem.pade_order).outputs
-        return float(np.nanmax(np.abs((other / norms) ** 2 - 1.0), initial=0.0))
+        return relative_change(other**2, norms**2)
+
+
+def relative_change(values: Array, references: Array) -> float:
+    """Largest |value / reference - 1| of the outputs that move at all, which those on one side of a symmetry do not."""
+    moving = references > 0.0
+    return float(np.nanmax(np.abs(values[moving] / references[moving] - 1.0), initial=0.0))
 
 
 def counterpart(mechanism: Mechanism, question: Question, conventions: Conventions) -> Counterpart | None:

@@ -14,7 +14,14 @@ from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Question
 from inerter.methods.averages import interval_of, mean_and_error
-from inerter.methods.counterpart import Counterpart, counterpart, has_play, memory, with_velocities
+from inerter.methods.counterpart import (
+    Counterpart,
+    counterpart,
+    has_play,
+    memory,
+    relative_change,
+    with_velocities,
+)
 from inerter.methods.error_bounds import checked
 from inerter.methods.linear import Conventions
 from inerter.methods.measured import road_errors
@@ -163,7 +170,7 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     added = (design.question.drive.size * whole.outputs) ** 2 - seen
     (left, pole), (at_last, _) = (memory(system, whole.outputs, time) for time in (way.period, design.longest))
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
-    misfit = float(np.max(np.abs(inside / np.maximum(power[:count], 1e-300) - 1.0)))
+    misfit = relative_change(inside, power[:count])
     unlike = min(misfit + linear.unlike(speeds, whole.outputs), 1.0)  # once the lines tell more
     unseen, within_reach = 2.0 * left, True
     if unseen > _UNSEEN:

@@ -40,7 +40,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Range:
+class BudgetRange:
     """Values of the parameter (SI) between crossings or bounds, and whether the design beats the baseline there."""
 
     lower: float
@@ -64,7 +64,7 @@ class Budget:
     standard_error: float
     interval: tuple[float, float]
     crossings: tuple[Crossing, ...]  # all that were found, in rising order
-    ranges: tuple[Range, ...]  # between them, in rising order: all of `bounds`
+    ranges: tuple[BudgetRange, ...]  # between them, in rising order: all of `bounds`
     bounds: tuple[float, float]
     status: Status
     evaluations: int
@@ -251,9 +251,9 @@ def _crossing(
 
 def _ranges(
     grid: Sequence[float], gaps: Sequence[float], crossings: Sequence[Crossing], bounds: tuple[float, float]
-) -> tuple[Range, ...]:
+) -> tuple[BudgetRange, ...]:
     """What the design is between crossings; a range without values ends half way to its neighbours."""
-    found: list[Range] = []
+    found: list[BudgetRange] = []
     ends = [c.value for c in crossings]
     for i, (at, gap) in enumerate(zip(grid, gaps, strict=True)):
         better = bool(gap < 0.0) if np.isfinite(gap) else None
@@ -264,7 +264,7 @@ def _ranges(
             half_way = float(np.exp(0.5 * (grid[i - 1] + at)))
             begin = next((end for end in ends if grid[i - 1] <= np.log(end) <= at), half_way)
             found[-1] = replace(found[-1], upper=begin)
-        found.append(Range(begin, bounds[1], better))
+        found.append(BudgetRange(begin, bounds[1], better))
     return tuple(found)
 
 
@@ -275,7 +275,7 @@ def _lies_on_the_way(at: float, end: Crossing, step: float) -> bool:
 
 
 def _status(
-    ranges: Sequence[Range], end: Crossing | None, statuses: Sequence[Status], parameter: str, unit: str
+    ranges: Sequence[BudgetRange], end: Crossing | None, statuses: Sequence[Status], parameter: str, unit: str
 ) -> Status:
     """The worst of all that were compared; where there is no end, for which values the design is better."""
     bad, said = worst_of(statuses), _sentence(ranges, parameter, unit)
@@ -285,7 +285,7 @@ def _status(
     return OK if end is not None else Status(StatusKind.UNBOUNDED, said)
 
 
-def _sentence(ranges: Sequence[Range], parameter: str, unit: str) -> str:
+def _sentence(ranges: Sequence[BudgetRange], parameter: str, unit: str) -> str:
     """For which values the design is better, in words."""
     whole = f"{parameter} {_span(ranges[0].lower, ranges[-1].upper, unit)}"
     better = [f"{_span(one.lower, one.upper, unit)}" for one in ranges if one.better]

@@ -35,7 +35,8 @@ def input_warnings(study: Study) -> list[str]:
     found: dict[str, None] = {}
     for one in _variants(study):
         if one.road is not None:
-            elements = [(name, one.elements[name]) for name in elements_used(one)]
+            used = elements_used(one)
+            elements = [(name, element) for name, element in one.elements.items() if name in used]
             found |= dict.fromkeys([*road_warnings(one.road), *vehicle_warnings(one.model, one.vehicle, elements)])
     return list(found)
 

@@ -10,10 +10,10 @@ import numpy as np
 from inerter.papers.wang_su_2008.between import WORSE, Found, crossings, excess_there
 from inerter.papers.wang_su_2008.judging import (
     Claim,
+    ClaimVerdict,
     Evidence,
     Measured,
     Statement,
-    Verdict,
     about,
     all_of,
     everywhere,
@@ -39,7 +39,7 @@ def friction_claims(curves: Curves) -> list[Claim]:
     return [claim(curves) for claim in (_claim_4, _claim_5, _claim_8, _claim_9, _claim_10)]
 
 
-def _rising(curves: Curves, names: Sequence[str], index: str) -> tuple[Verdict, list[Measured]]:
+def _rising(curves: Curves, names: Sequence[str], index: str) -> tuple[ClaimVerdict, list[Measured]]:
     """Whether each curve is nowhere below the one before it, and somewhere above; and how much higher each is."""
     gaps = [curves.measured(higher, lower, index) for lower, higher in pairwise(names)]
     every = [gap for steps in gaps for gap in steps]
@@ -55,8 +55,10 @@ def _where_contrary(curves: Curves, names: Sequence[str], index: str) -> str:
 def _exceptions(curves: Curves, gaps: Sequence[Sequence[Measured]]) -> str:
     """The stiffnesses at which one of the quantities lies above `WORSE`, certainly or perhaps, in words."""
     count = sum(map(len, gaps))
-    contrary = [any(within(g, high=WORSE, comparisons=count) is Verdict.CONTRADICTED for g in at) for at in _at(gaps)]
-    open_ = [any(within(g, high=WORSE) is not Verdict.SHOWN for g in at) for at in _at(gaps)]
+    contrary = [
+        any(within(g, high=WORSE, comparisons=count) is ClaimVerdict.CONTRADICTED for g in at) for at in _at(gaps)
+    ]
+    open_ = [any(within(g, high=WORSE) is not ClaimVerdict.SHOWN for g in at) for at in _at(gaps)]
     unsure = [o and not c for o, c in zip(open_, contrary, strict=True)]
     said = f", but not at k = {kilo(curves.k[contrary].tolist(), ', ', 0)} kN/m" if any(contrary) else ""
     return said + (f", not certain at {sum(unsure)} of {len(unsure)} stiffnesses" if any(unsure) else "")
@@ -95,7 +97,7 @@ def _claim_2(curves: Curves, between: Found) -> Claim:
         ends = [within(gaps[0], high=-WORSE), within(gaps[-1], low=WORSE)]
         least = -100.0 * min(gap.value for gap in gaps)
         text = f"{kind}: better below k = {kilo(found)} kN/m, by at most {least:.2f} %"
-        once = all_of(ends) if len(found) == 1 else Verdict.CONTRADICTED
+        once = all_of(ends) if len(found) == 1 else ClaimVerdict.CONTRADICTED
         number = within(Measured(found[0]), *about(120e3, curves.step)) if found else None
         parts.append(statement(text, once, number, by=_percent([gaps[0], gaps[-1]])))
     return Claim(2, CLAIMS[2], tuple(parts))
@@ -142,7 +144,7 @@ def _claim_5(curves: Curves) -> Claim:
     for layout, index in (("S2", "J3"), ("S3", "J3"), ("S2", "J5")):
         for force in (10, 20):
             gaps = _percent(curves.measured(f"{layout}-{force}N", "S1", index)[: int(soft.sum())])
-            certain = [within(g, high=100.0 * WORSE, comparisons=len(gaps)) is Verdict.CONTRADICTED for g in gaps]
+            certain = [within(g, high=100.0 * WORSE, comparisons=len(gaps)) is ClaimVerdict.CONTRADICTED for g in gaps]
             largest = max(gaps, key=lambda gap: gap.value)
             text = f"{index} of {layout} with {force} N: not certainly worse than S1's, at most {_against(largest)}"
             if any(certain):
@@ -169,7 +171,7 @@ def _claim_8(curves: Curves) -> Claim:
         found = curves.crossings(f"{layout}-10N", f"{layout}-soft", "J1")
         text = f"{layout}: friction alone is better than elasticity alone above k = {_crossing_text(found)} kN/m"
         ends = [within(gaps[0], low=100.0 * WORSE), within(gaps[-1], high=-100.0 * WORSE)]
-        once = all_of(ends) if len(found) == 1 else all_of([*ends, Verdict.UNDETERMINED])
+        once = all_of(ends) if len(found) == 1 else all_of([*ends, ClaimVerdict.UNDETERMINED])
         parts.append(statement(text, once, _near(found, printed, curves.step), by=[gaps[0], gaps[-1]]))
         parts.append(_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J1"))
     return Claim(8, CLAIMS[8], tuple(parts))
@@ -187,7 +189,7 @@ def _claim_9(curves: Curves) -> Claim:
     for layout, where, at, order in printed:
         found = curves.order([layout + kind for kind in words], "J3", at)
         steps = [within(curves.mean_measured(b, a, "J3", at), low=WORSE) for a, b in pairwise(found)]
-        signs = ["<" if step is Verdict.SHOWN else "≈" for step in steps]
+        signs = ["<" if step is ClaimVerdict.SHOWN else "≈" for step in steps]
         line = "".join(f"{words[n.removeprefix(layout)]} {sign} " for n, sign in zip(found, [*signs, ""], strict=True))
         gaps = [curves.mean_measured(layout + b, layout + a, "J3", at) for a, b in combinations(order, 2)]
         text = f"{layout} {where} kN/m: {line.rstrip()}"
@@ -209,7 +211,7 @@ def _claim_10(curves: Curves) -> Claim:
     parts = [_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J5") for layout in _LAYOUTS]
     more = curves.measured("S3-soft", "S3-10N", "J5")
     counts = [
-        sum(within(gap.times(sign), low=WORSE, comparisons=len(more)) is Verdict.SHOWN for gap in more)
+        sum(within(gap.times(sign), low=WORSE, comparisons=len(more)) is ClaimVerdict.SHOWN for gap in more)
         for sign in (1.0, -1.0)
     ]
     text = (
@@ -257,6 +259,6 @@ def _crossing_text(found: Sequence[Measured], between: str = " and ") -> str:
     return between.join(parts) or "(no crossing)"
 
 
-def _near(found: Sequence[Measured], printed: float, step: float) -> Verdict:
+def _near(found: Sequence[Measured], printed: float, step: float) -> ClaimVerdict:
     """Whether the only crossing lies at the printed stiffness, which was read off a figure in steps."""
-    return within(found[0], *about(printed, step)) if len(found) == 1 else Verdict.UNDETERMINED
+    return within(found[0], *about(printed, step)) if len(found) == 1 else ClaimVerdict.UNDETERMINED

@@ -27,7 +27,7 @@ _RISK = 0.05  # of an interval that misses
 _DETECTED = 0.9  # of differences as large as the power that is stated
 
 
-class Verdict(StrEnum):
+class ClaimVerdict(StrEnum):
     """What the evidence says of a statement."""
 
     SHOWN = "shown"
@@ -35,21 +35,21 @@ class Verdict(StrEnum):
     UNDETERMINED = "undetermined"
 
     @property
-    def opposite(self) -> Verdict:
+    def opposite(self) -> ClaimVerdict:
         """The verdict on the contrary statement."""
         return _OPPOSITE.get(self, self)
 
 
-_OPPOSITE = {Verdict.SHOWN: Verdict.CONTRADICTED, Verdict.CONTRADICTED: Verdict.SHOWN}
+_OPPOSITE = {ClaimVerdict.SHOWN: ClaimVerdict.CONTRADICTED, ClaimVerdict.CONTRADICTED: ClaimVerdict.SHOWN}
 
 
-def all_of(verdicts: Iterable[Verdict]) -> Verdict:
+def all_of(verdicts: Iterable[ClaimVerdict]) -> ClaimVerdict:
     """The verdict on several statements together: contradicted by any, shown only by all."""
     found = set(verdicts)
-    for verdict in (Verdict.CONTRADICTED, Verdict.UNDETERMINED):
+    for verdict in (ClaimVerdict.CONTRADICTED, ClaimVerdict.UNDETERMINED):
         if verdict in found:
             return verdict
-    return Verdict.SHOWN
+    return ClaimVerdict.SHOWN
 
 
 @dataclass(frozen=True)
@@ -91,27 +91,27 @@ def _quantile(share: float, freedom: float) -> float:
     return float(scipy.special.ndtri(share) if freedom == inf else scipy.special.stdtrit(freedom, share))
 
 
-def within(found: Measured, low: float = -inf, high: float = inf, comparisons: int = 1) -> Verdict:
+def within(found: Measured, low: float = -inf, high: float = inf, comparisons: int = 1) -> ClaimVerdict:
     """Whether a quantity lies from `low` to `high`, by its 95 % confidence interval."""
     reach = found.half_width(comparisons)
     if found.doubt or not abs(found.value) < inf:
-        return Verdict.UNDETERMINED
+        return ClaimVerdict.UNDETERMINED
     if low <= found.value - reach and found.value + reach <= high:
-        return Verdict.SHOWN
+        return ClaimVerdict.SHOWN
     if found.value + reach < low or found.value - reach > high:
-        return Verdict.CONTRADICTED
-    return Verdict.UNDETERMINED
+        return ClaimVerdict.CONTRADICTED
+    return ClaimVerdict.UNDETERMINED
 
 
-def everywhere(found: Sequence[Measured], low: float = -inf, high: float = inf) -> Verdict:
+def everywhere(found: Sequence[Measured], low: float = -inf, high: float = inf) -> ClaimVerdict:
     """Whether all quantities lie from `low` to `high`."""
-    if all(within(one, low, high) is Verdict.SHOWN for one in found):
-        return Verdict.SHOWN
+    if all(within(one, low, high) is ClaimVerdict.SHOWN for one in found):
+        return ClaimVerdict.SHOWN
     certain = [within(one, low, high, len(found)) for one in found]
-    return Verdict.CONTRADICTED if Verdict.CONTRADICTED in certain else Verdict.UNDETERMINED
+    return ClaimVerdict.CONTRADICTED if ClaimVerdict.CONTRADICTED in certain else ClaimVerdict.UNDETERMINED
 
 
-def somewhere_above(found: Sequence[Measured], level: float) -> Verdict:
+def somewhere_above(found: Sequence[Measured], level: float) -> ClaimVerdict:
     """Whether any quantity lies above `level`."""
     return everywhere(found, high=level).opposite
 
@@ -129,8 +129,8 @@ class Statement:
     """
 
     found: str
-    verdict: Verdict
-    number: Verdict | None = None  # None: no number is printed, or what has it was not shown
+    verdict: ClaimVerdict
+    number: ClaimVerdict | None = None  # None: no number is printed, or what has it was not shown
     power: str = ""
 
     @property
@@ -143,8 +143,8 @@ class Statement:
 
 def statement(
     found: str,
-    verdict: Verdict,
-    number: Verdict | None = None,
+    verdict: ClaimVerdict,
+    number: ClaimVerdict | None = None,
     *,
     by: Sequence[Measured] = (),
     unit: str = "%",
@@ -154,7 +154,7 @@ def statement(
     power = max((one.detectable(at_once) for one in by), default=0.0)
     doubts = dict.fromkeys(one.doubt for one in by if one.doubt)
     said = f"{found} (not to be relied on: {'; '.join(doubts)})" if doubts else found
-    kept = number if verdict is Verdict.SHOWN else None
+    kept = number if verdict is ClaimVerdict.SHOWN else None
     return Statement(said, verdict, kept, f"{power:.2g} {unit}" if power > 0.0 else "")
 
 
@@ -168,12 +168,12 @@ class Claim:
     note: str = ""
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> ClaimVerdict:
         """Of all statements together."""
         return all_of(part.verdict for part in self.parts)
 
     @property
-    def printed_numbers(self) -> Verdict | None:
+    def printed_numbers(self) -> ClaimVerdict | None:
         """Of the numbers that the paper gives, where what has them is shown; None where there are none."""
         found = [part.number for part in self.parts if part.number is not None]
         return all_of(found) if found else None
@@ -182,7 +182,7 @@ class Claim:
     def headline(self) -> str:
         """The verdict in words, with how many statements it rests on, and that on the printed numbers."""
         alike = sum(part.verdict is self.verdict for part in self.parts)
-        some = "" if self.verdict is Verdict.SHOWN else f" in {alike} of {len(self.parts)} statements"
+        some = "" if self.verdict is ClaimVerdict.SHOWN else f" in {alike} of {len(self.parts)} statements"
         numbers = self.printed_numbers
         return f"{self.verdict}{some}" + (f"; printed numbers {numbers}" if numbers is not None else "")
 

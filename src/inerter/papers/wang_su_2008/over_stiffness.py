@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from inerter.papers.wang_su_2008.between import WORSE
-from inerter.papers.wang_su_2008.judging import Measured, Verdict, within
+from inerter.papers.wang_su_2008.judging import ClaimVerdict, Measured, within
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -71,7 +71,7 @@ class Curves:
         """
         gap, k, found = self.excess(one, other, index), self.k, self.measured(one, other, index)
         same = [within(each, -WORSE, WORSE, k.size) for each in found]
-        certain = np.array([verdict is Verdict.CONTRADICTED for verdict in same])
+        certain = np.array([verdict is ClaimVerdict.CONTRADICTED for verdict in same])
         stretches = np.split(np.arange(k.size), 1 + np.flatnonzero(np.diff(np.sign(gap)) != 0))
         counted = [stretch for stretch in stretches if certain[stretch].any()]
         turns = [(s[-1], after[0]) for s, after in pairwise(counted) if gap[s[-1]] * gap[after[0]] < 0.0]

@@ -12,7 +12,7 @@ from inerter.figures.networks import draw_networks
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
 from inerter.networks.parser import network
-from inerter.papers.wang_su_2008.judging import RULE, Verdict
+from inerter.papers.wang_su_2008.judging import RULE, ClaimVerdict
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.paper import NETWORKS, PAPER
 from inerter.papers.wang_su_2008.report import figures as drawn
@@ -130,7 +130,7 @@ def _summary(found: Reproduction) -> list[str]:
         said = ", ".join(f"{verdict} {count}" for verdict, count in counts.items() if count)
         lines.append(f"Simulated rows of the tables by verdict: {said}; {len(rows)} in all.")
     if found.claims:
-        claims = {verdict: [str(c.number) for c in found.claims if c.verdict is verdict] for verdict in Verdict}
+        claims = {verdict: [str(c.number) for c in found.claims if c.verdict is verdict] for verdict in ClaimVerdict}
         said = "; ".join(f"{verdict}: {', '.join(some)}" for verdict, some in claims.items() if some)
         lines.append(f"Claims by number, {said}.")
     if found.optima:

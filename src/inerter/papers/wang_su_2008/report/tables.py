@@ -56,7 +56,7 @@ def simulated_table(found: Reproduction, number: int) -> Table | None:
         if r.row.table == number
     ]
     over = ["Improvement"] if number == 2 else []
-    header = ["Design", "Printed", "paper2008, difference", "Exact", *over, "Verdict"]
+    header = ["Design", "Printed", "paper2008, difference", "Exact", *over, "ClaimVerdict"]
     method = "approximated linear model (Method 1)" if number == 2 else "expected value (Method 2)"
     return Table(f"Table {number} recomputed, {method}: J1 in m/s², J3 in N, J5 in m/N", header, rows) if rows else None
 

@@ -128,8 +128,10 @@ def test_panels_ask_what_the_study_asks(name: str) -> None:
     """Over conditions, at quantiles, of any vehicle: a study of the very designs has the panel's numbers."""
     document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
     study = study_from(document)
-    panel = answered("indices", {"study": document, "methods": ["norm"]})
-    made = fixed(document, study, designs_of(study, {}))
+    designs = designs_of(study, {})
+    values = {design.layout: design.values for design in designs}
+    panel = answered("indices", {"study": document, "methods": ["norm"], "values": values})
+    made = fixed(document, study, designs)
     asked = study_from({**made, "study": {**made["study"], "evaluate": ["norm"]}})
     data = dataset(asked, {case: run_case(asked, case) for case in cases(asked)})
     for design in panel["designs"]:
@@ -282,6 +284,52 @@ def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient)
     )
     values = {row["index"]: row["value"] for row in answer.json()["designs"][0]["results"]}
     assert values == pytest.approx(point["values"], rel=1e-9)  # the search values by kernels, a design by itself
+
+
+@pytest.mark.parametrize("panel", ["indices", "compare"])
+@pytest.mark.parametrize("left_out", [("S1", "c"), ("S3", "b")])
+def test_a_design_that_nobody_has_chosen_is_no_answer(
+    client: TestClient, panel: str, left_out: tuple[str, str]
+) -> None:
+    """Values in the middle of their bounds: no per cent and no best, neither of it nor beside it."""
+    values = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
+    for layout, missing in ((None, None), left_out):
+        designs = [
+            {"layout": name, "values": {k: v for k, v in own.items() if (name, k) != (layout, missing)}}
+            for name, own in values.items()
+        ]
+        told = client.post(f"/api/panel/{panel}", json={"study": DOCUMENT, "designs": designs}).json()["designs"]
+        assert [design["unchosen"] for design in told] == [[missing] if d["layout"] == layout else [] for d in told]
+        base = {"indices": "S1", "compare": told[0]["layout"]}[panel]
+        touched = {layout, *(values if layout == base else ())} if layout else set()
+        for design in told:
+            assert all((r["improvement_percent"] is None) == (design["layout"] in touched) for r in design["results"])
+            assert all(r["value"] > 0.0 for r in design["results"])
+        if panel == "compare":
+            assert any(r["best"] for d in told for r in d["results"]) == (layout is None)
+
+
+def test_a_comparison_is_no_better_than_the_worst_of_it(client: TestClient) -> None:
+    """Of friction that sticks for a part of the time, by statistical linearisation: no best, and a status of each per cent."""
+    document = changed(elements={"f": "300 N"}, study={"evaluate": ["norm", "statistical-linearisation"]})
+    body = {"study": document, "designs": COMPARED[:2], "methods": ["statistical-linearisation"]}
+    told = client.post("/api/panel/compare", json=body).json()["designs"]
+    statuses = [[result["status"] for result in design["results"]] for design in told]
+    assert "inaccurate" in statuses[0]
+    for row, result in enumerate(told[1]["results"]):
+        worst = "ok" if statuses[0][row] == statuses[1][row] == "ok" else "inaccurate"
+        assert result["improvement_status"] == worst
+        assert any(design["results"][row]["best"] for design in told) == (worst == "ok")
+
+
+@pytest.mark.parametrize(("method", "spread", "doubt"), [("norm", "f", True), ("norm", "c", False)])
+def test_scatter_that_a_method_does_not_see_is_told(client: TestClient, method: str, spread: str, doubt: bool) -> None:
+    design = {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}
+    body = {"study": DOCUMENT, "design": design, "index": "J1", "spread": {spread: 0.1}, "samples": 16}
+    told = client.post("/api/panel/tolerance", json={**body, "method": method}).json()
+    assert (told["status"], spread in told["message"]) == (("inaccurate", True) if doubt else ("ok", False))
+    table = client.post("/api/export/csv", json={"panel": "tolerance", "request": {**body, "method": method}}).text
+    assert list(csv.reader(io.StringIO(table)))[1][1].split(": ")[0] == told["status"]
 
 
 def test_a_tolerance_is_that_of_python(client: TestClient) -> None:

@@ -389,8 +389,11 @@ def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
         found.quantile(0.95),
         found.worst,
     ]
-    visitor.page.get_by_role("group", name="Layouts").get_by_role("button", name="S2", exact=True).click()
-    page.wait_for_selector("text=before it was changed")
+    layouts = visitor.page.get_by_role("group", name="Layouts")
+    layouts.get_by_role("button", name="S2", exact=True).click()
+    page.wait_for_selector("table[data-scatter]", state="detached")  # it is that of another strut
+    page.get_by_role("button", name="Undo").click()
+    page.wait_for_selector("table[data-scatter]")
 
 
 @pytest.mark.campaign

@@ -15,21 +15,28 @@ export class Refusal extends Error {
 /** What is thrown where no server answers. */
 export class Lost extends Error {}
 
-/** @typedef {{get: (path: string) => Promise<any>, post: (path: string, body: unknown) => Promise<any>, remove: (path: string) => Promise<any>, upload: (path: string, file: Blob) => Promise<any>, blob: (path: string, body?: unknown) => Promise<Blob>, events: (path: string, told: (event: string, data: any) => void, signal?: AbortSignal) => Promise<void>}} Api */
+/** `waiting`: since when the oldest request has waited for its answer [ms since 1970], or null.
+ * @typedef {{waiting: () => number | null, get: (path: string) => Promise<any>, post: (path: string, body: unknown) => Promise<any>, remove: (path: string) => Promise<any>, upload: (path: string, file: Blob) => Promise<any>, blob: (path: string, body?: unknown) => Promise<Blob>, events: (path: string, told: (event: string, data: any) => void, signal?: AbortSignal) => Promise<void>}} Api */
 
 /** @param {() => string} token @returns {Api} */
 export function createApi(token) {
+  /** @type {Map<object, number>} */
+  const begun = new Map();
   /** @param {string} method @param {string} path @param {BodyInit} [body] @param {AbortSignal} [signal] */
   async function request(method, path, body, signal) {
     /** @type {Record<string, string>} */
     const headers = { Authorization: `Bearer ${token()}` };
     if (typeof body === "string") headers["Content-Type"] = "application/json";
+    const me = {};
+    begun.set(me, Date.now());
     let response;
     try {
       response = await fetch(`/api/${path}`, { method, headers, body, signal, cache: "no-store", credentials: "omit" });
     } catch (error) {
       if (signal?.aborted) throw error;
       throw new Lost("The server does not answer.");
+    } finally {
+      begun.delete(me);
     }
     if (!response.ok) throw new Refusal(response.status, await response.json().catch(() => ({})));
     return response;
@@ -37,6 +44,7 @@ export function createApi(token) {
   /** @param {Response} response */
   const json = (response) => (response.status === 204 ? null : response.json().catch(() => null));
   return {
+    waiting: () => (begun.size === 0 ? null : Math.min(...begun.values())),
     get: async (path) => json(await request("GET", path)),
     post: async (path, body) => json(await request("POST", path, JSON.stringify(body))),
     remove: async (path) => json(await request("DELETE", path)),

@@ -2,7 +2,8 @@
 // answered the newest question is asked next, so that what is shown at last belongs to the last step.
 
 import { Lost, Refusal } from "./api.js";
-import { questions } from "./questions.js";
+import { questions, soughtOf } from "./questions.js";
+import { isSettled } from "./state/answers.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./api.js").Api} Api */
@@ -11,10 +12,8 @@ const AGAIN = 1000; // [ms] until a lost server is asked again
 
 /** Keeps answers up to date with the state. @param {Store} store @param {Api} api @param {string} client @param {() => Promise<void>} found what is done when a lost server is back */
 export function keepAsking(store, api, client, found = async () => {}) {
-  /** @type {{[panel: string]: string}} */
-  const underWay = {};
-  /** @type {{[panel: string]: string}} */
-  const settled = {};
+  /** @type {Set<string>} */
+  const underWay = new Set();
   let sequence = 0;
   let waking = false;
 
@@ -22,34 +21,32 @@ export function keepAsking(store, api, client, found = async () => {}) {
     const state = store.get();
     if (state.connection === "lost") lose();
     if (state.connection !== "ready" && state.connection !== "compiling") return;
-    for (const { panel, path, body, learnt } of questions(state)) {
-      const question = JSON.stringify(body);
-      if (panel in underWay || settled[panel] === question) continue;
-      void ask({ panel, path, body, learnt }, question);
+    for (const question of questions(state)) {
+      const { panel, key, ofDesigns } = question;
+      if (underWay.has(panel) || isSettled(state.answers[panel], key) || (ofDesigns && isBeingChosen(state))) continue;
+      void ask(question);
     }
   }
 
-  /** @param {import("./questions.js").Question} asked @param {string} question */
-  async function ask({ panel, path, body, learnt }, question) {
-    underWay[panel] = question;
-    store.dispatch({ type: "asked", panel, question });
+  /** @param {import("./questions.js").Question} asked */
+  async function ask({ panel, key, path, body, learnt }) {
+    underWay.add(panel);
+    store.dispatch({ type: "asked", panel, question: key });
     sequence += 1;
     try {
       const sent = path.startsWith("panel/") ? { ...body, client: `${client}.${panel}`, sequence } : body;
       const value = await api.post(path, sent);
-      settled[panel] = question;
-      store.dispatch({ type: "answered", panel, question, value});
+      store.dispatch({ type: "answered", panel, question: key, value });
       if (learnt) store.dispatch(learnt(value));
     } catch (error) {
       if (error instanceof Lost) lose();
       else {
-        if (!(error instanceof Refusal && error.outdated)) settled[panel] = question;
         const refusal = /** @type {Refusal} */ (error);
         if (refusal.status === 401) store.dispatch({ type: "connected", connection: "refused" });
-        else if (!refusal.outdated) store.dispatch({ type: "refused", panel, question, sentence: refusal.message });
+        else if (!refusal.outdated) store.dispatch({ type: "refused", panel, question: key, sentence: refusal.message });
       }
     } finally {
-      delete underWay[panel];
+      underWay.delete(panel);
       schedule();
     }
   }
@@ -57,7 +54,6 @@ export function keepAsking(store, api, client, found = async () => {}) {
   function lose() {
     if (waking) return;
     store.dispatch({ type: "connected", connection: "lost" });
-    for (const panel of Object.keys(settled)) delete settled[panel];
     void wake();
   }
 
@@ -68,6 +64,7 @@ export function keepAsking(store, api, client, found = async () => {}) {
       await new Promise((resolve) => setTimeout(resolve, AGAIN));
       try {
         store.dispatch({ type: "told", about: await api.get("about") });
+        store.dispatch({ type: "forgotten" }); // another server may know other files
         store.dispatch({ type: "connected", connection: "ready" });
         await found();
       } catch (error) {
@@ -90,4 +87,22 @@ export function keepAsking(store, api, client, found = async () => {}) {
   store.subscribe(schedule);
   schedule();
   return { lose };
+}
+
+/** Whether the free values of the study that is open are being chosen: questions about its designs come then.
+ * @param {import("./state/store.js").State} state */
+const isBeingChosen = ({ choosing, history }) => choosing !== null && choosing === history.present.study;
+
+/** Asks what a button of a panel asks, with parameters of its form; the answer stands in the state. @param {Store} store @param {Api} api @param {string} panel @param {any} parameters */
+export async function seek(store, api, panel, parameters) {
+  store.dispatch({ type: "sought", panel, parameters });
+  const question = soughtOf(store.get(), panel);
+  if (question === null) return;
+  const { key, path, body } = question;
+  store.dispatch({ type: "asked", panel, question: key });
+  try {
+    store.dispatch({ type: "answered", panel, question: key, value: await api.post(path, { ...body, client: `page.${panel}`, sequence: Date.now() }) });
+  } catch (error) {
+    store.dispatch({ type: "refused", panel, question: key, sentence: /** @type {Error} */ (error).message });
+  }
 }

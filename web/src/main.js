@@ -42,7 +42,7 @@ async function firstDocument() {
     store.dispatch({ type: "viewed", view: linked.view });
     return linked.document;
   }
-  if (address.state !== null) store.dispatch({ type: "said", message: "The link holds no state that this page can read." });
+  unread = address.state !== null;
   const { study } = await api.get("start");
   const begun = JSON.stringify(study);
   const before = remembered();
@@ -52,6 +52,7 @@ async function firstDocument() {
 }
 
 let begun = false;
+let unread = false; // whether the link holds a state that is none
 
 async function connect() {
   try {
@@ -78,11 +79,13 @@ async function connect() {
 /** Brings the first document, where undoing ends; returns whether its free values are still to be chosen. */
 async function begin() {
   const document = await firstDocument();
-  if (document === null) return false;
-  const known = "layout" in document;
-  store.change(known ? { type: "restored", document } : { type: "opened", study: document.study });
-  store.dispatch({ type: "began" });
-  return !known;
+  const known = document !== null && "layout" in document;
+  if (document !== null) {
+    store.change(known ? { type: "restored", document } : { type: "opened", study: document.study });
+    store.dispatch({ type: "began" });
+  }
+  if (unread) store.dispatch({ type: "said", text: "The link holds no state that this page can read." });
+  return document !== null && !known;
 }
 
 /** Waits until the kernels are compiled, and tells which one is under way. */

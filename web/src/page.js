@@ -10,6 +10,7 @@ import { RigPanel } from "./panels/rig.js";
 import { TolerancePanel } from "./panels/tolerance.js";
 import { ValuesPanel } from "./panels/values.js";
 import { WorkPanel } from "./panels/work.js";
+import { Clock, Moving } from "./parts/clock.js";
 import { Field } from "./parts/field.js";
 import { html, useEffect, useState } from "./parts/html.js";
 import { open } from "./remembering.js";
@@ -50,7 +51,7 @@ export function Page({ store, api, enter }) {
       <${Menu} store=${store} api=${api} />
       <${Theme} store=${store} />
     </header>
-    <${Bar} store=${store} enter=${enter} />
+    <${Bar} store=${store} api=${api} enter=${enter} />
     ${blank
       ? html`<main class="blank"><h2>No study is open</h2><p>Open an example or a study file above, drop one anywhere on this page, or start a quarter car:</p>
           <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button></main>`
@@ -105,19 +106,35 @@ const SAID = {
   refused: "The server does not know this page. Paste the link that it printed, or its token:",
 };
 
-/** @param {{store: Store, enter: (token: string) => void}} props */
-function Bar({ store, enter }) {
-  const { connection, message, about } = store.get();
+const AT_WORK = 1000; // [ms] that an answer may take before the page says that it waits
+const LOOK = 500; // [ms]
+
+/** That the server is at work, whatever was asked, as soon as one waits. @param {{api: Api}} props */
+function AtWork({ api }) {
+  const [since, setSince] = useState(/** @type {number | null} */ (null));
+  useEffect(() => {
+    const looking = setInterval(() => {
+      const oldest = api.waiting();
+      setSince(oldest !== null && Date.now() - oldest >= AT_WORK ? oldest : null);
+    }, LOOK);
+    return () => clearInterval(looking);
+  }, [api]);
+  return since !== null && html`<p class="at-work"><${Moving} key=${since} what="The server is at work" since=${since} /></p>`;
+}
+
+/** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
+function Bar({ store, api, enter }) {
+  const { connection, messages, about } = store.get();
   const kernels = connection === "compiling" ? about?.kernels : null;
   return html`<div class="bar" aria-live="polite" data-connection=${connection}>
-    ${connection !== "ready" && html`<p class="notice">${SAID[connection]} ${kernels?.title ?? ""} ${kernels?.total ? `(${kernels.number} of ${kernels.total})` : ""}</p>`}
+    ${connection !== "ready" && html`<p class="notice">${SAID[connection]} ${kernels?.title ?? ""} ${kernels?.total ? `(${kernels.number} of ${kernels.total})` : ""} ${connection !== "refused" && html`<${Clock} key=${connection} />`}</p>`}
     ${connection === "refused" &&
     html`<form class="row" onSubmit=${(/** @type {SubmitEvent} */ event) => {
       event.preventDefault();
       enter(String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("token")));
     }}><label>Link or token <input name="token" autocomplete="off" /></label> <button>Connect</button></form>`}
-    ${message && html`<p class="notice">${message} <button type="button" class="link" aria-label="Close the message" onClick=${() => store.dispatch({ type: "said", message: null })}>✕</button></p>`}
-  </div>`;
+    ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}>${text} <button type="button" class="link" aria-label="Close the message" onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
+  </div><${AtWork} api=${api} />`;
 }
 
 /** @param {{store: Store, api: Api}} props */

@@ -1,13 +1,16 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
-import { judging } from "./methods.js";
+import { isQuick, judging } from "./methods.js";
 import { names, parse } from "./network/algebra.js";
-import { isRange, networksIn, strutsOf, textOf } from "./state/document.js";
+import { shownOf, soughtIn } from "./state/answers.js";
+import { isRange, namesIn, networksIn, strutsOf, textOf } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @typedef {import("./state/store.js").State} State */
 /** @typedef {import("./state/document.js").Document} Document */
-/** @typedef {{panel: string, path: string, body: any, learnt?: (value: any) => import("./state/store.js").Action}} Question  `learnt` is what else an answer tells */
+/** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer tells.
+ * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) => import("./state/store.js").Action}} Row */
+/** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
 export const designOf = ({ layout, values }) => ({ layout, values: values[layout] ?? {}, name: layout });
@@ -41,23 +44,69 @@ export function comparedOf({ view, history }) {
   return [...chosen.filter(({ key }) => key === view.against), ...chosen.filter(({ key }) => key !== view.against)];
 }
 
-/** @type {((state: State, document: Document) => Question[])[]} */
+/** @type {((state: State, document: Document) => Row[])[]} */
 const ROWS = [
   (_, document) => [{ panel: "network", path: "network/parse", body: { text: textOf(document), elements: document.study.elements ?? {} } }],
   (_, { study }) => [{ panel: "check", path: "study/check", body: { study } }],
-  (state, document) => [{ panel: "indices", path: "panel/indices", body: { ...about(document), methods: methodNames(state) } }],
-  (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", body: about(document) }] : []),
+  (state, document) => [{ panel: "indices", path: "panel/indices", ofDesigns: true, body: { ...about(document), methods: methodNames(state) } }],
+  (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", ofDesigns: true, body: about(document) }] : []),
   (state, document) => (state.view.tab === "history" ? [historyOf(state, document)] : []),
-  (state, document) => (state.view.tab === "history" ? [{ panel: "mechanism", path: "panel/mechanism", body: { study: document.study, design: designOf(document) } }] : []),
+  (state, document) => (state.view.tab === "history" ? [{ panel: "mechanism", path: "panel/mechanism", ofDesigns: true, body: { study: document.study, design: designOf(document) } }] : []),
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   (state, document) => unitsOf(state, document),
 ];
 
+/** What was asked of each state, since a page asks it often. @type {WeakMap<State, Question[]>} */
+const ASKED = new WeakMap();
+
 /** All questions that the state asks. @param {State} state @returns {Question[]} */
 export function questions(state) {
+  const known = ASKED.get(state);
+  if (known) return known;
   const document = state.history.present;
-  if (Object.keys(document.study).length === 0) return [];
-  return ROWS.flatMap((row) => row(state, document));
+  const blank = Object.keys(document.study).length === 0;
+  const found = blank ? [] : ROWS.flatMap((row) => row(state, document)).map(keyed);
+  ASKED.set(state, found);
+  return found;
+}
+
+/** @param {Row} row @returns {Question} */
+const keyed = (row) => ({ ...row, key: JSON.stringify(row.body) });
+
+/** What a panel shows: the answer to what it asks now. @param {State} state @param {string} panel */
+export const answerOf = (state, panel) => shownOf(state.answers[panel], questions(state).find((question) => question.panel === panel)?.key ?? null);
+
+/** The same of a panel that asks by a button. @param {State} state @param {string} panel */
+export const soughtAnswer = (state, panel) => soughtIn(state.answers[panel], soughtOf(state, panel)?.key ?? null);
+
+/** What a panel that asks by a button has last been asked, of the design that is edited now. @param {State} state @param {string} panel @returns {Question | null} */
+export function soughtOf(state, panel) {
+  const parameters = state.sought[panel];
+  if (parameters === undefined) return null;
+  return keyed({ panel, path: `panel/${panel}`, body: SOUGHT[panel](state, state.history.present, parameters) });
+}
+
+/** @type {{[panel: string]: (state: State, document: Document, parameters: any) => any}} */
+const SOUGHT = {
+  budget: (state, document, { index, parameter }) => ({ study: document.study, design: designOf(document), baseline: baselineOf(document), index, parameter, ...seeing(state) }),
+  tolerance: (state, document, { index, spread }) => ({ study: document.study, design: designOf(document), index, spread, ...effortOf(state, Object.keys(spread).length) }),
+};
+
+/** The method by which the page judges, where it sees what a budget is about; else that of the study. @param {State} state */
+function seeing(state) {
+  const method = judging(state);
+  return !method || isQuick(method) ? {} : { method: method.name };
+}
+
+const DESIGNS = 10_000; // that are judged while one waits, by norms, and a quarter of them by what takes longer
+const [FEWEST, MOST] = [64, 1024]; // samples, a power of two
+
+/** The method that the page judges by, unless it averages over roads, and as many samples as a wait allows. @param {State} state @param {number} scattering how many values scatter */
+function effortOf(state, scattering) {
+  const method = judging(state);
+  const quick = !method || method.averages || isQuick(method);
+  const samples = 2 ** Math.floor(Math.log2((quick ? DESIGNS : DESIGNS / 4) / (2 + scattering)));
+  return { ...(method && !method.averages ? { method: method.name } : {}), samples: Math.min(MOST, Math.max(FEWEST, samples)) };
 }
 
 /** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
@@ -69,21 +118,21 @@ const methodNames = (state) => [judging(state)?.name ?? []].flat();
 /** @param {Document} document */
 const about = (document) => ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
 
-/** @param {State} state @param {Document} document @returns {Question} */
+/** @param {State} state @param {Document} document @returns {Row} */
 function historyOf({ view }, document) {
   const body = { study: document.study, design: designOf(document), duration: view.seconds, seed: view.seed };
-  return { panel: "history", path: "panel/history", body };
+  return { panel: "history", path: "panel/history", ofDesigns: true, body };
 }
 
-/** @param {State} state @returns {Question[]} */
+/** @param {State} state @returns {Row[]} */
 function comparison(state) {
   const compared = comparedOf(state);
   if (compared.length < 2) return [];
   const designs = compared.map(({ kept, study, design }) => (kept ? { ...design, study } : design));
-  return [{ panel: "compare", path: "panel/compare", body: { study: state.history.present.study, designs, methods: methodNames(state) } }];
+  return [{ panel: "compare", path: "panel/compare", ofDesigns: true, body: { study: state.history.present.study, designs, methods: methodNames(state) } }];
 }
 
-/** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Question[]} */
+/** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Row[]} */
 function unitsOf(state, document) {
   const asked = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
   if (asked.length === 0) return [];
@@ -162,6 +211,16 @@ export const namesOfVehicle = ({ vehicle }) =>
     const tree = parse(text);
     return tree === null ? [] : names(tree);
   });
+
+/** What is free in a layout: elements of its networks and of the vehicle's own, numbers of the vehicle. @param {import("./state/document.js").Study} study @param {string} layout */
+export function freeIn(study, layout) {
+  const elements = [...namesIn(study, layout), ...namesOfVehicle(study)].filter((name) => isRange(study.elements?.[name]));
+  const numbers = Object.entries(study.vehicle ?? {}).filter(([, entry]) => isRange(entry));
+  return [...new Set([...elements, ...numbers.map(([name]) => name)])];
+}
+
+/** The free values of a layout that nobody has chosen yet: they are in the middle of their bounds. @param {Pick<Document, "study" | "values">} document @param {string} layout */
+export const unchosenIn = ({ study, values }, layout) => freeIn(study, layout).filter((name) => values[layout]?.[name] === undefined);
 
 /** Whether a vehicle's struts can have networks of their own. @param {any} about @param {Document} document @returns {string[]} */
 export function mountsOf(about, { study, layout }) {

@@ -2,7 +2,7 @@
 
 import { empty } from "./state/document.js";
 import { initial } from "./state/store.js";
-import { openStudy as beginWith, takeDevice } from "./working.js";
+import { openStudy as beginWith, takeDevice, takeFitted } from "./working.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./state/document.js").Document} Document */
@@ -101,7 +101,7 @@ export async function open(store, api, files) {
       else if (/\.json$/i.test(file.name)) await openFit(store, api, file);
       else say(store, `${file.name} is no file that this page knows: it takes study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat).`);
     } catch (error) {
-      say(store, `${file.name}: ${/** @type {Error} */ (error).message}`);
+      say(store, `${file.name}: ${/** @type {Error} */ (error).message}`, file.name);
     }
   }
 }
@@ -118,8 +118,8 @@ async function studiesFirst(files) {
 /** Whether a table is one of results, not a record. @param {File} file */
 const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test(await file.slice(0, 100).text());
 
-/** @param {Store} store @param {string} message */
-const say = (store, message) => store.dispatch({ type: "said", message });
+/** Says something; of what is about the same thing the newest stays. @param {Store} store @param {string} text @param {string} [about] */
+const say = (store, text, about) => store.dispatch({ type: "said", text, about });
 
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openStudyFile(store, api, file) {
@@ -153,17 +153,17 @@ async function openSimulation(store, api, name, { signal, simulation, ...study }
 
 /** What was identified joins the study that is open. @param {Store} store @param {Api} api @param {File} file */
 async function openFit(store, api, file) {
-  const { elements } = JSON.parse(await file.text());
-  if (typeof elements !== "string") return say(store, `${file.name} is no result of inerter identify, and nothing was changed.`);
-  const { study } = await api.post("study/read", { text: elements, name: file.name });
-  say(store, `${file.name}: ${takeDevice(store, study ?? {})}`);
+  const fit = JSON.parse(await file.text());
+  if (typeof fit.elements !== "string") return say(store, `${file.name} is no result of inerter identify, and nothing was changed.`);
+  const { study } = await api.post("study/read", { text: fit.elements, name: file.name });
+  say(store, `${file.name}: ${takeFitted(store, fit, study ?? {})}`);
 }
 
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openRecord(store, api, file) {
   store.dispatch({ type: "viewed", view: { tab: "rig" } });
-  say(store, `Reading ${file.name}…`);
+  say(store, `Reading ${file.name}…`, file.name);
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
-  say(store, `${file.name} was read.`);
+  say(store, `${file.name} was read.`, file.name);
 }

@@ -4,6 +4,8 @@ import { Lost } from "./api.js";
 import { unitOf } from "./kinds.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName, names, parse, renamed } from "./network/algebra.js";
+import { doubted } from "./parts/doubts.js";
+import { freeIn } from "./questions.js";
 import { isRange, nextLayout, textOf } from "./state/document.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
@@ -18,24 +20,43 @@ export async function optimise(store, api, asked) {
   const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
     if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
-      await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")}: best ${index}`, ...body });
+      await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`, ...body });
       store.dispatch({ type: "viewed", view: { tab: "work" } });
       return "Under way: see Work.";
     }
     const { designs } = await api.post("panel/optimise", { ...body, client: "page.optimise", sequence: Date.now() });
+    if (store.get().history.present.study !== study) return "The study was changed meanwhile, and the values are not taken. Press Optimise again.";
     return takeOptima(store, designs);
   } catch (error) {
     return /** @type {Error} */ (error).message;
   }
 }
 
-/** The values of optima become the present values of their layouts, in one step. @param {Store} store @param {any[]} designs @param {string | null} gesture */
+/** The values of optima become the present values of their layouts, in one step; returns what to tell, doubts first.
+ * @param {Store} store @param {any[]} designs @param {string | null} gesture */
 export function takeOptima(store, designs, gesture = null) {
+  const { study } = store.get().history.present;
   const found = designs.map((best) => ({ best, values: best.texts ?? textsOf(store.get(), best.parameters ?? {}) }));
-  const taken = found.filter(({ values }) => Object.keys(values).length > 0);
-  if (taken.length === 0) return designs.find(({ message }) => message)?.message ?? "No value is free: nothing to choose. Make one free by its button.";
+  const chosen = found.filter(({ values }) => Object.keys(values).length > 0);
+  const taken = chosen.filter(({ best, values }) => isHere(study, best.layout, Object.keys(values)));
+  const doubts = doubted(designs.flatMap(membersOf));
+  if (chosen.length === 0) return doubts || "No value is free: nothing to choose. Make one free by its button.";
+  if (taken.length === 0) return `${doubts}These are values of a layout ${chosen[0].best.layout} that has ${Object.keys(chosen[0].values).join(", ")} free, which is not in the study that is open; nothing was changed.`;
   store.change({ type: "valuedAll", values: Object.fromEntries(taken.map(({ best, values }) => [best.layout, values])) }, gesture);
-  return `The best ${taken[0].best.index} of ${taken.map(({ best }) => best.layout + atBounds(best)).join(", ")}.`;
+  return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) => best.layout + atBounds(best)).join(", ")}.`;
+}
+
+/** Whether a layout is in the study, and has these values free. @param {import("./state/document.js").Study} study @param {string} layout @param {string[]} values */
+function isHere(study, layout, values) {
+  const free = layout in (study.layouts ?? {}) ? freeIn(study, layout) : [];
+  return values.every((name) => free.includes(name));
+}
+
+/** What an optimum is made of: its value by each method, or by one. @param {any} best @returns {import("./parts/doubts.js").Member[]} */
+export function membersOf({ layout, index, status, message }) {
+  const of = [index, layout].filter(Boolean).join(" of ");
+  const several = status !== null && typeof status === "object" ? Object.values(status) : [status];
+  return several.map((each) => ({ of, status: each, message }));
 }
 
 /** @param {any} best */
@@ -51,21 +72,27 @@ export async function openStudy(store, api, study) {
   await beginAtBest(store, api, gesture);
 }
 
-/** @param {Store} store @param {Api} api @param {string | null} gesture */
+/** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of which the page tells.
+ * @param {Store} store @param {Api} api @param {string | null} gesture */
 export async function beginAtBest(store, api, gesture = null) {
   const { study } = store.get().history.present;
   const index = study.study?.indices?.[0];
   const free = [study.elements, study.vehicle].some((table) => Object.values(table ?? {}).some(isRange));
   const method = quickMethod(store.get())?.name;
   if (!index || !free || !method) return;
+  store.dispatch({ type: "choosing", study });
   try {
-    if (await isSmall(api, study, Object.keys(study.layouts ?? {})[0])) {
-      const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
-      const { present } = store.get().history;
-      if (present.study === study && Object.keys(present.values).length === 0) takeOptima(store, designs, gesture);
-    } else store.dispatch({ type: "said", message: "The free values are in the middle of their bounds: to find the best takes longer here. Press Optimise." });
+    if (!(await isSmall(api, study, Object.keys(study.layouts ?? {})[0]))) return;
+    const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
+    const { present } = store.get().history;
+    if (present.study !== study || Object.keys(present.values).length > 0) return;
+    takeOptima(store, designs, gesture);
+    const doubts = doubted(designs.flatMap(membersOf));
+    if (doubts) store.dispatch({ type: "said", text: doubts.trim() });
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
+  } finally {
+    store.dispatch({ type: "chosen", study });
   }
 }
 
@@ -102,6 +129,18 @@ export function takeDevice(store, { elements = {}, layouts = {} }) {
   return `The device is in the new layout ${name}, beside the strut that was there.`;
 }
 
+/** A fitted device joins the strut, if all of its values are given; returns what to tell, first whether it can be relied on.
+ * @param {Store} store @param {any} fit @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device */
+export function takeFitted(store, fit, device) {
+  const withheld = withheldIn(fit);
+  const doubts = doubted([{ of: "the fit", status: fit.status }]);
+  if (withheld.length > 0 || device === null) return `${doubts}There is no device to take: the fit withholds ${withheld.join(", ") || "its values"}.`;
+  return `${doubts}${takeDevice(store, device)}`;
+}
+
+/** The values of a fit that are not given: they have no interval. @param {any} fit @returns {string[]} */
+export const withheldIn = ({ parameters }) => Object.entries(parameters ?? {}).filter(([, { interval }]) => (interval?.[0] ?? null) === null).map(([name]) => name);
+
 /** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
 const textsOf = (state, parameters) => Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));
 
@@ -120,7 +159,7 @@ export async function findWork(store, api) {
 }
 
 /** @param {any} job */
-const jobOf = (job) => ({ id: job.id, kind: job.kind, title: job.title, state: job.state, share: job.total ? (job.done ?? 0) / job.total : null, sentence: job.sentence || job.told || null });
+const jobOf = (job) => ({ id: job.id, kind: job.kind, title: job.title, state: job.state, begun: job.begun ?? null, share: job.total ? (job.done ?? 0) / job.total : null, sentence: job.sentence || job.told || null });
 
 let watching = false;
 

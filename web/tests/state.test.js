@@ -123,15 +123,6 @@ test("what is freed begins at its value in every layout, and what is fixed keeps
   assert.deepEqual(namesIn(fixed.study, "S2"), ["k", "c", "b"]);
 });
 
-test("an answer that a newer question has overtaken is shown as waiting, and the newest is what remains", () => {
-  let state = reduce(initial(), { type: "asked", panel: "indices", question: "1" });
-  state = reduce(state, { type: "asked", panel: "indices", question: "2" });
-  state = reduce(state, { type: "answered", panel: "indices", question: "1", value: "old" });
-  assert.equal(state.answers.indices.waiting, true);
-  state = reduce(state, { type: "answered", panel: "indices", question: "2", value: "new" });
-  assert.deepEqual([state.answers.indices.waiting, state.answers.indices.value], [false, "new"]);
-});
-
 test("questions follow from the state alone, and nothing of the page's own goes into a study", () => {
   const store = createStore();
   store.dispatch({ type: "told", about: ABOUT });

@@ -37,8 +37,19 @@ class _Judged:
     method: str
     estimate: Estimate
 
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether there may be another value than the one that is told; that of an unstable design is infinite."""
+        value, status = self.estimate.value, self.estimate.status
+        return bool(np.isnan(value)) or (bool(np.isfinite(value)) and not status.ok)
+
     def beside(self, other: _Judged) -> Comparison | None:
-        """What it differs by from another one on the same roads; None where one of them has no number."""
+        """What it differs by from another one on the same roads.
+
+        None where one of them has no number, or values that nobody has chosen: the middle of their bounds is no design.
+        """
+        if self.design.unchosen or other.design.unchosen:
+            return None
         if not np.isfinite([self.estimate.value, other.estimate.value]).all():
             return None
         first, second = self.design.vehicle, other.design.vehicle
@@ -145,7 +156,12 @@ def _judged(design: Design, index: str, method: str) -> _Judged:
 
 
 def _best(found: Sequence[_Judged]) -> list[int]:
-    """Numbers of the designs of which none is known to be better than another one of all."""
+    """Numbers of the designs of which none is known to be better than another one of all.
+
+    None of them, where a value is doubtful or nobody has chosen a design: then the best is not known.
+    """
+    if any(one.design.unchosen or one.is_doubtful for one in found):
+        return []
     finite = [i for i, one in enumerate(found) if np.isfinite(one.estimate.value)]
     if not finite:
         return []
@@ -174,6 +190,7 @@ def _told(one: _Judged, baseline: _Judged | None) -> Answer:
         "realisations": estimate.realisations,
         "improvement_percent": better,
         "improvement_error_percent": error,
+        "improvement_status": None if two is None else two.status.kind.value,
         "tie": None if two is None else two.is_tie,
     }
 

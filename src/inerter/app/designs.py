@@ -28,6 +28,7 @@ class Design:
     layout: str = field(compare=False)
     vehicle: Vehicle
     values: dict[str, float] = field(compare=False)  # of what was free, in SI units
+    unchosen: tuple[str, ...] = field(default=(), compare=False)  # of these, what nobody gave a value
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -50,7 +51,7 @@ class Design:
             name: {"value": value, "unit": units[name], "text": f"{value!r} {units[name]}"}
             for name, value in self.values.items()
         }
-        return {"name": self.name, "layout": self.layout, "values": values}
+        return {"name": self.name, "layout": self.layout, "values": values, "unchosen": list(self.unchosen)}
 
 
 def design_of(study: Study, layout: str, values: Values, name: str = "") -> Design:
@@ -65,11 +66,12 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
         if key not in study.elements and key not in units:
             known = ", ".join(dict.fromkeys([*study.elements, *units]))
             raise DesignError(f"Got a value of {shown(key)}, which is not in [elements], where there are {known}.")
+    all_free = vehicle.free_values()
     chosen = {
-        key: _number(key, values[key], units[key]) if key in values else _middle(free)
-        for key, free in vehicle.free_values().items()
+        key: _number(key, values[key], units[key]) if key in values else _middle(free) for key, free in all_free.items()
     }
-    return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen)
+    unchosen = tuple(key for key in all_free if key not in values)
+    return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen)
 
 
 def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:

@@ -13,10 +13,10 @@ from inerter.errors import RecordError
 from inerter.files.common.folder import Intent, claimed
 from inerter.files.common.toml import tables_of
 from inerter.files.identification.loading import identification_of
-from inerter.files.identification.running import read, run_identification
+from inerter.files.identification.running import Identified, read, run_identification
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
-from inerter.report.identified_values import elements_block
+from inerter.report.identified_values import Known, elements_block, known, value_and_interval
 
 Body = Mapping[str, Any]
 
@@ -37,4 +37,12 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
         write_fit(found, results.draft)
         results.publish()
         write_identification(found, results.draft, lambda part: tell(round(1000.0 * part), 1000, "drawing"))
-    return {**identification_data(found), "device": tables_of(elements_block(found).encode(), PATH, "a device")}
+    shown = {name: value_and_interval(found, name) for name in found.fit.parameters}
+    return {**identification_data(found), "shown": shown, "device": _device(found)}
+
+
+def _device(found: Identified) -> dict[str, Any] | None:
+    """The device as tables of a study document; None where a value of it is withheld: then there is none to hand on."""
+    if any(known(found, name) is Known.NOTHING for name in found.fit.parameters):
+        return None
+    return tables_of(elements_block(found).encode(), PATH, "a device")

@@ -44,6 +44,7 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
         "error_bound",
         "improvement_percent",
         "improvement_error_percent",
+        "improvement_status",
         "tie",
         "status",
     )
@@ -75,6 +76,7 @@ def _history(answer: Mapping[str, Any]) -> Rows:
 def _tolerance(answer: Mapping[str, Any]) -> Rows:
     """What the distribution is, then what each value that scatters makes of its variance, by itself and in all."""
     yield [headed(answer["index"], answer["unit"]), "value"]
+    yield ["status", ": ".join(filter(None, (answer["status"], answer["message"])))]
     for name in ("nominal", "mean", "standard_deviation"):
         yield [name, answer[name]]
     yield from ([f"quantile {share}", value] for share, value in answer["quantiles"].items())

@@ -1,10 +1,13 @@
 // The indices of the strut beside the baseline, and what may be done about them at once.
 
 import { kindOf } from "../kinds.js";
-import { isQuick, judging, methodsOf, quickMethod } from "../methods.js";
-import { baselineOf, designOf } from "../questions.js";
+import { seek } from "../asking.js";
+import { judging, methodsOf, quickMethod } from "../methods.js";
+import { answerOf, baselineOf, shownDesigns, soughtAnswer } from "../questions.js";
 import { namesIn } from "../state/document.js";
 import { estimated, placed, printed, shown, withUnit } from "../state/scale.js";
+import { Being, Moving } from "../parts/clock.js";
+import { Doubts, Unchosen, doubted, isOk } from "../parts/doubts.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { AskedPanel } from "./asked.js";
@@ -17,21 +20,23 @@ import { optimise } from "../working.js";
 /** @param {{store: Store, api: import("../api.js").Api}} props */
 export function AnswersPanel({ store, api }) {
   const state = store.get();
-  const { value, sentence, waiting } = state.answers.indices ?? {};
+  const shown = answerOf(state, "indices");
+  const { value, sentence } = shown;
   const document = state.history.present;
   const baseline = baselineOf(document).layout;
-  const problems = state.answers.check?.value?.problems ?? [];
+  const problems = answerOf(state, "check").value?.problems ?? [];
   useShown("indices", state);
-  return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${waiting === true}>
-    <h2 id="answers-title">Answers</h2>
+  return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${shown.is === "coming"}>
+    <div class="head"><h2 id="answers-title">Answers</h2><${Being} shown=${shown} /></div>
     <div class="row">
       <label>Judged <select value=${judging(state)?.name} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
         ${methodsOf(state).map((method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
       </select></label>
     </div>
     ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
-    ${sentence && value && html`<p class="quiet">The values below are those of before.</p>`}
-    ${value && html`<${Indices} value=${value} layout=${document.layout} baseline=${baseline} stale=${Boolean(sentence)} />`}
+    <${Unchosen} designs=${shownDesigns(document).map((design) => ({ ...document, ...design, values: document.values }))} />
+    <${Doubts} members=${membersOf(value)} />
+    <${Indices} state=${state} shown=${shown} layout=${document.layout} baseline=${baseline} />
     <${Limits} value=${value} />
     <${AskedPanel} store=${store} />
     <${Optimise} store=${store} api=${api} indices=${indicesOf(state)} />
@@ -53,38 +58,57 @@ export function indicesOf(state) {
   return asked.map((/** @type {string} */ symbol) => known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
 }
 
-/** @param {{value: any, layout: string, baseline: string, stale: boolean}} props */
-function Indices({ value, layout, baseline, stale }) {
-  const design = value.designs?.find((/** @type {any} */ each) => each.layout === layout) ?? value.designs?.[0];
-  const other = value.designs?.find((/** @type {any} */ each) => each.layout === baseline);
-  if (!design) return null;
+/** What the answers of designs are made of: each value, and each limit. @param {any} value @returns {import("../parts/doubts.js").Member[]} */
+export const membersOf = (value) =>
+  (value?.designs ?? []).flatMap((/** @type {any} */ { name, results, limits = [] }) => [
+    ...results.map((/** @type {any} */ { index, status, message }) => ({ of: `${index} of ${name}`, status, message })),
+    ...limits.map((/** @type {any} */ { title, status, message }) => ({ of: `${title}, of ${name}`, status, message })),
+  ]);
+
+/** The indices of the study: each with its value, or with a mark in its place. @param {{state: State, shown: import("../state/answers.js").Shown, layout: string, baseline: string}} props */
+function Indices({ state, shown: { is, value, before }, layout, baseline }) {
+  const design = value?.designs?.find((/** @type {any} */ each) => each.layout === layout);
+  const other = value?.designs?.find((/** @type {any} */ each) => each.layout === baseline);
   const alone = layout === baseline;
-  return html`<div class="scroll" tabindex="0" role="region" aria-label="Indices"><table class=${stale ? "stale" : ""} data-sequence=${value.sequence}>
+  const rows = design?.results ?? indicesOf(state).map(({ symbol, title }) => ({ index: symbol, title, unit: null }));
+  if (rows.length === 0 || layout === "") return null;
+  const missing = is === "coming" ? "…" : "–";
+  /** @param {any} result */
+  const measured = (result) => (result ? html`<${Measured} result=${result} />` : missing);
+  return html`<div class="scroll" tabindex="0" role="region" aria-label="Indices"><table class=${before ? "stale" : ""}>
     <thead><tr><th scope="col">index</th><th scope="col" title=${layout}>${layout}</th>${!alone && html`<th scope="col" title=${`${baseline}, the baseline`}>${baseline} ★</th><th scope="col">better by</th>`}</tr></thead>
-    <tbody>${design.results.map((/** @type {any} */ result) => {
+    <tbody>${rows.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}</span> <${Notes} result=${result} /></th>
-        <td class="number" data-index=${result.index} data-value=${result.value}><${Measured} result=${result} /></td>
-        ${!alone && html`<td class="number">${reference ? html`<${Measured} result=${reference} />` : "–"}</td><td class=${`number ${better(result)}`}><${Improvement} result=${result} />${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}</span> ${design && html`<${Notes} result=${result} />`}</th>
+        <td class="number" data-index=${result.index} data-value=${result.value}>${measured(design && result)}</td>
+        ${!alone && html`<td class="number">${measured(reference)}</td><td class=${`number ${better(result)}`} data-better=${result.improvement_percent}>${design && other ? html`<${Improvement} result=${result} unchosen=${[design, other].some(({ unchosen }) => unchosen.length > 0)} />` : missing}${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
       </tr>`;
     })}</tbody>
   </table></div>`;
 }
 
-/** A value, and below it its standard error where that is more than its other errors. @param {{result: {value: any, standard_error?: any, error_bound?: any, decimals?: any}}} props */
-export function Measured({ result: { value, standard_error: error, error_bound: bound, decimals } }) {
+/** A value, above it its status where that is not ok, and below it its standard error where that is more than its other errors.
+ * @param {{result: {value: any, status?: any, standard_error?: any, error_bound?: any, decimals?: any}}} props */
+export function Measured({ result }) {
+  return html`${!isOk(result.status) && html`<div class="doubt">${result.status}</div>`}<${Amount} result=${result} />`;
+}
+
+/** @param {{result: {value: any, standard_error?: any, error_bound?: any, decimals?: any}}} props */
+function Amount({ result: { value, standard_error: error, error_bound: bound, decimals } }) {
   if (typeof value === "string") return html`${value.replace("inf", "∞")}`;
   if (typeof error !== "number" || !(error > (bound ?? 0) * Math.abs(value))) return html`${placed(value, decimals)}`;
   const [number, scatter] = estimated(value, error, decimals ?? Infinity);
   return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 
-/** By how much it is better, and below that the standard error. @param {{result: any}} props */
-function Improvement({ result: { improvement_percent: value, improvement_error_percent: error } }) {
-  if (typeof value !== "number" || !error) return html`${percent(value)}`;
+/** By how much it is better, and below that the standard error; first what makes that doubtful. @param {{result: any, unchosen: boolean}} props */
+function Improvement({ result: { improvement_percent: value, improvement_error_percent: error, improvement_status: status }, unchosen }) {
+  if (unchosen) return html`<span class="quiet">not chosen yet</span>`;
+  const doubt = isOk(status) ? null : html`<div class="doubt">${status}</div>`;
+  if (typeof value !== "number" || !error) return html`${typeof value === "number" && doubt}${percent(value)}`;
   const [number, scatter] = estimated(value, error);
-  return html`${number} %<div class="scatter">± ${scatter} %</div>`;
+  return html`${doubt}${number} %<div class="scatter">± ${scatter} %</div>`;
 }
 
 /** @param {number | null | undefined} value @param {number | null} [error] */
@@ -95,8 +119,8 @@ export function percent(value, error) {
   return `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
 }
 
-/** @param {{improvement_percent?: number | null, tie?: boolean | null}} result */
-const better = ({ improvement_percent: value, tie }) => (typeof value !== "number" || tie || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
+/** @param {{improvement_percent?: number | null, improvement_status?: string | null, tie?: boolean | null}} result */
+const better = ({ improvement_percent: value, improvement_status: status, tie }) => (typeof value !== "number" || tie || !isOk(status) || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
 
 /** @param {{result: any}} props */
 function Notes({ result }) {
@@ -109,7 +133,7 @@ function Limits({ value }) {
   const limits = value?.designs?.[0]?.limits ?? [];
   return limits.length === 0
     ? null
-    : html`<h3>Limits</h3><ul class="limits">${limits.map((/** @type {any} */ limit) => html`<li key=${limit.title} class=${LIMIT_CLASSES[limit.kept]}>${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
+    : html`<h3>Limits</h3><ul class="limits">${limits.map((/** @type {any} */ limit) => html`<li key=${limit.title} class=${isOk(limit.status) ? LIMIT_CLASSES[limit.kept] : "quiet"}>${!isOk(limit.status) && `${limit.status}: `}${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
 }
 
 /** @type {{[kept: string]: string}} */
@@ -122,7 +146,7 @@ function Optimise({ store, api, indices }) {
   const state = store.get();
   const { study, layout } = state.history.present;
   const [index, setIndex] = useState("");
-  const [told, setTold] = useState("");
+  const [told, setTold] = useState(/** @type {{text: any, of: import("../state/document.js").Document | null}} */ ({ text: "", of: null }));
   const chosen = indices.some(({ symbol }) => symbol === index) ? index : indices[0]?.symbol;
   const here = judging(state);
   const method = here?.searches ? here : quickMethod(state);
@@ -130,14 +154,17 @@ function Optimise({ store, api, indices }) {
   return html`<form class="row optimise" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const all = /** @type {SubmitEvent} */ (event).submitter?.getAttribute("value") === "all";
-    setTold("Searching…");
-    setTold(await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method: method.name }));
+    const of = state.history.present;
+    setTold({ text: html`<${Moving} what="Searching" />`, of });
+    const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method: method.name });
+    const { present } = store.get().history;
+    setTold(present.study === study ? { text, of: present } : { text: "", of: null });
   }}>
     <label>Best values for <select name="index" value=${chosen} onChange=${(/** @type {Event} */ event) => setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
       ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
     </select></label>
     <button class="main" value="one">Optimise</button> <button value="all">All layouts</button>
-    <p class="quiet" role="status">${told}</p>
+    <p class="quiet" role="status">${told.of === state.history.present && told.text}</p>
   </form>`;
 }
 
@@ -145,39 +172,28 @@ function Optimise({ store, api, indices }) {
 function Budget({ store, api, indices }) {
   const state = store.get();
   const document = state.history.present;
-  const [told, setTold] = useState("");
   const names = namesIn(document.study, document.layout);
-  if (names.length === 0 || indices.length === 0 || document.layout === baselineOf(document).layout) return null;
+  const baseline = baselineOf(document).layout;
+  if (names.length === 0 || indices.length === 0 || document.layout === baseline) return null;
   const switching = names.find((name) => kindOf(state, name)?.switches) ?? names[0];
-  return html`<details class="budget"><summary>What it bears</summary><form class="row" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
+  const { is, value, sentence } = soughtAnswer(state, "budget");
+  return html`<details class="budget"><summary>What it bears</summary><form class="row" aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-    const body = { study: document.study, design: designOf(document), baseline: baselineOf(document), index: form.get("index"), parameter: form.get("parameter"), ...seeing(state) };
-    setTold("Simulating…");
-    try {
-      setTold(budgetTold(await api.post("panel/budget", { ...body, client: "page.budget", sequence: Date.now() }), document.layout, baselineOf(document).layout));
-    } catch (error) {
-      setTold(/** @type {Error} */ (error).message);
-    }
+    void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") });
   }}>
     <label>How much of <select name="parameter" key=${document.layout} defaultValue=${switching}>${names.map((name) => html`<option key=${name} selected=${name === switching}>${name}</option>`)}</select></label>
     <label>by <select name="index">${indices.map(({ symbol }) => html`<option key=${symbol}>${symbol}</option>`)}</select></label>
     <button>Find out</button>
-    <p role="status">${told}</p>
+    <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value ? budgetTold(value, document.layout, baseline) : sentence}</p>
   </form></details>`;
 }
 
-/** The method by which the page judges, where it sees what a budget is about; else that of the study. @param {State} state */
-function seeing(state) {
-  const method = judging(state);
-  return !method || isQuick(method) ? {} : { method: method.name };
-}
-
-/** @param {any} found @param {string} layout @param {string} baseline */
-function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
+/** What a budget says, first whether it can be relied on. @param {any} found @param {string} layout @param {string} baseline */
+export function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
   if (typeof value !== "number") return message || "There is no such value.";
   const error = standard_error ? ` ± ${shown(standard_error, 2)}` : "";
-  return `At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.${status === "ok" ? "" : ` ${message}`}`;
+  return `${doubted([{ of: "the budget", status, message }])}At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.`;
 }
 
 /** What is wrong with the study at places that have no field on the page. @param {{state: State}} props */

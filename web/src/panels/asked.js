@@ -1,6 +1,7 @@
 // What is asked of the study: its indices, and the limits that every design keeps.
 
 import { html } from "../parts/html.js";
+import { answerOf } from "../questions.js";
 import { Entry } from "./values.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -55,7 +56,7 @@ function indexNames(state) {
 
 /** What a limit can be put on. @param {State} state */
 function limitable(state) {
-  const layouts = Object.values(state.answers.check?.value?.layouts ?? {});
+  const layouts = Object.values(answerOf(state, "check").value?.layouts ?? {});
   const struts = Object.keys(/** @type {any} */ (layouts[0])?.mounts ?? {});
   return [...indexNames(state).map(({ symbol }) => symbol), ...struts.map((strut) => `${STIFFNESS}.${strut}`)];
 }

@@ -2,9 +2,11 @@
 
 import { withUnit } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
-import { choicesOf, comparedOf } from "../questions.js";
+import { Being } from "../parts/clock.js";
+import { Doubts, Unchosen, isOk } from "../parts/doubts.js";
+import { answerOf, choicesOf, comparedOf } from "../questions.js";
 import { textsOf } from "../state/document.js";
-import { Measured, percent } from "./answers.js";
+import { Measured, membersOf, percent } from "./answers.js";
 
 const [FEWEST, MOST] = [2, 4];
 
@@ -19,7 +21,8 @@ export function ComparePanel({ store }) {
   /** @param {string} key */
   const toggle = (key) => look({ compared: keys.includes(key) ? keys.filter((each) => each !== key) : [...keys, key] });
   const full = compared.length === MOST;
-  return html`<div aria-busy=${state.answers.compare?.waiting === true}>
+  const answer = answerOf(state, "compare");
+  return html`<div aria-busy=${answer.is === "coming"}>
     <div class="row" role="group" aria-label="Designs to compare">
       ${choices.map(({ key, name, kept }) => html`<button type="button" class="chip" key=${key} aria-pressed=${keys.includes(key)} disabled=${full && !keys.includes(key)} onClick=${() => toggle(key)}>${name}${kept ? html` <span class="quiet">kept</span>` : null}</button>`)}
     </div>
@@ -28,44 +31,48 @@ export function ComparePanel({ store }) {
         ${keys.toSorted((one, other) => order(choices, one) - order(choices, other)).map((key) => html`<option key=${key} value=${key}>${choices[order(choices, key)].name}${key.startsWith("kept ") ? " (kept)" : ""}</option>`)}
       </select></label> ${full && html`<span class="quiet">Four are the most: leave one out for another.</span>`}</p>`}
     <${Keep} store=${store} />
-    ${compared.length < FEWEST ? html`<p class="quiet">Choose two to four of them.</p>` : html`<${Table} state=${state} />`}
+    ${compared.length < FEWEST ? html`<p class="quiet">Choose two to four of them.</p>` : html`<${Table} answer=${answer} compared=${compared} />`}
   </div>`;
 }
 
 /** @param {import("../questions.js").Choice[]} choices @param {string} key */
 const order = (choices, key) => choices.findIndex((choice) => choice.key === key);
 
-/** The newest answer: as long as another one is awaited, that of before. @param {{state: import("../state/store.js").State}} props */
-function Table({ state }) {
-  const { value, sentence } = state.answers.compare ?? {};
-  const wrong = sentence && html`<p class="problem" role="alert">${sentence}</p>`;
-  if (!value) return wrong || html`<p class="quiet">Under way…</p>`;
+/** @param {{answer: import("../state/answers.js").Shown, compared: import("../questions.js").Choice[]}} props */
+function Table({ answer, compared }) {
+  const { value, sentence } = answer;
+  const designs = compared.map(({ name, study, design }) => ({ name, study, layout: design.layout, values: { [design.layout]: design.values } }));
+  const first = html`<${Being} shown=${answer} /><${Unchosen} designs=${designs} /><${Doubts} members=${membersOf(value)} />${sentence && html`<p class="problem" role="alert">${sentence}</p>`}`;
+  if (!value) return first;
   const columns = value.designs;
   const known = [...new Set(columns.flatMap((/** @type {any} */ { numbers }) => Object.keys(numbers)))];
   const different = known.filter((name) => columns.some((/** @type {any} */ { numbers }) => numbers[name] !== columns[0].numbers[name]));
-  return html`${wrong}<div class="scroll" tabindex="0" role="region" aria-label="Comparison"><table class=${`compared ${sentence ? "stale" : ""}`} style=${{ minWidth: `${9 * (columns.length + 1)}rem` }}>
+  return html`${first}<div class="scroll" tabindex="0" role="region" aria-label="Comparison"><table class=${`compared ${answer.before ? "stale" : ""}`} style=${{ minWidth: `${9 * (columns.length + 1)}rem` }}>
     <thead><tr><th scope="col"></th>${columns.map((/** @type {any} */ { name }, /** @type {number} */ i) => html`<th scope="col" key=${i} title=${name}>${name}</th>`)}</tr></thead>
     <tbody>
       <tr><th scope="row">network</th>${columns.map((/** @type {any} */ { network }, /** @type {number} */ i) => html`<td key=${i}><code>${[...new Set(textsOf(network))].join("; ")}</code></td>`)}</tr>
       ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>${columns.map((/** @type {any} */ { numbers }, /** @type {number} */ i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
       ${columns[0].results.map((/** @type {any} */ first, /** @type {number} */ row) => html`<tr key=${first.index}><th scope="row"><b>${first.index}</b> <span class="quiet">${withUnit(first.title, first.unit)}</span></th>
-        ${columns.map((/** @type {any} */ { results }, /** @type {number} */ i) => html`<${Value} key=${i} result=${results[row]} first=${i === 0} />`)}</tr>`)}
+        ${columns.map((/** @type {any} */ { results, unchosen }, /** @type {number} */ i) => html`<${Value} key=${i} result=${results[row]} first=${i === 0} unchosen=${unchosen.length > 0 || columns[0].unchosen.length > 0} />`)}</tr>`)}
     </tbody>
   </table></div>
   <p class="quiet">In per cent of ${columns[0].name}, all on the road of this study, and on the same roads where it is simulated; ± is the standard error of a difference itself. Bold: the best, and what is as good.</p>`;
 }
 
-/** A value, and what lies between it and the first one's. @param {{result: any, first: boolean}} props */
-function Value({ result, first }) {
+/** A value, and what lies between it and the first one's. @param {{result: any, first: boolean, unchosen: boolean}} props */
+function Value({ result, first, unchosen }) {
   const { value, best, message } = result;
-  return html`<td class=${`number ${best ? "best" : ""}`} title=${message} data-value=${value}><${Measured} result=${result} />${!first && html`<${Difference} result=${result} />`}</td>`;
+  return html`<td class=${`number ${best ? "best" : ""}`} title=${message} data-value=${value}><${Measured} result=${result} />${!first && html`<${Difference} result=${result} unchosen=${unchosen} />`}</td>`;
 }
 
-/** @param {{result: any}} props */
-function Difference({ result: { improvement_percent: better, improvement_error_percent: error, tie } }) {
+/** What lies between them, first what makes that doubtful. @param {{result: any, unchosen: boolean}} props */
+function Difference({ result: { improvement_percent: better, improvement_error_percent: error, improvement_status: status, tie }, unchosen }) {
+  if (unchosen) return html`<div class="difference quiet">not chosen yet</div>`;
   if (typeof better !== "number") return null;
-  if (tie) return html`<div class="difference quiet">as good${error ? `, ${percent(better, error)}` : ""}</div>`;
-  return better > 0 ? html`<div class="difference good">${percent(better, error)} better</div>` : html`<div class="difference bad">${percent(-better, error)} worse</div>`;
+  const doubt = isOk(status) ? "" : `${status}: `;
+  if (tie) return html`<div class="difference quiet">${doubt}as good${error ? `, ${percent(better, error)}` : ""}</div>`;
+  const word = better > 0 ? "better" : "worse";
+  return html`<div class=${`difference ${doubt ? "quiet" : better > 0 ? "good" : "bad"}`}>${doubt}${percent(Math.abs(better), error)} ${word}</div>`;
 }
 
 /** Keeping the design that is edited under a name, and taking kept ones back. @param {{store: import("../state/store.js").Store}} props */

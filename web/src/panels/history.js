@@ -1,6 +1,9 @@
 // The simulated road: histories with stick and open gaps shaded, and the car in motion.
 
 import { Plot } from "../plot.js";
+import { answerOf } from "../questions.js";
+import { Being } from "../parts/clock.js";
+import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { Motion } from "./motion.js";
@@ -11,9 +14,11 @@ const SHADED = ["stick", "open"];
 /** @param {{store: import("../state/store.js").Store}} props */
 export function HistoryPanel({ store }) {
   const state = store.get();
-  const faulty = (state.answers.check?.value?.problems ?? []).length > 0;
-  const { value, sentence, waiting } = state.answers.history ?? {};
-  const mechanism = state.answers.mechanism?.value;
+  const document = state.history.present;
+  const faulty = (answerOf(state, "check").value?.problems ?? []).length > 0;
+  const answer = answerOf(state, "history");
+  const { value, sentence } = answer;
+  const mechanism = answerOf(state, "mechanism").value;
   const [picked, setPicked] = useState("");
   const signals = value?.signals ?? [];
   const signal = signals.find((/** @type {any} */ { name }) => name === picked) ?? signals[0];
@@ -30,7 +35,10 @@ export function HistoryPanel({ store }) {
     const entered = Number(text);
     if (entered >= range.min && entered <= range.max) store.dispatch({ type: "viewed", view: { [key]: entered } });
   }} /></label>`;
-  return html`<div aria-busy=${waiting === true}>
+  return html`<div class=${answer.before ? "stale" : ""} aria-busy=${answer.is === "coming"}>
+    <${Being} shown=${answer} />
+    <${Unchosen} designs=${[{ ...document, name: document.layout }]} />
+    <${Doubts} members=${[{ of: "the motion", status: value?.status, message: value?.message }]} />
     <div class="row">
       <label>Show <select value=${signal?.name ?? ""} onChange=${(/** @type {Event} */ event) => setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
         ${signals.map((/** @type {any} */ each) => html`<option key=${each.name} value=${each.name}>${each.label}</option>`)}
@@ -38,17 +46,12 @@ export function HistoryPanel({ store }) {
       ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
       ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
     </div>
-    ${sentence && html`<p class="problem">${faulty ? "These curves are those of before: see what is wrong with the study." : sentence}</p>`}
-    ${value?.message && value.status !== "ok" && html`<p class="problem" role="alert">${value.message}</p>`}
+    ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study." : sentence}</p>`}
+    ${!signal && html`<div class="plot empty"></div>`}
     ${signal &&
     html`<${Plot} x=${signal.time} curves=${curves} bands=${bands} xLabel="time [s]" yLabel=${withUnit(signal.label, signal.unit)} title=${`${signal.label} over time`} theme=${state.view.theme} />
       <p class="quiet">r.m.s. ${shown(value.rms?.[signal.name])} ${signal.unit}, peak ${shown(value.peaks?.[signal.name])} ${signal.unit}.
         ${bands.length > 0 && html` <span class="key stick"></span> friction sticks, <span class="key open"></span> a gap is open.`}</p>`}
-    ${value?.motion && mechanism && isOf(value.motion, mechanism) && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}
+    ${value?.motion && mechanism && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}
   </div>`;
-}
-
-/** Whether a motion is one of this vehicle: when another study is opened, the two answers do not come at once. @param {any} motion @param {any} mechanism */
-function isOf({ coordinates, roads }, mechanism) {
-  return mechanism.coordinates.every((/** @type {any} */ { name }) => name in coordinates) && mechanism.roads.every((/** @type {any} */ { name }) => name in roads);
 }

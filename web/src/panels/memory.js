@@ -22,7 +22,7 @@ export function Menu({ store, api }) {
     try {
       await work();
     } catch (error) {
-      store.dispatch({ type: "said", message: /** @type {Error} */ (error).message });
+      store.dispatch({ type: "said", text: /** @type {Error} */ (error).message });
     }
   };
   const theStudy = attempt(async () => download(new Blob([(await api.post("study/write", { study })).text], { type: "application/toml" }), `${name}.toml`));
@@ -104,7 +104,7 @@ function Share({ store }) {
     const { history, view } = store.get();
     const made = await linkTo(history.present, view);
     setLink(made);
-    await navigator.clipboard?.writeText(made).then(() => store.dispatch({ type: "said", message: "The link is on the clipboard. It holds the whole state, and no token." }), () => {});
+    await navigator.clipboard?.writeText(made).then(() => store.dispatch({ type: "said", text: "The link is on the clipboard. It holds the whole state, and no token." }), () => {});
   };
   return html`<details class="menu" onToggle=${(/** @type {Event} */ event) => /** @type {HTMLDetailsElement} */ (event.currentTarget).open && make()}><summary>Link</summary><div class="menu-body">
     <label>A link that holds the whole state (and no token) <input id="shared-link" readonly value=${link} onFocus=${(/** @type {Event} */ event) => /** @type {HTMLInputElement} */ (event.currentTarget).select()} /></label>

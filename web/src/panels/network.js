@@ -4,7 +4,7 @@ import { freshName, joinAt, leaves, moveTo, names, parse, partAt, removeAt, repl
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, nextLayout, strutsOf, textOf } from "../state/document.js";
 import { kindOf } from "../kinds.js";
-import { mountsOf } from "../questions.js";
+import { answerOf, mountsOf } from "../questions.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -405,9 +405,8 @@ function beginDrag(store, down, from, setOver) {
 /** The text of the network, with what is wrong underlined. @param {{store: Store, text: string}} props */
 function Text({ store, text }) {
   const state = store.get();
-  const { value } = state.answers.network ?? {};
-  const asked = JSON.parse(state.answers.network?.of ?? "{}").text;
-  const wrong = value && "sentence" in value && asked === text ? value : null;
+  const { value } = answerOf(state, "network");
+  const wrong = value && "sentence" in value ? value : null;
   const missing = parse(text) === null ? [] : names(/** @type {Tree} */ (parse(text))).filter((name) => !(name in (state.history.present.study.elements ?? {})));
   const kinds = state.about?.elements ?? [];
   return html`<div class="text">

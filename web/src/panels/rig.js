@@ -1,11 +1,13 @@
 // A rig corner: measured records, what was found in them, what the device is made of, and the device into the editor.
 
+import { Doubts } from "../parts/doubts.js";
 import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { shown, withUnit } from "../state/scale.js";
 import { Files } from "./files.js";
-import { begin, stop, takeDevice } from "../working.js";
+import { begin, stop, takeFitted, withheldIn } from "../working.js";
+import { Progress } from "./work.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../api.js").Api} Api */
@@ -66,15 +68,18 @@ function Fit({ store, api, job }) {
   const { result } = job;
   return html`<section class="fit" data-state=${job.state}>
     <div class="row"><b>${job.title}</b> <span class="state">${job.state}</span> <button type="button" onClick=${() => stop(store, api, job.id)}>${running ? "Stop" : "Forget"}</button></div>
-    ${running && html`<progress max="1" value=${job.share ?? undefined} aria-label=${job.title} />`}
+    ${running && html`<${Progress} job=${job} />`}
     ${job.sentence && html`<p class=${job.state === "failed" ? "problem" : "quiet"}>${job.sentence}</p>`}
     ${result &&
-    html`<div class="scroll" tabindex="0" role="region" aria-label="Identified values"><table>
+    html`<${Doubts} members=${[{ of: result.model, status: result.status }]} />
+      <div class="scroll" tabindex="0" role="region" aria-label="Identified values"><table>
         <thead><tr><th scope="col"></th><th scope="col">value</th><th scope="col">95 % interval</th><th scope="col"></th></tr></thead>
-        <tbody>${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">${shown(each.value)} <span class="unit">${each.unit}</span></td><td class="number">${(each.interval ?? []).map((/** @type {any} */ end) => (typeof end === "number" ? shown(end) : String(end))).join(" to ")}</td><td>${each.identified ? "" : each.sentence}</td></tr>`)}</tbody>
+        <tbody>${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">${result.shown[name][0]}</td><td class="number">${result.shown[name][1]}</td><td>${each.identified ? "" : each.sentence}</td></tr>`)}</tbody>
       </table></div>
       ${(result.notes ?? []).map((/** @type {any} */ note) => html`<p class="quiet">${typeof note === "string" ? note : (note.sentence ?? "")}</p>`)}
-      <button type="button" class="main" onClick=${() => store.dispatch({ type: "said", message: takeDevice(store, result.device ?? {}) })}>Take the device into the editor</button>
+      ${result.device
+        ? html`<button type="button" class="main" onClick=${() => store.dispatch({ type: "said", about: "device", text: takeFitted(store, result, result.device) })}>Take the device into the editor</button>`
+        : html`<p>There is no device to take: the fit withholds ${withheldIn(result).join(", ")}.</p>`}
       <${Files} api=${api} job=${job} />`}
   </section>`;
 }

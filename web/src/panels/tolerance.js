@@ -1,8 +1,10 @@
 // What scatter of its elements makes of an index of the design, and which of them matters.
 
-import { isQuick, judging } from "../methods.js";
-import { designOf } from "../questions.js";
-import { html, useState } from "../parts/html.js";
+import { seek } from "../asking.js";
+import { soughtAnswer, soughtOf } from "../questions.js";
+import { Moving } from "../parts/clock.js";
+import { Doubts, Unchosen } from "../parts/doubts.js";
+import { html } from "../parts/html.js";
 import { download } from "../remembering.js";
 import { namesIn } from "../state/document.js";
 import { shown, withUnit } from "../state/scale.js";
@@ -13,55 +15,36 @@ import { indicesOf, percent } from "./answers.js";
 /** @typedef {import("../api.js").Api} Api */
 
 const USUAL = 10; // [%] that a value lies above or below its own at the most
-const DESIGNS = 10_000; // that are judged while one waits, by norms, and a quarter of them by what takes longer
-const [FEWEST, MOST] = [64, 1024]; // samples, a power of two
 
 /** @param {{store: Store, api: Api}} props */
 export function TolerancePanel({ store, api }) {
   const state = store.get();
   const document = state.history.present;
-  const [found, setFound] = useState(/** @type {{of: string, body: object, value: any} | null} */ (null));
-  const [told, setTold] = useState("");
   const indices = indicesOf(state);
   const names = namesIn(document.study, document.layout);
-  const of = JSON.stringify([document.study, designOf(document)]);
+  const answer = soughtAnswer(state, "tolerance");
+  const { is, value, sentence } = answer;
   if (names.length === 0 || indices.length === 0) return html`<p class="quiet">There is no element, or no index, to be asked about.</p>`;
-  return html`<form onSubmit=${async (/** @type {SubmitEvent} */ event) => {
+  return html`<form aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-    const spread = spreadOf(names, form);
-    const body = { study: document.study, design: designOf(document), index: form.get("index"), spread, ...effortOf(state, Object.keys(spread).length) };
-    setTold("Under way…");
-    try {
-      setFound({ of, body, value: await api.post("panel/tolerance", { ...body, client: "page.tolerance", sequence: Date.now() }) });
-      setTold("");
-    } catch (error) {
-      setTold(/** @type {Error} */ (error).message);
-    }
+    void seek(store, api, "tolerance", { index: form.get("index"), spread: spreadOf(names, form) });
   }}>
     <p class="quiet">How far each value of ${document.layout} may lie above or below its own; all between is equally likely. What is empty does not scatter.</p>
     <div class="row spreads">${names.map((name) => html`<label key=${name}><span>${name} ±</span> <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any" defaultValue=${USUAL} /> %</label>`)}</div>
     <div class="row"><label>Index <select name="index">${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}</select></label> <button>Find out</button></div>
-    <p role="status">${told}</p>
+    <p role="status">${is === "coming" ? html`<${Moving} what="Under way" />` : sentence}</p>
   </form>
-  ${found && found.of !== of && html`<p class="quiet">These are the values of the design before it was changed.</p>`}
-  ${found &&
-    html`<${Scattered} value=${found.value} />
-    <p class="row"><button type="button" onClick=${async () => download(await api.blob("export/csv", { panel: "tolerance", request: found.body }), `tolerance-${found.value.index}.csv`)}>Save (CSV)</button></p>`}`;
+  <${Unchosen} designs=${[{ ...document, name: document.layout }]} />
+  ${value &&
+    html`<${Scattered} value=${value} />
+    <p class="row"><button type="button" onClick=${async () => download(await api.blob("export/csv", { panel: "tolerance", request: soughtOf(state, "tolerance")?.body }), `tolerance-${value.index}.csv`)}>Save (CSV)</button></p>`}`;
 }
 
 /** By what part of themselves values scatter. @param {string[]} names @param {FormData} form */
 function spreadOf(names, form) {
   const parts = names.map((name) => [name, Number(form.get(`spread ${name}`)) / 100]);
   return Object.fromEntries(parts.filter(([, part]) => Number(part) > 0));
-}
-
-/** The method that the page judges by, unless it averages over roads, and as many samples as a wait allows. @param {State} state @param {number} scattering how many values scatter */
-function effortOf(state, scattering) {
-  const method = judging(state);
-  const quick = !method || method.averages || isQuick(method);
-  const samples = 2 ** Math.floor(Math.log2((quick ? DESIGNS : DESIGNS / 4) / (2 + scattering)));
-  return { ...(method && !method.averages ? { method: method.name } : {}), samples: Math.min(MOST, Math.max(FEWEST, samples)) };
 }
 
 /** @param {{value: any}} props */
@@ -74,7 +57,7 @@ function Scattered({ value }) {
     ["worst that was found", value.worst],
   ];
   const names = Object.keys(value.total ?? {}).toSorted((a, b) => (value.total[b] ?? 0) - (value.total[a] ?? 0));
-  return html`${value.status !== "ok" && value.message && html`<p class="problem" role="alert">${value.message}</p>`}
+  return html`<${Doubts} members=${[{ of: `the scatter of ${value.index}`, status: value.status, message: value.message }]} />
     <div class="scattered">
       <div class="scroll" tabindex="0" role="region" aria-label="Distribution"><table data-scatter=${value.index}>
         <thead><tr><th scope="col">${withUnit(value.index, value.unit)}, ${value.method.replaceAll("-", " ")}</th><th scope="col">value</th></tr></thead>

@@ -1,7 +1,7 @@
 // Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, fixed or free.
 
 import { isRange, namesIn } from "../state/document.js";
-import { namesOfVehicle, numbersOf, unitKey, valueAtPlace } from "../questions.js";
+import { answerOf, namesOfVehicle, numbersOf, unitKey, valueAtPlace } from "../questions.js";
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { kindOf } from "../kinds.js";
@@ -198,14 +198,14 @@ export function Entry({ id, label, text, wrong = false, done }) {
 
 /** The problems of the study that no field of the page tells. @param {State} state @returns {import("../api.js").Problem[]} */
 export function otherProblems(state) {
-  const { about, answers, history } = state;
+  const { about, history } = state;
   const { study } = history.present;
   const fields = [...Object.keys(study.elements ?? {}).map((name) => ["elements", name]), ...numbersOf(about, history.present).map(({ place }) => place)];
-  return (answers.check?.value?.problems ?? []).filter((/** @type {any} */ problem) => !fields.some((place) => place.every((key, level) => problem.place[level] === key)));
+  return (answerOf(state, "check").value?.problems ?? []).filter((/** @type {any} */ problem) => !fields.some((place) => place.every((key, level) => problem.place[level] === key)));
 }
 
 /** The problems of the study at a place, or below it. @param {State} state @param {string[]} place @returns {import("../api.js").Problem[]} */
 export function problemsAt(state, place) {
-  const problems = state.answers.check?.value?.problems ?? [];
+  const problems = answerOf(state, "check").value?.problems ?? [];
   return problems.filter((/** @type {any} */ problem) => place.every((key, level) => problem.place[level] === key));
 }

@@ -6,7 +6,10 @@ import { FrontForm, FrontResult, frontBody } from "./front.js";
 import { Plot } from "../plot.js";
 import { html, useState } from "../parts/html.js";
 import { placed, printed, quantity, shown, takenApart, withUnit } from "../state/scale.js";
-import { begin, stop, takeOptima } from "../working.js";
+import { Clock } from "../parts/clock.js";
+import { Doubts, isOk } from "../parts/doubts.js";
+import { answerOf } from "../questions.js";
+import { begin, membersOf, stop, takeOptima } from "../working.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../state/store.js").State} State */
@@ -59,6 +62,10 @@ function Begin({ store, api, kind }) {
 
 const RUNNING = ["waiting", "running"];
 
+/** How far work is, and since when it goes on: of what moves in large steps the time moves. @param {{job: Job}} props */
+export const Progress = ({ job }) =>
+  html`<p class="row progress"><progress max="1" value=${job.share ?? undefined} aria-label=${`${job.title}, progress`} /> <${Clock} key=${job.begun} since=${job.begun === null ? null : 1000 * job.begun} /></p>`;
+
 /** @param {{store: Store, api: Api, job: Job}} props */
 function JobRow({ store, api, job }) {
   const running = RUNNING.includes(job.state);
@@ -67,7 +74,7 @@ function JobRow({ store, api, job }) {
   return html`<li class="job" data-state=${job.state}>
     <div class="row"><b>${job.title || job.kind}</b> <span class="state">${job.state}</span>
       <button type="button" onClick=${() => stop(store, api, job.id)}>${running ? "Stop" : "Forget"}</button></div>
-    ${running && html`<progress max="1" value=${job.share ?? undefined} aria-label=${`${job.title}, progress`} />`}
+    ${running && html`<${Progress} job=${job} />`}
     ${job.sentence && html`<p class=${job.state === "failed" ? "problem" : "quiet"} role=${job.state === "failed" ? "alert" : undefined}>${job.sentence}</p>`}
     ${job.result && Result && html`<${Result} store=${store} api=${api} job=${job} />`}
   </li>`;
@@ -76,9 +83,9 @@ function JobRow({ store, api, job }) {
 /** @param {{store: Store, job: Job}} props */
 function OptimumResult({ store, job }) {
   const { result } = job;
-  return html`${result.designs.map(
+  return html`<${Doubts} members=${result.designs.flatMap(membersOf)} />${result.designs.map(
     (/** @type {any} */ design) => html`<p key=${`${design.layout} ${design.index}`}>${Object.entries(design.texts).map(([name, text]) => `${name} = ${rounded(String(text))}`).join(", ")}
-      <button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptima(store, [design]) })}>Take it into the editor</button></p>`,
+      <button type="button" onClick=${() => store.dispatch({ type: "said", about: "taken", text: takeOptima(store, [design]) })}>Take it into the editor</button></p>`,
   )}`;
 }
 
@@ -95,10 +102,10 @@ const rowsOf = (result) => result.rows ?? result.designs ?? (Array.isArray(resul
 function RunResult({ store, api, job }) {
   const rows = rowsOf(job.result);
   const many = 60;
-  return html`<div class="scroll" tabindex="0" role="region" aria-label="Results"><table>
+  return html`<${Doubts} members=${rows.flatMap(membersOf)} /><div class="scroll" tabindex="0" role="region" aria-label="Results"><table>
     <thead><tr><th scope="col">layout</th><th scope="col">index</th><th scope="col">method</th><th scope="col">value</th><th scope="col">better by</th><th scope="col"></th></tr></thead>
-    <tbody>${rows.slice(0, many).map((row, i) => html`<tr key=${i}><td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td><td class="number">${placed(row.value, row.decimals)} <span class="unit">${printed(row.unit ?? "")}</span></td><td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
-      <td>${row.parameters && Object.keys(row.parameters).length > 0 && html`<button type="button" onClick=${() => store.dispatch({ type: "said", message: takeOptima(store, [row]) })}>Take</button>`}</td></tr>`)}</tbody>
+    <tbody>${rows.slice(0, many).map((row, i) => html`<tr key=${i}><td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td><td class="number">${!isOk(row.status) && html`<div class="doubt">${String(row.status).split(": ")[0]}</div>`}${placed(row.value, row.decimals)} <span class="unit">${printed(row.unit ?? "")}</span></td><td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
+      <td>${row.parameters && Object.keys(row.parameters).length > 0 && html`<button type="button" onClick=${() => store.dispatch({ type: "said", about: "taken", text: takeOptima(store, [row]) })}>Take</button>`}</td></tr>`)}</tbody>
   </table></div>
   ${rows.length > many && html`<p class="quiet">${rows.length} rows in all: they are in summary.csv.</p>`}
   <${Files} api=${api} job=${job} />`;
@@ -106,7 +113,7 @@ function RunResult({ store, api, job }) {
 
 /** The numbers that can be swept: elements, and then what else the study has. @param {State} state @returns {{place: string, words: string, text: string}[]} */
 function sweepable(state) {
-  const numbers = state.answers.check?.value?.places ?? [];
+  const numbers = answerOf(state, "check").value?.places ?? [];
   return numbers.toSorted((/** @type {any} */ one, /** @type {any} */ other) => Number(one.place.includes(".")) - Number(other.place.includes(".")));
 }
 
@@ -143,7 +150,7 @@ function SweepResult({ store, api, job }) {
     label: layout,
     values: x.map((at) => shownRows.find((row) => row.layout === layout && swept(row) === at)?.value ?? null),
   }));
-  return html`<div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(each)}>${each}</button>`)}</div>
+  return html`<${Doubts} members=${rows.flatMap(membersOf)} /><div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(each)}>${each}</button>`)}</div>
     <${Plot} x=${x} curves=${curves} xLabel="swept value, in SI" yLabel=${withUnit(index, shownRows[0]?.unit)} title=${`${index} over the swept value`} theme=${store.get().view.theme} />
     <${Files} api=${api} job=${job} />`;
 }

@@ -1,10 +1,11 @@
 // Tells the window when an answer is on the screen, and whether it is that to the newest question.
+import { answerOf } from "../questions.js";
 import { useLayoutEffect } from "./html.js";
 
 /** @param {string} panel @param {import("../state/store.js").State} state */
 export function useShown(panel, state) {
-  const answer = state.answers[panel];
+  const { is, value } = answerOf(state, panel);
   useLayoutEffect(() => {
-    dispatchEvent(new CustomEvent("inerter:shown", { detail: { panel, newest: answer !== undefined && answer.of === answer.key } }));
-  }, [answer?.value]);
+    dispatchEvent(new CustomEvent("inerter:shown", { detail: { panel, newest: is === "current" } }));
+  }, [is, value]);
 }

@@ -1,6 +1,7 @@
 // All state in one place. What happens is dispatched, `reduce` gives the next state, and who subscribed is told; nothing else
 // changes anything.
 
+import { answered, asked, turned } from "./answers.js";
 import { after, empty, isChange } from "./document.js";
 import { beginning, changed, redone, rested, undone } from "./history.js";
 
@@ -8,17 +9,23 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {import("./document.js").Change} Change */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
 /** @typedef {import("../network/algebra.js").Path} Path */
-/** @typedef {{key: string, value: any, sentence: string | null, waiting: boolean, of: string | null}} Answer  of a panel, and to which question */
-/** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed", share: number | null, sentence: string | null, result: any}} Job */
+/** @typedef {import("./answers.js").Answers} Answers */
+/** What the page has to say: `about` tells which message a newer one replaces. @typedef {{about: string, text: string}} Message */
+/** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed", begun: number | null, share: number | null, sentence: string | null, result: any}} Job  `begun`: in seconds since 1970, by the clock of the server */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number, playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View  `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with; `across`: the drawing over the width of the page */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
-/** @typedef {{history: DocumentHistory, answers: {[panel: string]: Answer}, work: {[id: string]: Job}, quantities: {[key: string]: {value?: number, sentence?: string}}, records: any[], view: View, about: any, connection: Connection, message: string | null}} State */
+/** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values are being chosen just now.
+ * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any}, choosing: import("./document.js").Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?: number, sentence?: string}}, records: any[], view: View, about: any, connection: Connection, messages: Message[]}} State */
 
 /** @typedef {{type: "changed", change: Change, gesture: string | null}
  *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
  *  | {type: "asked", panel: string, question: string}
  *  | {type: "answered", panel: string, question: string, value: any}
  *  | {type: "refused", panel: string, question: string, sentence: string}
+ *  | {type: "forgotten"}
+ *  | {type: "sought", panel: string, parameters: any}
+ *  | {type: "choosing", study: import("./document.js").Study}
+ *  | {type: "chosen", study: import("./document.js").Study}
  *  | {type: "measured", quantities: {[key: string]: {value?: number, sentence?: string}}}
  *  | {type: "worked", job: Partial<Job> & {id: string}}
  *  | {type: "dropped", id: string}
@@ -27,7 +34,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "viewed", view: Partial<View>}
  *  | {type: "told", about: any}
  *  | {type: "connected", connection: Connection}
- *  | {type: "said", message: string | null}} Action */
+ *  | {type: "said", text: string, about?: string}
+ *  | {type: "closed", about: string}} Action */
 
 /** @typedef {{get: () => State, dispatch: (action: Action) => void, change: (change: Change, gesture?: string | null) => void, subscribe: (told: () => void) => () => void}} Store */
 
@@ -35,28 +43,40 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 export const initial = () => ({
   history: beginning(empty()),
   answers: {},
+  sought: {},
+  choosing: null,
   work: {},
   quantities: {},
   records: [],
   view: { path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false, compared: [], against: "", seconds: 10, seed: 0, across: false },
   about: null,
   connection: "connecting",
-  message: null,
+  messages: [],
 });
 
-/** @type {Answer} */
-const NOTHING = { key: "", value: null, sentence: null, waiting: false, of: null };
+const MOST = 5; // messages that stand below each other
+const ELSEWHERE = ["opened", "restored", "designTaken"]; // what brings another study
+
+/** The state with another document in it: nothing that was said or answered of the one before is about it. @param {State} state @param {DocumentHistory} history @returns {State} */
+const elsewhere = (state, history) => ({ ...state, history, answers: turned(state.answers), messages: [] });
 
 /** @type {{[type: string]: (state: State, action: any) => State}} */
 const STEPS = {
-  changed: (state, { change, gesture }) => ({ ...state, history: changed(state.history, after(state.history.present, change), gesture) }),
+  changed: (state, { change, gesture }) => {
+    const history = changed(state.history, after(state.history.present, change), gesture);
+    return ELSEWHERE.includes(change.type) ? elsewhere(state, history) : { ...state, history };
+  },
   began: (state) => ({ ...state, history: beginning(state.history.present) }),
   rested: (state) => ({ ...state, history: rested(state.history) }),
-  undone: (state) => ({ ...state, history: undone(state.history) }),
-  redone: (state) => ({ ...state, history: redone(state.history) }),
-  asked: (state, { panel, question }) => answer(state, panel, { key: question, waiting: true }),
-  answered: (state, { panel, question, value }) => answer(state, panel, { of: question, value, sentence: null, waiting: question !== state.answers[panel]?.key }),
-  refused: (state, { panel, question, sentence }) => answer(state, panel, { of: question, sentence, waiting: question !== state.answers[panel]?.key }),
+  undone: (state) => elsewhere(state, undone(state.history)),
+  redone: (state) => elsewhere(state, redone(state.history)),
+  asked: (state, { panel, question }) => answers(state, panel, asked(state.answers[panel], question)),
+  answered: (state, { panel, question, value }) => answers(state, panel, answered(state.answers[panel], { question, value, sentence: null })),
+  refused: (state, { panel, question, sentence }) => answers(state, panel, answered(state.answers[panel], { question, value: null, sentence })),
+  forgotten: (state) => ({ ...state, answers: {} }),
+  sought: (state, { panel, parameters }) => ({ ...state, sought: { ...state.sought, [panel]: parameters } }),
+  choosing: (state, { study }) => ({ ...state, choosing: study }),
+  chosen: (state, { study }) => (state.choosing === study ? { ...state, choosing: null } : state),
   measured: (state, { quantities }) => ({ ...state, quantities: { ...state.quantities, ...quantities } }),
   worked: (state, { job }) => ({ ...state, work: { ...state.work, [job.id]: { ...state.work[job.id], ...job } } }),
   dropped: (state, { id }) => ({ ...state, work: Object.fromEntries(Object.entries(state.work).filter(([each]) => each !== id)) }),
@@ -65,11 +85,15 @@ const STEPS = {
   viewed: (state, { view }) => ({ ...state, view: { ...state.view, ...view } }),
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
-  said: (state, { message }) => ({ ...state, message }),
+  said: (state, { text, about = text }) => ({ ...state, messages: [...without(state.messages, about), { about, text }].slice(-MOST) }),
+  closed: (state, { about }) => ({ ...state, messages: without(state.messages, about) }),
 };
 
-/** @param {State} state @param {string} panel @param {Partial<Answer>} more @returns {State} */
-const answer = (state, panel, more) => ({ ...state, answers: { ...state.answers, [panel]: { ...(state.answers[panel] ?? NOTHING), ...more } } });
+/** @param {Message[]} messages @param {string} about */
+const without = (messages, about) => messages.filter((each) => each.about !== about);
+
+/** @param {State} state @param {string} panel @param {Answers} those @returns {State} */
+const answers = (state, panel, those) => ({ ...state, answers: { ...state.answers, [panel]: those } });
 
 /** @param {State} state @param {Action} action @returns {State} */
 export const reduce = (state, action) => STEPS[action.type](state, action);

@@ -1,0 +1,27 @@
+// What is coming moves, and tells how long it has been coming.
+import { html, useEffect, useState } from "./html.js";
+
+const OFTEN = 500; // [ms] between two looks at the clock
+const SOON = 1; // [s] from where the time is told
+
+/** How long something has gone on; since it is shown, where nothing says since when. @param {{since?: number | null}} props  `since`: in ms since 1970 */
+export function Clock({ since = null }) {
+  const [begun] = useState(Date.now());
+  const [now, setNow] = useState(Date.now());
+  useEffect(() => {
+    const ticking = setInterval(() => setNow(Date.now()), OFTEN);
+    return () => clearInterval(ticking);
+  }, []);
+  const seconds = Math.floor((now - (since ?? begun)) / 1000);
+  return seconds < SOON ? null : html`<span class="clock">${seconds < 100 ? `${seconds} s` : `${Math.floor(seconds / 60)} min ${seconds % 60} s`}</span>`;
+}
+
+/** Something that goes on: a bar that moves, and the time. @param {{what: string, since?: number | null}} props */
+export const Moving = ({ what, since }) => html`<span class="moving">${what} <progress aria-label=${what}></progress> <${Clock} since=${since} /></span>`;
+
+const WORDS = { current: "current", coming: "coming", none: "no answer" };
+
+/** Whether what stands below is the answer to what is asked now. @param {{shown: import("../state/answers.js").Shown}} props */
+export function Being({ shown: { is, before } }) {
+  return html`<span class="being" data-being=${is}>${is === "coming" ? html`<${Moving} what=${before ? "coming; below are the numbers of before" : WORDS.coming} />` : WORDS[is]}</span>`;
+}

@@ -1,0 +1,41 @@
+// What makes an answer doubtful stands before it: an answer is no better than the worst of what it is made of.
+import { unchosenIn } from "../questions.js";
+import { html } from "./html.js";
+
+/** Something an answer is made of, with its status: a word, or a word, a colon and a message. @typedef {{of: string, status: string | null | undefined, message?: string}} Member */
+
+/** Whether a status tells of a number that can be relied on. @param {string | null | undefined} status */
+export const isOk = (status) => status === null || status === undefined || status === "" || kindOf(status) === "ok";
+
+/** @param {string} status */
+const kindOf = (status) => status.split(": ")[0];
+
+/** What is to be doubted, each reason once, with all that it is about. @param {Member[]} members @returns {string[]} */
+export function doubtsIn(members) {
+  /** @type {Map<string, string[]>} */
+  const about = new Map();
+  for (const { of, status, message } of members) {
+    if (isOk(status)) continue;
+    const [kind, ...rest] = String(status).split(": ");
+    const why = [kind, message || rest.join(": ")].filter(Boolean).join(": ");
+    about.set(why, [...new Set([...(about.get(why) ?? []), of])]);
+  }
+  return [...about].map(([why, several]) => `${several.join(", ")}: ${why}`);
+}
+
+/** The sentence that a text about doubtful numbers begins with; empty where there is no doubt. @param {Member[]} members */
+export const doubted = (members) => doubtsIn(members).map((doubt) => `Not to be relied on: ${doubt}. `.replace(/\.\. $/, ". ")).join("");
+
+/** @param {{members: Member[]}} props */
+export function Doubts({ members }) {
+  const doubts = doubtsIn(members);
+  return doubts.length === 0 ? null : html`<div class="doubts problem" role="alert">${doubts.map((doubt) => html`<p key=${doubt}><b>Not to be relied on.</b> ${doubt}</p>`)}</div>`;
+}
+
+/** What is no answer, since nobody has chosen it. @param {{designs: {name: string, layout: string, study: import("../state/document.js").Study, values: import("../state/document.js").Values}[]}} props */
+export function Unchosen({ designs }) {
+  const found = designs.map((design) => ({ name: design.name, free: unchosenIn(design, design.layout) })).filter(({ free }) => free.length > 0);
+  return found.length === 0
+    ? null
+    : html`<p class="unchosen" role="status">Not chosen yet: ${found.map(({ name, free }) => `${free.join(", ")} of ${name}`).join("; ")}. The free values are in the middle of their bounds, which says nothing of a layout: press Optimise, or choose them.</p>`;
+}

@@ -1,0 +1,166 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { answerOf, questions, soughtAnswer, soughtOf, unchosenIn } from "../src/questions.js";
+import { initial, reduce } from "../src/state/store.js";
+import { doubted, doubtsIn } from "../src/parts/doubts.js";
+import { takeFitted, takeOptima } from "../src/working.js";
+import { budgetTold } from "../src/panels/answers.js";
+import { createStore } from "../src/state/store.js";
+
+const study = (/** @type {any} */ { title, k = "120 kN/m", strut = "k | c", model = "quarter-car" }) => ({
+  title,
+  vehicle: { model, sprung_mass: "180 kg" },
+  elements: { k, c: { from: "100 N s/m", to: "100 kN s/m" }, b: "300 kg" },
+  layouts: { S1: "k | c | b", S2: strut },
+  study: { indices: ["J1"], baseline: "S1", optimise: "norm" },
+});
+const ABOUT = { vehicles: [{ key: "quarter-car", fields: [], mounts: ["strut"] }], road: [], elements: [], methods: [{ name: "norm", sees: "neither", searches: true, averages: false }] };
+const PANELS = ["network", "check", "indices", "response"];
+
+/** A generator of numbers in [0, 1) from a seed (mulberry32). */
+function random(seed) {
+  return () => {
+    seed = (seed + 0x6d2b79f5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+const opened = (/** @type {any} */ which) => reduce({ ...initial(), about: ABOUT }, { type: "changed", change: { type: "opened", study: study(which) }, gesture: null });
+const keyOf = (/** @type {any} */ state, /** @type {string} */ panel) => questions(state).find((question) => question.panel === panel)?.key ?? null;
+const change = (/** @type {any} */ state, /** @type {any} */ of) => reduce(state, { type: "changed", change: of, gesture: null });
+const ask = (/** @type {any} */ state, /** @type {string} */ panel) => reduce(state, { type: "asked", panel, question: keyOf(state, panel) });
+const tell = (/** @type {any} */ state, /** @type {string} */ panel, /** @type {any} */ question) => reduce(state, { type: "answered", panel, question, value: { to: question } });
+
+test("whatever is opened, changed, undone and answered in whatever order, no panel shows the answer to another question as its own", () => {
+  const titles = ["seat", "train"];
+  for (let seed = 0; seed < 150; seed += 1) {
+    const draw = random(seed);
+    let state = opened({ title: "seat" });
+    /** @type {{panel: string, question: any, title: string}[]} */
+    let underWay = [];
+    for (let step = 0; step < 40; step += 1) {
+      const what = Math.floor(8 * draw());
+      if (what === 0) state = change(state, { type: "opened", study: study({ title: titles[Math.floor(2 * draw())], strut: ["k | c", "k | c - b"][Math.floor(2 * draw())] }) });
+      if (what === 1) state = change(state, { type: "placed", place: ["elements", "k"], value: `${1 + Math.floor(5 * draw())} kN/m` });
+      if (what === 2) state = change(state, { type: "drawn", text: ["", "k", "k | c - b"][Math.floor(3 * draw())] });
+      if (what === 3) state = change(state, { type: "selected", layout: ["S1", "S2"][Math.floor(2 * draw())] });
+      if (what === 4) state = reduce(state, { type: draw() < 0.7 ? "undone" : "redone" });
+      for (const panel of PANELS) {
+        if (draw() < 0.5 || underWay.some((each) => each.panel === panel)) continue;
+        state = ask(state, panel);
+        underWay.push({ panel, question: keyOf(state, panel), title: state.history.present.study.title });
+      }
+      const ready = underWay.filter(() => draw() < 0.4);
+      underWay = underWay.filter((each) => !ready.includes(each));
+      for (const { panel, question } of ready) state = draw() < 0.8 ? tell(state, panel, question) : reduce(state, { type: "refused", panel, question, sentence: `no: ${question}` });
+      for (const panel of PANELS) {
+        const shown = answerOf(state, panel);
+        const question = keyOf(state, panel);
+        if (shown.is === "current") assert.equal(shown.value.to, question);
+        if (shown.sentence !== null) assert.equal(shown.sentence, `no: ${question}`);
+        if (shown.value === null || shown.is === "current") continue;
+        assert.ok(shown.before && shown.is === "coming");
+        const [mine, other] = [question, shown.value.to].map((each) => JSON.parse(each));
+        assert.equal(JSON.stringify(mine.study?.title), JSON.stringify(other.study?.title)); // a step of a slider of the same study and network
+        assert.deepEqual(mine.study?.layouts, other.study?.layouts);
+        assert.deepEqual(mine.designs?.map((/** @type {any} */ { layout }) => layout), other.designs?.map((/** @type {any} */ { layout }) => layout));
+      }
+    }
+  }
+});
+
+test("an answer is current, coming, or none, and says so at once", () => {
+  let state = ask(opened({ title: "seat" }), "indices");
+  const first = keyOf(state, "indices");
+  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: null, sentence: null, before: false });
+  state = tell(state, "indices", first);
+  assert.equal(answerOf(state, "indices").is, "current");
+  state = change(state, { type: "placed", place: ["elements", "k"], value: "7 kN/m" });
+  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: { to: first }, sentence: null, before: true });
+  const cleared = change(state, { type: "drawn", text: "" });
+  assert.deepEqual(answerOf(cleared, "indices"), { is: "coming", value: null, sentence: null, before: false });
+  const question = keyOf(cleared, "indices");
+  const refused = reduce(reduce(cleared, { type: "asked", panel: "indices", question }), { type: "refused", panel: "indices", question, sentence: "no network" });
+  assert.deepEqual(answerOf(refused, "indices"), { is: "none", value: null, sentence: "no network", before: false });
+  assert.equal(answerOf(reduce(reduce(refused, { type: "undone" }), { type: "undone" }), "indices").value.to, first); // it was asked before
+});
+
+test("a copy of a study with other numbers is another study", () => {
+  let state = ask(opened({ title: "same", k: "1 kN/m" }), "indices");
+  state = tell(state, "indices", keyOf(state, "indices"));
+  state = change(state, { type: "opened", study: study({ title: "same", k: "2 kN/m" }) });
+  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: null, sentence: null, before: false });
+});
+
+test("an answer that comes when another study is open is not of that, and is there when the first is opened again", () => {
+  let state = ask(opened({ title: "seat" }), "indices");
+  const late = keyOf(state, "indices");
+  state = change(state, { type: "opened", study: study({ title: "train" }) });
+  state = tell(state, "indices", late);
+  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: null, sentence: null, before: false });
+  state = reduce(state, { type: "undone" });
+  assert.equal(answerOf(state, "indices").value.to, late);
+});
+
+test("what a button asked is told of the design that it was asked of, and of no other", () => {
+  for (const [panel, parameters] of Object.entries({ budget: { index: "J1", parameter: "c" }, tolerance: { index: "J1", spread: { c: 0.1 } } })) {
+    let state = change(opened({ title: "seat" }), { type: "valued", layout: "S2", values: { c: "3 kN s/m" } });
+    assert.equal(soughtAnswer(state, panel).is, "none");
+    state = reduce(state, { type: "sought", panel, parameters });
+    const question = soughtOf(state, panel)?.key;
+    state = reduce(state, { type: "asked", panel, question: String(question) });
+    assert.equal(soughtAnswer(state, panel).is, "coming");
+    const moved = change(state, { type: "valued", layout: "S2", values: { c: "4 kN s/m" } });
+    assert.equal(soughtAnswer(moved, panel).is, "none");
+    const told = reduce(moved, { type: "answered", panel, question: String(question), value: 1 });
+    assert.deepEqual(soughtAnswer(told, panel), { is: "none", value: null, sentence: null, before: false });
+    assert.equal(soughtAnswer(reduce(told, { type: "undone" }), panel).value, 1);
+    assert.equal(soughtAnswer(change(told, { type: "opened", study: study({ title: "train" }) }), panel).value, null);
+  }
+});
+
+test("messages stand below each other; one about the same replaces the one before, and another study has none of them", () => {
+  let state = opened({ title: "seat" });
+  for (const [text, about] of [["press Optimise", undefined], ["Reading a.csv", "a.csv"], ["a.csv was read", "a.csv"], ["press Optimise", undefined]]) state = reduce(state, { type: "said", text: String(text), about });
+  assert.deepEqual(state.messages.map(({ text }) => text), ["a.csv was read", "press Optimise"]);
+  assert.deepEqual(reduce(state, { type: "closed", about: "a.csv" }).messages.map(({ text }) => text), ["press Optimise"]);
+  assert.deepEqual(change(state, { type: "placed", place: ["title"], value: "x" }).messages, state.messages);
+  assert.deepEqual(change(state, { type: "opened", study: study({ title: "train" }) }).messages, []);
+  assert.deepEqual(reduce(state, { type: "undone" }).messages, []);
+});
+
+test("what is free is unchosen until it has a value, in each layout by itself", () => {
+  const { study: of } = opened({ title: "seat" }).history.present;
+  assert.deepEqual(unchosenIn({ study: of, values: {} }, "S2"), ["c"]);
+  assert.deepEqual(unchosenIn({ study: of, values: { S1: { c: "1 N s/m" } } }, "S2"), ["c"]);
+  assert.deepEqual(unchosenIn({ study: of, values: { S2: { c: "1 N s/m" } } }, "S2"), []);
+  assert.deepEqual(unchosenIn({ study: { ...of, vehicle: { ...of.vehicle, sprung_mass: { from: "1 kg", to: "2 kg" } } }, values: {} }, "S2"), ["c", "sprung_mass"]);
+});
+
+test("a doubt is told once for all that it is about, and before anything else", () => {
+  const members = [{ of: "J1 of S1", status: "inaccurate", message: "friction is large" }, { of: "J3 of S1", status: "ok" }, { of: "J3 of S2", status: "inaccurate: friction is large" }];
+  assert.deepEqual(doubtsIn(members), ["J1 of S1, J3 of S2: inaccurate: friction is large"]);
+  assert.equal(doubted([{ of: "the budget", status: "failed", message: "" }]), "Not to be relied on: the budget: failed. ");
+  assert.equal(doubted([members[1]]), "");
+  const budget = { parameter: "f", value: 12, unit: "N", standard_error: null, status: "inaccurate", message: "friction is large" };
+  assert.match(budgetTold(budget, "S3", "S1"), /^Not to be relied on: .*friction is large\. At f = 12 N/);
+  assert.match(budgetTold({ ...budget, status: "ok" }, "S3", "S1"), /^At f = 12 N/);
+});
+
+test("only what is given is handed on: no withheld device, no values of another study", () => {
+  const store = createStore();
+  store.change({ type: "opened", study: study({ title: "seat" }) });
+  const before = store.get().history.present;
+  const fit = { status: "inaccurate: the model leaves 13 times", parameters: { b: { value: null, interval: [null, null] } } };
+  const device = { elements: { b2: "123 kg" }, layouts: { device: "b2" } };
+  assert.match(takeFitted(store, fit, device), /^Not to be relied on: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/);
+  assert.equal(store.get().history.present, before);
+  assert.match(takeOptima(store, [{ layout: "S9", index: "J1", texts: { c: "1 N s/m" }, status: "ok" }]), /nothing was changed/);
+  assert.match(takeOptima(store, [{ layout: "S2", index: "J1", texts: { f: "1 N" }, status: "ok" }]), /nothing was changed/);
+  assert.equal(store.get().history.present, before);
+  assert.match(takeOptima(store, [{ layout: "S2", index: "J1", texts: { c: "1 N s/m" }, status: { norm: "infeasible" }, message: "a limit is broken" }]), /^Not to be relied on: J1 of S2: infeasible: a limit is broken\. The best J1 of S2\.$/);
+  const given = { status: "ok", parameters: { b: { value: 123, interval: [120, 125] } } };
+  assert.match(takeFitted(store, given, device), /^The device is in the new layout/);
+});

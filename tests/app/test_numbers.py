@@ -310,7 +310,7 @@ def test_a_design_that_nobody_has_chosen_is_no_answer(
 
 
 def test_a_comparison_is_no_better_than_the_worst_of_it(client: TestClient) -> None:
-    """Of friction that sticks for a part of the time, by statistical linearisation: no best, and a status of each per cent."""
+    """Of friction that sticks for a part of the time, by statistical linearisation: no best, and doubtful per cents."""
     document = changed(elements={"f": "300 N"}, study={"evaluate": ["norm", "statistical-linearisation"]})
     body = {"study": document, "designs": COMPARED[:2], "methods": ["statistical-linearisation"]}
     told = client.post("/api/panel/compare", json=body).json()["designs"]

@@ -131,7 +131,7 @@ async function openStudyFile(store, api, file) {
     say(store, `${file.name} is no study file, and nothing was changed. ${other ?? ""}`.trim());
     return;
   }
-  await beginWith(store, api, study);
+  if (!(await beginWith(store, api, study))) return;
   say(store, problems.length ? `${file.name} is open; ${problems.length === 1 ? "one entry needs" : `${problems.length} entries need`} another value.` : `${file.name} is open.`);
 }
 
@@ -146,7 +146,7 @@ async function openSimulation(store, api, name, { signal, simulation, ...study }
   const { about } = store.get();
   const model = about.vehicles.find((/** @type {any} */ { key }) => key === study.vehicle.model);
   if (model?.moved === RIG) return say(store, `${name}: ${takeDevice(store, study)}`);
-  await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } });
+  if (!(await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } }))) return;
   if (simulation?.layout in study.layouts) store.change({ type: "selected", layout: simulation.layout });
   say(store, `${name} is open as a study of its vehicle; what drove the simulation is left out.`);
 }

@@ -65,11 +65,13 @@ function atBounds({ active_bounds: bounds }) {
   return names.length ? ` (at a bound: ${names.map((/** @type {any} */ each) => each.name ?? each).join(", ")})` : "";
 }
 
-/** Opens a study, with free values at their best for its first index by norms: a fair beginning. @param {Store} store @param {Api} api @param {any} study */
+/** Opens a study, with free values at their best for its first index by norms: a fair beginning. Returns whether it is still open then.
+ * @param {Store} store @param {Api} api @param {any} study */
 export async function openStudy(store, api, study) {
   const gesture = `open ${Date.now()}`;
   store.change({ type: "opened", study }, gesture);
   await beginAtBest(store, api, gesture);
+  return store.get().history.present.study === study;
 }
 
 /** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of which the page tells.

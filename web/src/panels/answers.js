@@ -104,7 +104,7 @@ function Amount({ result: { value, standard_error: error, error_bound: bound, de
 
 /** By how much it is better, and below that the standard error; first what makes that doubtful. @param {{result: any, unchosen: boolean}} props */
 function Improvement({ result: { improvement_percent: value, improvement_error_percent: error, improvement_status: status }, unchosen }) {
-  if (unchosen) return html`<span class="quiet">not chosen yet</span>`;
+  if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
   const doubt = isOk(status) ? null : html`<div class="doubt">${status}</div>`;
   if (typeof value !== "number" || !error) return html`${typeof value === "number" && doubt}${percent(value)}`;
   const [number, scatter] = estimated(value, error);

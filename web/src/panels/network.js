@@ -79,12 +79,13 @@ function Editor({ store }) {
   const document = state.history.present;
   const text = textOf(document);
   const tree = useMemo(() => parse(text), [text]);
-  const [last, setLast] = useState(/** @type {Tree | null} */ (tree));
+  const [last, setLast] = useState(/** @type {{tree: Tree | null, of: string}} */ ({ tree: null, of: "" }));
+  const of = JSON.stringify([document.study.title, document.layout, document.strut]);
   const [how, setHow] = useState(/** @type {Joint} */ ("series"));
   useEffect(() => {
-    if (tree !== null) setLast(tree);
-  }, [tree]);
-  const shownTree = tree ?? last;
+    if (tree !== null || text.trim() === "") setLast({ tree, of });
+  }, [tree, of]);
+  const shownTree = tree ?? (text.trim() !== "" && last.of === of ? last.tree : null); // what is being typed keeps the drawing of before
   const path = pathIn(shownTree, state);
   const selected = shownTree && partAt(shownTree, path);
   const editing = { store, how };

@@ -1,0 +1,332 @@
+"""No answer, curve or message of one study stands under the name of another, and each says whether it is current."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Visitor, drop, wait_until
+from campaigns import sampled
+from study_text import PAPER_CAR, study_text
+
+import inerter as it
+from inerter.app.about import examples
+from inerter.files.rig.loading import load_rig
+
+SIMULATED = "half_car_friction"  # of a simulation file its vehicle is opened
+STUDIES = [*examples(), SIMULATED]
+TABS = ("history", "response")  # whose answers come by themselves
+SHOWN = """() => {
+  const texts = (selector) => [...document.querySelectorAll(selector)].map(each => each.textContent.trim());
+  return {
+    numbers: [...document.querySelectorAll("[data-value], [data-better]")]
+      .flatMap(each => [each.dataset.value, each.dataset.better]).filter(each => each && !isNaN(each)),
+    curves: document.querySelectorAll(".plot canvas, .motion canvas, .histogram").length,
+    texts: [...texts(".limits li"), ...texts(".budget [role=status]"), ...texts(".optimise [role=status]"),
+      ...texts(".notice"), ...texts(".problem"), ...texts(".doubts")].filter(each => each),
+  };
+}"""
+FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+NOTHING = {"numbers": [], "curves": 0, "texts": []}
+
+
+@contextmanager
+def held(visitor: Visitor, paths: str = "panel/") -> Iterator[list[Any]]:
+    """Requests of these paths get no answer; in the end they are told that newer ones have come."""
+    waiting: list[Any] = []
+    pattern = re.compile(f".*/api/{paths}.*")
+    visitor.page.route(pattern, lambda route: waiting.append(route))  # noqa: PLW0108 -- a method of a list cannot be marked
+    yield waiting
+    visitor.page.unroute(pattern)
+    for route in waiting:
+        route.fulfill(status=409, body=json.dumps({"sentence": "Out of date.", "outdated": True}))
+
+
+def _opened(visitor: Visitor, name: str) -> None:
+    visitor.open(EXAMPLES / f"{name}.toml")
+    visitor.page.wait_for_selector(f"text={name}.toml is open")
+    visitor.settled()
+    visitor.drawn()
+
+
+def _follows(visitor: Visitor, first: str, other: str) -> list[Any]:
+    """What of the first study is to be seen when another one is opened whose answers do not come."""
+    page = visitor.page
+    before, title = page.evaluate(SHOWN), page.input_value(".title")
+    assert before["numbers"] or before["texts"], first  # what a method cannot answer has a sentence
+    with held(visitor):
+        visitor.open(EXAMPLES / f"{other}.toml")
+        page.wait_for_function("title => document.querySelector('.title').value !== title", arg=title)
+        found = []
+        for tab in TABS:
+            page.click(f"#tab-{tab}")
+            page.evaluate(FRAMES)
+            shown = page.evaluate(SHOWN)
+            shown["texts"] = [text for text in shown["texts"] if not text.startswith(f"{other}.toml is open")]
+            if shown != NOTHING:
+                found.append((first, other, tab, shown))
+        assert page.locator(".answers [data-being=coming]").count() == 1, (first, other)
+        for _ in range(3 if other == SIMULATED else 1):  # which chooses a layout besides
+            if page.input_value(".title") != title:
+                page.get_by_role("button", name="Undo").click()
+                page.evaluate(FRAMES)
+        page.wait_for_function("() => document.querySelector('.answers [data-being=current]')")
+        assert page.evaluate(SHOWN)["numbers"] == before["numbers"]  # at once: they are those of this very question
+    return found
+
+
+@pytest.mark.parametrize("first", sampled(STUDIES, often=["seat", "full-car", "train"], kept=0))
+def test_nothing_of_one_study_stands_under_another(first: str, visitor: Visitor) -> None:
+    """Of all pairs of examples, opened one after the other: no number, curve or message of the first."""
+    page = visitor.page
+    page.click("#tab-history")
+    page.get_by_label("for [s]").fill("1")
+    page.keyboard.press("Enter")
+    _opened(visitor, first)
+    page.click("#tab-response")
+    visitor.drawn()
+    found = [_follows(visitor, first, other) for other in STUDIES if other != first]
+    assert [each for each in found if each] == []
+
+
+@pytest.mark.campaign
+def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
+    """The optimum, a budget and a tolerance that were told of the seat: nothing of them under the train."""
+    page = visitor.page
+    _opened(visitor, "seat")
+    page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
+    visitor.settled()
+    page.click("#tab-tolerance")
+    page.locator("#tab-panel").get_by_role("button", name="Find out").click()
+    page.wait_for_selector("table[data-scatter]")
+    page.get_by_text("What it bears").click()
+    page.locator(".budget").get_by_role("button", name="Find out").click()
+    page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
+    assert len(page.evaluate(SHOWN)["texts"]) > 0
+    with held(visitor):
+        visitor.open(EXAMPLES / "train.toml")
+        page.wait_for_function("() => document.querySelector('.title').value.includes('coach')")
+        page.evaluate(FRAMES)
+        assert page.evaluate(SHOWN) == NOTHING
+        page.get_by_role("button", name="Undo").click()
+        page.wait_for_selector("table[data-scatter]")  # and again under the seat, since it is that of it
+
+
+@pytest.mark.campaign
+def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visitor) -> None:
+    page = visitor.page
+    _opened(visitor, "seat")
+    waiting: list[Any] = []
+    page.route("**/api/panel/optimise", lambda route: waiting.append(route))  # noqa: PLW0108
+    with page.expect_request("**/api/panel/optimise"):
+        page.get_by_role("button", name="Optimise").click()
+    page.wait_for_timeout(200)
+    assert len(waiting) == 1
+    page.unroute("**/api/panel/optimise")
+    _opened(visitor, "train")
+    with page.expect_response("**/api/panel/optimise"):
+        waiting[0].continue_()
+    page.evaluate(FRAMES)
+    page.wait_for_timeout(500)
+    assert page.locator(".answers .unchosen").count() == 1
+    assert page.inner_text(".optimise [role=status]") == ""
+    assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
+
+
+def _moves(page: Any) -> None:
+    """Wait for less than two seconds until something tells how long an answer is coming, and see that it goes on."""
+    page.wait_for_selector(".clock", timeout=2000)
+    before = page.inner_text(".clock >> nth=0")
+    page.wait_for_function("text => document.querySelector('.clock').innerText !== text", arg=before, timeout=2000)
+
+
+def _slide(page: Any) -> None:
+    page.fill("[id='entry elements.k']", "100 kN/m")
+    page.keyboard.press("Enter")
+
+
+def _save(name: str) -> Callable[[Any], None]:
+    def save(page: Any) -> None:
+        page.get_by_text("Save", exact=True).click()
+        page.get_by_role("button", name=name).click()
+
+    return save
+
+
+def _find_out(tab: str) -> Callable[[Any], None]:
+    def ask(page: Any) -> None:
+        if tab == "budget":
+            page.get_by_text("What it bears").click()
+        else:
+            page.click(f"#tab-{tab}")
+        page.locator(".budget" if tab == "budget" else "#tab-panel").get_by_role("button", name="Find out").click()
+
+    return ask
+
+
+ASKING: dict[str, Callable[[Any], None]] = {
+    "a slider": _slide,
+    "a road": lambda page: page.click("#tab-history"),
+    "an optimum": lambda page: page.get_by_role("button", name="Optimise").click(),
+    "a budget": _find_out("budget"),
+    "a tolerance": _find_out("tolerance"),
+    "a picture": _save("On the road (PNG)"),
+    "a table": _save("Frequency response (CSV)"),
+    "a study": lambda page: (
+        page.get_by_text("Open", exact=True).click(),
+        page.set_input_files(".menu input[type=file]", str(EXAMPLES / "seat.toml")),
+    ),
+    "work": lambda page: (page.click("#tab-work"), page.locator("form.begin button").first.click()),
+}
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("what", ASKING)
+def test_nothing_is_silent_for_two_seconds(what: str, visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.settled()
+    page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
+    visitor.settled()
+    with held(visitor, "") as waiting:
+        ASKING[what](page)
+        _moves(page)
+        assert waiting
+
+
+@pytest.mark.campaign
+def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.settled()
+    page.wait_for_selector(".answers [data-being=current]")
+    before = page.evaluate(SHOWN)["numbers"]
+    with held(visitor):
+        _slide(page)
+        page.wait_for_selector(".answers [data-being=coming]")
+        assert page.evaluate(SHOWN)["numbers"] == before  # those of the step before, and said to be
+        assert page.locator(".answers table.stale").count() == 1
+        page.fill("#network-text", "")
+        page.wait_for_selector(".answers table.stale", state="detached")
+        assert page.evaluate(SHOWN)["numbers"] == []
+    page.wait_for_selector(".answers [data-being=none]")
+    assert page.evaluate(SHOWN)["numbers"] == []
+    assert page.evaluate(SHOWN)["curves"] == 0
+
+
+@pytest.mark.campaign
+def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> None:
+    """The best values of a train are not found while one waits: it says so beside that it is open, until they are."""
+    page = visitor.page
+    _opened(visitor, "train")
+    page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
+    visitor.settled()
+    assert page.inner_text(".notice").startswith("train.toml is open.")
+    said = page.inner_text(".answers .unchosen")
+    assert "in the middle of their bounds" in said
+    assert "press Optimise" in said
+    better = page.locator(".answers [data-better], .answers td:has-text('not chosen yet')")
+    assert all("not chosen yet" in text for text in better.all_inner_texts())
+    assert "%" not in page.inner_text(".answers table")
+    page.click("#tab-compare")
+    for layout in ("S1", "S3"):
+        page.get_by_role("group", name="Designs to compare").get_by_role("button", name=layout).click()
+    page.wait_for_selector("[aria-label=Comparison] td[data-value]")
+    assert "%" not in page.inner_text("[aria-label=Comparison]")
+    assert page.locator("td.best").count() == 0
+    for layout in ("S1", "S3"):
+        page.locator("[aria-label=Layouts] .chip", has_text=layout).click()
+        for name in re.findall(r"(\w+)(?:,| of)", page.inner_text(".answers .unchosen").split("Not chosen yet: ")[1]):
+            entry = page.locator(f"[id='entry elements.{name}']")
+            if entry.count() and entry.is_visible():
+                text = entry.get_attribute("title")
+                number, _, unit = str(text).partition(" ")
+                entry.fill(f"{1.1 * float(number):.4g} {unit}")
+                page.keyboard.press("Enter")
+    page.wait_for_selector(".unchosen", state="detached")
+    visitor.settled()
+    wait_until(lambda: "%" in page.inner_text(".answers table"))
+    page.wait_for_selector("td.best")
+
+
+@pytest.mark.campaign
+def test_a_fit_that_is_withheld_says_so_first_and_hands_nothing_on(visitor: Visitor, tmp_path: Path) -> None:
+    """The force of a ball screw, by a model without friction: as the command line begins, so does the page."""
+    page = visitor.page
+    record = tmp_path / "fit.csv"
+    it.write_record(replace(load_rig(EXAMPLES / "rig_fit.toml"), duration=1.0).run(), record)
+    visitor.open(record)
+    page.wait_for_selector(".records li")
+    page.select_option("select[name=model]", "ideal")
+    page.get_by_role("button", name="Identify").click()
+    page.wait_for_selector(".fit[data-state=running] .clock", timeout=30_000)
+    page.wait_for_selector(".fit[data-state=done] table", timeout=120_000)
+    (job,) = [job for job in json.loads(visitor.served.get("work"))["work"] if job["kind"] == "identify"]
+    result = json.loads(visitor.served.get(f"work/{job['id']}/result"))
+    assert result["parameters"]["b"]["value"] is None
+    assert result["device"] is None
+    told = page.inner_text(".fit")
+    first = told.index("Not to be relied on")
+    assert result["status"].partition(": ")[2] in told
+    assert first < told.index("95 % interval")
+    assert page.locator(".fit tr:has(th:text-is('b')) td").first.inner_text() == "withheld"
+    assert "null" not in told
+    assert page.get_by_role("button", name="Take the device").count() == 0
+    before = visitor.text
+    folder = tmp_path / "identified"
+    folder.mkdir()
+    (folder / "fit.json").write_bytes(visitor.served.get(f"work/{job['id']}/files/fit.json"))
+    drop(visitor, folder)
+    page.wait_for_selector(".notice:has-text('fit.json: Not to be relied on')")
+    assert "There is no device to take" in page.inner_text(".notice:has-text('fit.json')")
+    assert visitor.text == before
+
+
+STICKING = study_text(
+    'indices = ["J1", "J3"]\nevaluate = ["norm", "statistical-linearisation"]',
+    vehicle=PAPER_CAR,
+    elements='k = "120 kN/m"\nc = "7 kN s/m"\nb = "360 kg"\nf = "300 N"',
+    layouts='S1 = "k | c"\nS3 = "k | c - (b | f)"',
+    title='title = "Friction that sticks"',
+)
+
+
+@pytest.mark.campaign
+def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_path: Path) -> None:
+    """Answers, a comparison, a budget and the scatter of a friction: each begins with what it is worth."""
+    page = visitor.page
+    (tmp_path / "sticking.toml").write_text(STICKING)
+    visitor.open(tmp_path / "sticking.toml")
+    page.wait_for_selector("text=sticking.toml is open")
+    page.select_option(".answers select >> nth=0", "statistical-linearisation")
+    visitor.settled()
+    answers = page.inner_text(".answers")
+    assert answers.index("Not to be relied on") < answers.index("better by")
+    cell = page.locator(".answers td:has(.doubt)").last.inner_text()
+    assert cell.startswith("inaccurate")
+    assert page.locator(".answers td.good, .answers td.bad").count() == 0
+
+    page.click("#tab-compare")
+    for layout in ("S1", "S3"):
+        page.get_by_role("group", name="Designs to compare").get_by_role("button", name=layout).click()
+    page.wait_for_selector("[aria-label=Comparison] td[data-value]")
+    told = page.inner_text("#tab-panel")
+    assert told.index("Not to be relied on") < told.index("network")
+    assert page.locator("td.best, .difference.good, .difference.bad").count() == 0
+
+    page.get_by_text("What it bears").click()
+    page.locator(".budget [name=parameter]").select_option("f")
+    page.locator(".budget").get_by_role("button", name="Find out").click()
+    page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
+    assert page.inner_text(".budget [role=status]").startswith("Not to be relied on: the budget: inaccurate")
+
+    page.select_option(".answers select >> nth=0", "norm")
+    page.click("#tab-tolerance")
+    page.locator("#tab-panel").get_by_role("button", name="Find out").click()
+    page.wait_for_selector("table[data-scatter]")
+    told = page.inner_text("#tab-panel")
+    assert told.index("norm leaves out what f does") < told.index("standard deviation")

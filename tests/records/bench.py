@@ -59,8 +59,20 @@ def write_mdf(path: Path, *groups: list[tuple[str, Any, Any, str]], version: str
 
 
 def write_mat(path: Path, **variables: Any) -> Path:
-    savemat(path, variables)
+    """A list of dictionaries with the same keys is an array of structs."""
+    savemat(path, {name: _with_struct_arrays(value) for name, value in variables.items()})
     return path
+
+
+def _with_struct_arrays(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _with_struct_arrays(inner) for name, inner in value.items()}
+    if not isinstance(value, list):
+        return value
+    array = np.empty((1, len(value)), dtype=[(field, "O") for field in value[0]])
+    for at, row in enumerate(value):
+        array[0, at] = tuple(_with_struct_arrays(inner) for inner in row.values())
+    return array
 
 
 def write_mat73(path: Path, **variables: Any) -> Path:
@@ -79,6 +91,15 @@ def _fill(group: Any, variables: dict[str, Any]) -> None:
             inner = group.create_group(name)
             inner.attrs["MATLAB_class"] = np.bytes_("struct")
             _fill(inner, value)
+        elif isinstance(value, list):  # an array of structs: a group with an array of references for each field
+            inner = group.create_group(name)
+            inner.attrs["MATLAB_class"] = np.bytes_("struct")
+            for field in value[0]:
+                parts = group.file.require_group("#refs#").create_group(f"{name}-{field}")
+                _fill(parts, {str(at): row[field] for at, row in enumerate(value)})
+                refs = inner.create_dataset(field, (len(value), 1), dtype=h5py.ref_dtype)
+                for at in range(len(value)):
+                    refs[at, 0] = parts[str(at)].ref
         elif isinstance(value, str):
             data = group.create_dataset(name, data=np.array([[ord(c)] for c in value], dtype=np.uint16))
             data.attrs["MATLAB_class"] = np.bytes_("char")

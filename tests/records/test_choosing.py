@@ -12,15 +12,15 @@ from bench import bench, write_csv
 import inerter as it
 from inerter.errors import RecordError
 
-GERMAN = {"Zeit": "s", "Weg": "mm", "Kraft": "N"}
-ROLES = {"time": "Zeit", "displacement": "Weg", "force": "Kraft"}
+SPANISH = {"Tiempo": "s", "Recorrido": "mm", "Fuerza": "N"}
+ROLES = {"time": "Tiempo", "displacement": "Recorrido", "force": "Fuerza"}
 
 
-@pytest.mark.parametrize("order", list(permutations(GERMAN)))
+@pytest.mark.parametrize("order", list(permutations(SPANISH)))
 def test_following_the_hints_reads_the_file(order: tuple[str, ...], tmp_path: Path) -> None:
     record = bench(100)
-    columns = {"Zeit": record.time, "Weg": 1e3 * record.displacement, "Kraft": record.force}
-    header = [f"{name} [{GERMAN[name]}]" for name in order]
+    columns = {"Tiempo": record.time, "Recorrido": 1e3 * record.displacement, "Fuerza": record.force}
+    header = [f"{name} [{SPANISH[name]}]" for name in order]
     path = write_csv(tmp_path / "bench.csv", [header], [columns[name] for name in order])
     named: dict[str, str] = {}
     for _ in ROLES:
@@ -35,8 +35,8 @@ def test_following_the_hints_reads_the_file(order: tuple[str, ...], tmp_path: Pa
 
 def test_without_units_no_channel_is_proposed(tmp_path: Path) -> None:
     record = bench(100)
-    path = write_csv(tmp_path / "a.csv", [["Zeit", "Weg", "Kraft"]], [record.time, record.displacement, record.force])
-    with pytest.raises(RecordError, match=r"there are Zeit .*Name it: displacement='name'\."):
+    path = write_csv(tmp_path / "a.csv", [["Tiempo", "Recorrido", "Fuerza"]], [record.time, record.displacement, record.force])
+    with pytest.raises(RecordError, match=r"there are Tiempo .*Name it: displacement='name'\."):
         it.read_record(path)
 
 

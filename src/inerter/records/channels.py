@@ -43,3 +43,4 @@ class Contents:
     read: Callable[[Sequence[Channel], Progress], list[Samples]]
     notes: tuple[str, ...] = ()
     meta: dict[str, Any] = field(default_factory=dict)
+    nameless: bool = False  # the file does not say what its channels are

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+import re
+import unicodedata
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, TypedDict
 
 from inerter.errors import RecordError
 from inerter.records.channels import Channel, Contents
 from inerter.records.remedy import Action, Remedy
-from inerter.records.scales import fits
+from inerter.records.scales import EXAMPLES, fits
 
 
 class Roles(TypedDict, total=False):
@@ -23,14 +25,18 @@ class Roles(TypedDict, total=False):
 
 
 ROLES = tuple(Roles.__annotations__)
-# Names that tell the channel by themselves, whatever their case; the last two are taken only if their unit fits.
+# Names that tell the channel by themselves, whatever their case and accents: in English, German and French. The last
+# two roles are taken only if their unit fits.
 OBVIOUS = {
-    "time": ("time", "t"),
-    "displacement": ("displacement", "disp", "position", "pos", "x", "stroke"),
-    "force": ("force", "load", "f"),
-    "velocity": ("velocity", "vel"),
-    "acceleration": ("acceleration", "accel", "acc"),
+    "time": ("time", "t", "zeit", "messzeit", "temps"),
+    "displacement": ("displacement", "disp", "position", "pos", "x", "stroke", "weg", "hub", "deplacement", "course"),
+    "force": ("force", "load", "f", "kraft", "last", "effort", "charge"),
+    "velocity": ("velocity", "vel", "geschwindigkeit", "vitesse"),
+    "acceleration": ("acceleration", "accel", "acc", "beschleunigung"),
 }
+_ENGLISH = {"time": 2, "displacement": 6, "force": 3, "velocity": 2, "acceleration": 3}  # so many of them need no note
+_NEEDED = ("time", "displacement", "force")
+_WORD = re.compile(r"[^\W\d_]+")
 _LISTED = 12
 
 
@@ -47,28 +53,56 @@ def checked_roles(given: Mapping[str, Any]) -> dict[str, str | int | None]:
     return {role: given.get(role) for role in ROLES}
 
 
-def choose(source: str, contents: Contents, asked: dict[str, str | int | None], timed: bool) -> dict[str, Channel]:
-    """The channel of each role: the one that was asked for, else the one with an obvious name.
+def choose(
+    source: str, contents: Contents, asked: dict[str, str | int | None], timed: bool
+) -> tuple[dict[str, Channel], list[str]]:
+    """The channel of each role: the one that was asked for, else the one with an obvious name; and a note of choices.
 
-    `timed` says that the times are known without a channel.
+    A channel whose name begins with such a word is taken where no other of the file has a unit of its role. `timed` says
+    that the times are known without a channel.
 
     Raises `RecordError`, which lists what there is, where a needed channel is not found or not clear.
     """
-    chosen: dict[str, Channel] = {}
-    for role in ROLES:
-        given = asked.get(role)
-        if given is not None:
-            chosen[role] = named(source, contents.channels, role, given)
-        elif not (role == "time" and timed) and (found := _obvious(source, contents.channels, role)):
+    channels = contents.channels
+    chosen = {role: named(source, channels, role, given) for role, given in asked.items() if given is not None}
+    for role in ("displacement", "force", "time", "velocity", "acceleration"):  # times are those of the group of both
+        if role in chosen or (role == "time" and timed):
+            continue
+        if found := _obvious(source, channels, role, {_group(channel) for channel in chosen.values()}):
             chosen[role] = found
         elif role in ("displacement", "force"):
+            if contents.nameless:
+                raise _without_header(source, channels, asked, timed)
             raise RecordError(
                 f"{source}: no channel has an obvious name for the {role} (such as {', '.join(OBVIOUS[role][:3])}); "
-                f"there {listed(contents.channels)}. Name it: ",
-                *(example(contents.channels, role), "."),
+                f"there {listed(channels)}. Name it: ",
+                *(example(channels, role), "."),
             )
+    chosen = {role: chosen[role] for role in ROLES if role in chosen}
     _distinct(source, chosen)
-    return chosen
+    words = {role: OBVIOUS[role][: _ENGLISH[role]] for role in ROLES}
+    by_name = [
+        f"{role} from {channel.label}"
+        for role, channel in chosen.items()
+        if asked.get(role) is None
+        and (_folded_short(channel) not in words[role] or sum(_folded_short(c) in OBVIOUS[role] for c in channels) > 1)
+    ]
+    return chosen, [f"Channels were chosen by their names: {', '.join(by_name)}."] if by_name else []
+
+
+def _without_header(
+    source: str, channels: Sequence[Channel], asked: Mapping[str, str | int | None], timed: bool
+) -> RecordError:
+    needed = [role for role in _NEEDED if asked.get(role) is None and not (role == "time" and timed)]
+    first = sum(asked.get(role) is not None for role in _NEEDED)
+    said = [part for at, role in enumerate(needed, first) for part in (Remedy(Action.CHANNEL, (role, at)), ", ")][:-1]
+    units: Any = Remedy(Action.UNITS, tuple((role, EXAMPLES[role]) for role in needed))
+    return RecordError(
+        f"{source} has no header above its {len(channels)} columns. Say which is which, counted from 0, and in which "
+        f"units, such as ",
+        *said,
+        *(" and ", units, "."),
+    )
 
 
 def named(source: str, channels: Sequence[Channel], role: str, given: str | int) -> Channel:
@@ -106,11 +140,28 @@ def listed(channels: Sequence[Channel]) -> str:
     return ("is " if len(channels) == 1 else "are ") + ", ".join(shown)
 
 
-def _obvious(source: str, channels: Sequence[Channel], role: str) -> Channel | None:
+def _obvious(source: str, channels: Sequence[Channel], role: str, groups: Collection[str]) -> Channel | None:
+    """The one channel with an obvious name; of several the one in these groups; None if there is none."""
     matches = [channel for channel in channels if _folded_short(channel) in OBVIOUS[role]]
+    near = [channel for channel in matches if _group(channel) in groups]
+    if len(near) == 1 < len(matches):
+        return near[0]
     if len(matches) > 1:
         raise _unclear(source, channels, role, matches)
+    fitting = [channel for channel in channels if fits(role, channel.unit)] if not matches and role in _NEEDED else []
+    if len(fitting) == 1 and _first_word(fitting[0]) in OBVIOUS[role]:
+        return fitting[0]
     return matches[0] if matches else None
+
+
+def _group(channel: Channel) -> str:
+    """What is before the name of a channel in its group; empty where there are no groups."""
+    return re.split(r"[/.][^/.]*$", channel.name)[0] if re.search(r"[/.]", channel.name) else ""
+
+
+def _first_word(channel: Channel) -> str | None:
+    found = _WORD.match(_folded_short(channel))
+    return found[0] if found else None
 
 
 def _unclear(source: str, channels: Sequence[Channel], role: str, matches: Sequence[Channel]) -> RecordError:
@@ -154,8 +205,18 @@ def _short(channel: Channel) -> str:
 
 
 def _folded(channel: Channel) -> str:
-    return channel.name.strip().casefold()
+    return folded(channel.name)
 
 
 def _folded_short(channel: Channel) -> str:
-    return _short(channel).strip().casefold()
+    return folded(_short(channel))
+
+
+def folded(name: str) -> str:
+    """The name without case and accents.
+
+    >>> folded(" Déplacement ")
+    'deplacement'
+    """
+    parts = unicodedata.normalize("NFKD", name.strip().casefold())
+    return "".join(character for character in parts if not unicodedata.combining(character))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +13,13 @@ from scipy.signal import detrend as without_line
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.filtering import HIGHEST, low_pass
-from inerter.records.gaps import fill
+from inerter.records.gaps import LONGEST, fill
 from inerter.records.record import CHANNELS, Record
+from inerter.records.remedy import Action, Remedy
 
 Vector = NDArray[np.float64]
 BOTH = ("displacement", "force")
+_SCATTER, _WHOLE = 0.1, 0.25  # of an interval: what an even clock strays, and what whole intervals do
 MOST = 10**8  # samples of one channel
 
 
@@ -135,6 +138,38 @@ def fill_gaps(record: Record, longest: float) -> Record:
     count, most = int(new.sum()), int(left_out.max())
     note = f"Samples that the times leave out and were interpolated: {count}, up to {most} in a row."
     return record.noted(note, time=time, **changes)
+
+
+def with_missing_times(record: Record, gaps: str | float) -> Record:
+    """The record as `read_record(..., gaps=gaps)` gives it: with the samples that an even clock leaves out, or without.
+
+    "longest" keeps the longest stretch that leaves none out, and "refuse" the record as it is. A clock is even if its
+    other intervals scatter by less than a tenth, and what is left out are whole intervals to a quarter of one.
+
+    Raises `RecordError` where more samples are left out at one place than `gaps` allows to put in.
+    """
+    if gaps == "refuse" or record.uniform:
+        return record
+    steps = np.diff(record.time)
+    usual = float(np.median(steps))
+    ratio = steps / usual
+    holes = ratio > 1.5
+    if not holes.any() or np.std(ratio[~holes]) > _SCATTER or np.abs(ratio - np.round(ratio))[holes].max() > _WHOLE:
+        return record
+    if gaps == "longest":
+        cuts = [0, *(np.flatnonzero(holes) + 1).tolist(), record.time.size]
+        start, stop = max(pairwise(cuts), key=lambda part: part[1] - part[0])
+        said = f"Samples {start} to {stop - 1} were kept: the longest stretch in which the times leave none out."
+        return record.samples(slice(start, stop), said)
+    limit = (LONGEST + 1) * usual if isinstance(gaps, str) else float(gaps)
+    most = int(np.argmax(steps))
+    if steps[most] > limit * (1.0 + _SCATTER):
+        raise RecordError(
+            f"{record.source}: the times leave out {round(ratio[most]) - 1} samples after {record.time[most]:g} s, too "
+            f"many to put in ({limit:g} s at most). Use ",
+            *(Remedy(Action.GAPS, "longest"), ", or a number of s if you trust an interpolation."),
+        )
+    return fill_gaps(record, float(steps[most]))
 
 
 def _filled(time: Vector, values: Vector, new: NDArray[np.bool_]) -> Vector:

@@ -18,9 +18,10 @@ from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.choosing import Roles, checked_roles, choose, example
 from inerter.records.gaps import alike, mend, onto_force
 from inerter.records.lost import mended
+from inerter.records.prepare import with_missing_times
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
-from inerter.records.scales import check_units, fits, scale
+from inerter.records.scales import check_present, check_units, fits, scale
 
 Vector = NDArray[np.float64]
 Opener = Callable[[str, str], AbstractContextManager[Contents]]
@@ -33,6 +34,7 @@ FORMATS: dict[str, tuple[str, Opener]] = {
     ".mdf": ("MDF", mdf.opened),
     ".mat": ("MAT", matlab.opened),
 }
+_OPTIONAL = ("velocity", "acceleration")
 # How files of each kind begin, and what to do with one that is none of ours.
 _MAGIC = (
     (b"TDSm", "TDMS", "Rename it to end in .tdms."),
@@ -61,13 +63,14 @@ def read_record(
 
     The channels are the keywords `displacement`, `force`, `time`, `velocity` and `acceleration`. One is named as in the
     file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name (time, displacement, position,
-    x, force, load, ...). Units come from the file; `units`, such as {"force": "kgf"}, adds or overrules them, and may
+    x, force, load, ..., Zeit, Weg, Kraft, temps, ...). Units come from the file; `units`, such as {"force": "kgf"}, adds or overrules them, and may
     say what one volt is worth, {"force": "250 N"}.
     `interval` [s] gives the sampling where the file has no times, or overrules them.
 
     Samples that are missing or no finite numbers are refused; `gaps="fill"` interpolates up to 10 in a row, a number
     those up to so many seconds, and `gaps="longest"` keeps the longest stretch without any. The same is done about
-    samples that were lost while the clock went on evenly, as the displacement tells; `gaps="refuse"` leaves those.
+    rows that an even clock leaves out, and about samples that were lost while the clock went on evenly, as the
+    displacement tells; `gaps="refuse"` leaves those.
     `progress` is called with the fraction read so far.
 
     Raises `RecordError` for a file, channel or unit that cannot be used, in one sentence that says what to try.
@@ -78,7 +81,7 @@ def read_record(
     opener = _opener(name, source)
     _check_interval(interval, asked["time"])
     with opener(name, source) as contents:
-        chosen = choose(source, contents, asked, timed=interval is not None)
+        chosen, said = choose(source, contents, asked, timed=interval is not None)
         scales, notes = _scales(source, chosen, units, asked)
         samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or _silent), strict=True))
     channels = {role: _scaled(source, chosen[role], samples[role], scales[role]) for role in chosen}
@@ -94,12 +97,12 @@ def read_record(
     record = Record(
         **values,
         source=source,
-        notes=(*contents.notes, *notes, *more, *filled_in),
+        notes=(*contents.notes, *said, *notes, *more, *filled_in),
         force_range=force_range,
         period=period,
         meta=meta,
     )
-    return mended(record, gaps)
+    return mended(with_missing_times(record, gaps), gaps)
 
 
 def _silent(fraction: float) -> None:
@@ -154,8 +157,10 @@ def _scales(
 ) -> tuple[dict[str, float], list[str]]:
     """What a unit of each channel is worth, and notes. Rates whose unit does not fit are left out unless asked for."""
     scales, notes = {}, []
+    needed = {role: c for role, c in chosen.items() if role not in _OPTIONAL or asked[role] is not None}
+    check_present(source, needed, units)
     for role, channel in list(chosen.items()):
-        wanted = asked[role] is not None or role in units or role not in ("velocity", "acceleration")
+        wanted = asked[role] is not None or role in units or role not in _OPTIONAL
         if not wanted and not fits(role, channel.unit):
             del chosen[role]
             notes.append(f"The channel {channel.label} was left out, since its unit is none of {role}.")

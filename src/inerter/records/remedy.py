@@ -13,6 +13,7 @@ class Action(StrEnum):
 
     CHANNEL = "channel"  # (role, name or number)
     UNIT = "unit"  # (role, unit)
+    UNITS = "units"  # several such pairs
     INTERVAL = "interval"  # [s], or None for any
     GAPS = "gaps"  # "fill", "longest" or [s]
     TRIM = "trim"
@@ -54,6 +55,7 @@ def in_python(text: Text) -> str:
 _IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
     Action.CHANNEL: lambda value: f"{value[0]}={value[1]!r}",
     Action.UNIT: lambda value: f"units={{{value[0]!r}: {value[1]!r}}}",
+    Action.UNITS: lambda value: f"units={dict(value)!r}",
     Action.INTERVAL: lambda value: "interval=" if value is None else f"interval={value:.6g}",
     Action.GAPS: lambda value: f"gaps={value!r}",
     Action.TRIM: lambda value: "trim",

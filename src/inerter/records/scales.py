@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from inerter.errors import RecordError, UnitError
 from inerter.records.channels import Channel
@@ -19,6 +20,7 @@ _EXAMPLES = {
 }
 # Mass units that a load cell may show when it means the weight; taken as forces only when the call says so.
 _WEIGHTS = {"kg": "kgf", "lb": "lbf"}
+EXAMPLES = {role: re.split(r",| or ", units)[0] for role, units in _EXAMPLES.items()}
 _POWER = re.compile(r"(?<=[A-Za-z])([23])(?!\w)")
 
 
@@ -32,11 +34,11 @@ def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[
     """
     unit = channel.unit if given is None else given
     if not isinstance(unit, str):
-        raise RecordError(f"The unit of the {role} must be a text such as {_first(role)!r}, got {unit!r}.")
+        raise RecordError(f"The unit of the {role} must be a text such as {EXAMPLES[role]!r}, got {unit!r}.")
     if not unit.strip():
         raise RecordError(
             f"{source}: {channel.name!r} has no unit. Name the unit of the {role}, such as ",
-            *(Remedy(Action.UNIT, (role, _first(role))), "."),
+            *(Remedy(Action.UNIT, (role, EXAMPLES[role])), "."),
         )
     plain = unit.strip()
     if role == "force" and given is not None:
@@ -47,9 +49,26 @@ def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[
     return value, unit, _note(role, channel, unit, given, value)
 
 
+def check_present(source: str, chosen: Mapping[str, Channel], given: Mapping[str, str]) -> None:
+    """Raises `RecordError`, which names all of them, if several channels have no unit, neither in the file nor given."""
+    bare = {role: c for role, c in chosen.items() if role not in given and not c.unit.strip()}
+    if len(bare) < 2:
+        return
+    *others, last = (repr(channel.name) for channel in bare.values())
+    raise RecordError(
+        f"{source}: {', '.join(others)} and {last} have no unit. Name their units, such as ",
+        *(Remedy(Action.UNITS, tuple((role, EXAMPLES[role]) for role in bare)), "."),
+    )
+
+
 def fits(role: str, unit: str) -> bool:
     """Whether a unit as a file writes it is one of that role."""
     return _value(role, unit.strip()) is not None
+
+
+def fits_any(unit: str) -> bool:
+    """Whether a unit as a file writes it is one of any channel of a record."""
+    return any(fits(role, unit) for role in CHANNELS)
 
 
 def check_units(units: dict[str, str] | None) -> dict[str, str]:
@@ -97,7 +116,7 @@ def _problem(role: str, channel: Channel, unit: str, given: str | None) -> Text:
         )
     return (
         f"{whose} is not known as a unit of {role}, which is one such as {_EXAMPLES[role]}. Name the unit, ",
-        Remedy(Action.UNIT, (role, _first(role))),
+        Remedy(Action.UNIT, (role, EXAMPLES[role])),
         ", or what one count or volt of the file is worth, ",
         Remedy(Action.UNIT, (role, f"250 {CHANNELS[role]}")),
         ".",
@@ -112,7 +131,3 @@ def _note(role: str, channel: Channel, unit: str, given: str | None, value: floa
         return f"One unit of the {role} {channel.name!r} was taken as {unit}, {said}."
     worth = "" if value == 1.0 else f" (1 {unit} = {value:.6g} {CHANNELS[role]})"
     return f"The {role} {channel.name!r} was taken in {unit}{worth}, {said}."
-
-
-def _first(role: str) -> str:
-    return re.split(r",| or ", _EXAMPLES[role])[0]

@@ -7,16 +7,19 @@ import io
 import math
 import os
 import re
+from codecs import getincrementaldecoder
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, BinaryIO
+from tempfile import SpooledTemporaryFile
+from typing import Any, BinaryIO, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
 from inerter.records.channels import Channel, Contents, Progress, Samples
+from inerter.records.headings import is_unit_cell, split_heading, without_brackets
 from inerter.units import shown
 
 HEAD = 1 << 18  # bytes within which the numbers must begin
@@ -25,6 +28,12 @@ MISSING = frozenset({"", "nan", "-nan", "+nan", "na", "n/a", "null", "none", "in
 _LONGEST_NAME = 80
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
 _HEADING = re.compile(r"\s*(\S.*?)\s*[\[(]([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)[\])]\s*")
+_THOUSANDS = re.compile(
+    r"[+-]?\d{1,3}(?:(?:\.\d{3})+,\d*|(?:,\d{3})+\.\d*|(?:['\u2019 \u00a0\u202f]\d{3})+(?:[.,]\d*)?|(?:[.,]\d{3}){2,})"
+)
+_UTF_16 = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
+_THOUSANDS_SAID = "separators of thousands. Export numbers without them, such as 1234.5."
+_TAIL = 1 << 12  # bytes at the end in which lines of text are looked for
 _DELIMITERS = ("\t", ";", ",", None)  # None: any white space
 
 
@@ -40,6 +49,8 @@ class TableLayout:
     encoding: str
     names: tuple[str, ...]
     units: tuple[str, ...]
+    shorts: tuple[str, ...]  # names without what stands in brackets
+    nameless: bool
     preamble: tuple[str, ...] = ()
 
 
@@ -49,15 +60,55 @@ def opened(path: str, source: str) -> Iterator[Contents]:
 
     Raises `RecordError`, which names the line, for a file that is no table of numbers.
     """
-    with open(path, "rb") as file:
+    with open(path, "rb") as raw, _as_utf8(raw) as file:
         layout = _layout(source, file.read(HEAD))
-        pairs = zip(layout.names, layout.units, strict=True)
-        channels = tuple(Channel(name, unit, key=at) for at, (name, unit) in enumerate(pairs))
+        described = zip(layout.names, layout.units, layout.shorts, strict=True)
+        channels = tuple(Channel(name, unit, short, key=at) for at, (name, unit, short) in enumerate(described))
+        end, notes = _end(file, layout)
 
         def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
-            return [Samples(values) for values in _columns(source, file, layout, [c.key for c in chosen], progress)]
+            wanted = [channel.key for channel in chosen]
+            return [Samples(values) for values in _columns(source, file, end, layout, wanted, progress)]
 
-        yield Contents(channels, read, meta={"preamble": layout.preamble} if layout.preamble else {})
+        yield Contents(channels, read, notes, {"preamble": layout.preamble} if layout.preamble else {}, layout.nameless)
+
+
+def _as_utf8(raw: BinaryIO) -> BinaryIO:
+    """The file itself, or for one in UTF-16 a copy of it in UTF-8."""
+    encoding = _UTF_16.get(raw.read(2))
+    raw.seek(0)
+    if encoding is None:
+        return raw
+    raw.seek(2)
+    copy = SpooledTemporaryFile(max_size=BLOCK)  # noqa: SIM115 - the caller closes it
+    decoder = getincrementaldecoder(encoding)(errors="replace")
+    while block := raw.read(BLOCK):
+        copy.write(decoder.decode(block).encode())
+    copy.seek(0)
+    return cast(BinaryIO, copy)
+
+
+def _end(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
+    """Where the numbers end: before last lines without any, such as "Ende", of which a note says so."""
+    end = file.seek(0, os.SEEK_END)
+    start = max(layout.offset, end - _TAIL)
+    file.seek(start)
+    lines = file.read().splitlines(keepends=True)
+    if start > layout.offset:
+        start, lines = start + len(lines[0]), lines[1:]  # the first is cut
+    rows = [_cells(line.decode(layout.encoding, errors="replace"), layout.delimiter) for line in lines]
+    last = max((at for at, cells in enumerate(rows) if not all(map(_is_text, cells))), default=None)
+    left = [] if last is None else [at for at in range(last + 1, len(rows)) if any(rows[at])]
+    if not left:
+        return end, ()
+    said = shown(lines[left[0]].decode(layout.encoding, errors="replace").strip())
+    which = f"The last line, {said}, was" if len(left) == 1 else f"The last {len(left)} lines, from {said} on, were"
+    return start + sum(map(len, lines[: left[0]])), (f"{which} left out, since no numbers are in it.",)
+
+
+def _is_text(cell: str) -> bool:
+    """Whether a cell is no sample: empty, or words that do not stand for a missing one."""
+    return not cell or not (_is_value_or_missing(cell) or re.match(r"[+-]?[.,]?\d", cell))
 
 
 def _layout(source: str, head: bytes) -> TableLayout:
@@ -74,6 +125,9 @@ def _layout(source: str, head: bytes) -> TableLayout:
             delimiter = next((d for d in delimiters if all(map(_is_value_or_missing, _cells(line, d)))), delimiters[0])
             offset = start + sum(map(len, raw[:at]))
             return _described(source, lines, at, delimiter, offset, encoding)
+    grouped = (cell for line in lines for d in _DELIMITERS for cell in _cells(line, d) if _THOUSANDS.fullmatch(cell))
+    if (cell := next(grouped, None)) is not None:
+        raise RecordError(f"{source}: the number {shown(cell)} has {_THOUSANDS_SAID}")
     first = next((line for line in lines if line.strip()), "with one very long line")
     raise RecordError(
         f"{source}: no rows of numbers in two or more columns were found; the file begins {shown(first.strip())}. "
@@ -82,8 +136,6 @@ def _layout(source: str, head: bytes) -> TableLayout:
 
 
 def _decoded(source: str, head: bytes, raw: list[bytes]) -> tuple[list[str], str]:
-    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise RecordError(f"{source} is written in UTF-16. Save it as UTF-8, which most programs offer.")
     try:
         return [line.decode("utf-8") for line in raw], "utf-8"
     except UnicodeDecodeError:
@@ -132,11 +184,11 @@ def _described(
 ) -> TableLayout:
     columns = len(_cells(lines[at], delimiter))
     header, above = _header(source, lines[:at], delimiter, columns)
-    names, units = _names(header, columns)
+    names, units, shorts = _names(header, columns)
     numbers = [cell for line in lines[at:] for cell in _cells(line, delimiter) if _is_number(cell)]
     decimal = "," if delimiter != "," and any("," in cell for cell in numbers) else "."
     preamble = tuple(line.strip() for line in lines[: at - above][:50] if line.strip())
-    return TableLayout(delimiter, decimal, columns, offset, at + 1, encoding, names, units, preamble)
+    return TableLayout(delimiter, decimal, columns, offset, at + 1, encoding, names, units, shorts, not header, preamble)
 
 
 def _header(source: str, above: list[str], delimiter: str | None, columns: int) -> tuple[list[list[str]], int]:
@@ -154,7 +206,7 @@ def _header(source: str, above: list[str], delimiter: str | None, columns: int) 
         if not comment and sum(map(_is_number, cells)) > columns / 2:
             raise _bad_cell(source, len(above) - count + 1, cells)
         rows.insert(0, cells)
-        if len(rows) == 2 or comment or any(_HEADING.fullmatch(cell) for cell in cells):
+        if len(rows) == 2 or comment or (any(map(_HEADING.fullmatch, cells)) and not all(map(is_unit_cell, cells))):
             return rows, count
     return rows, len(above)
 
@@ -173,36 +225,42 @@ def _spaced(text: str) -> list[str]:
     return re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)
 
 
-def _names(header: list[list[str]], columns: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _names(header: list[list[str]], columns: int) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]:
+    """Names, units and short names of the columns.
+
+    A row of units below the names goes before brackets, which are then a part of the name.
+    """
     if not header:
-        return tuple(f"column {at}" for at in range(columns)), ("",) * columns
+        return tuple(f"column {at}" for at in range(columns)), ("",) * columns, ("",) * columns
     first, *second = [[cell[:_LONGEST_NAME] for cell in cells] for cells in header]  # a message may have to show it
-    found = [_HEADING.fullmatch(cell) for cell in first]
-    names = tuple(match[1] if match else cell for match, cell in zip(found, first, strict=True))
-    beside = [match[2].strip() if match else "" for match in found]
     below = [cell.strip("[]() -") for cell in second[0]] if second else [""] * columns
-    return names, tuple(a or b for a, b in zip(beside, below, strict=True))
+    units_below = bool(second) and all(map(is_unit_cell, second[0])) and any(below)
+    described = [
+        (cell, unit, without_brackets(cell)) if units_below and unit else split_heading(cell)
+        for cell, unit in zip(first, below, strict=True)
+    ]
+    names, units, shorts = zip(*described, strict=True)
+    return names, tuple(a or b for a, b in zip(units, below, strict=True)), shorts
 
 
 def _columns(
-    source: str, file: BinaryIO, layout: TableLayout, wanted: list[int], progress: Progress
+    source: str, file: BinaryIO, end: int, layout: TableLayout, wanted: list[int], progress: Progress
 ) -> list[NDArray[np.float64]]:
     """The wanted columns, read block by block so that the text is never held as a whole."""
-    size = max(os.fstat(file.fileno()).st_size, 1)
     parts: list[list[NDArray[np.float64]]] = [[] for _ in wanted]
     file.seek(layout.offset)
     line, rest, more = layout.line, b"", True
     while more:
-        block = file.read(BLOCK)
+        block = file.read(min(BLOCK, end - file.tell()))
         more = bool(block)
         block = rest + block
-        end = block.rfind(b"\n") + 1 if more else len(block)
-        block, rest = block[:end], block[end:]
+        whole = block.rfind(b"\n") + 1 if more else len(block)
+        block, rest = block[:whole], block[whole:]
         if block.strip():
             for part, values in zip(parts, _parsed(source, block, line, layout, wanted), strict=True):
                 part.append(values)
         line += block.count(b"\n")
-        progress(min(file.tell() / size, 1.0))
+        progress(min(file.tell() / max(end, 1), 1.0))
     return [np.concatenate(parts.pop(0)) for _ in wanted]
 
 
@@ -263,6 +321,8 @@ def _is_value(cell: str, decimal: str) -> bool:
 def _bad_cell(source: str, line: int, cells: list[str], decimal: str = ".") -> RecordError:
     cell = next((cell for cell in cells if not _is_number(cell)), cells[0])
     mark = "comma" if decimal == "," else "point"
+    if _THOUSANDS.fullmatch(cell):
+        return RecordError(f"{source}, line {line}: {shown(cell)} has {_THOUSANDS_SAID}")
     return RecordError(
         f"{source}, line {line}: expected a number with a decimal {mark}, got {shown(cell)}. "
         f"Leave a cell empty, or write nan, where a sample is missing."

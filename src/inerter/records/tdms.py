@@ -8,8 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from inerter.errors import RecordError
 from inerter.records.channels import Channel, Contents, Progress, Samples
+from inerter.records.headings import split_heading
 from inerter.records.optional import library, translated
+from inerter.records.scales import fits
+from inerter.units import parse_quantity
 
 _WHAT = "a TDMS file"
 _UNIT_KEYS = ("unit_string", "NI_UnitDescription", "Unit", "unit")
@@ -27,17 +31,40 @@ def opened(path: str, source: str) -> Iterator[Contents]:
         file = nptdms.TdmsFile.open(path)
     with file:
         found = [channel for group in file.groups() for channel in group.channels() if _holds_numbers(channel)]
-        channels = tuple(
-            Channel(f"{channel.group_name}/{channel.name}", _unit(channel), channel.name, channel) for channel in found
-        )
+        channels = tuple(map(_described, found))
 
         def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
             with translated(source, _WHAT, "nptdms"):
-                return [_samples(c.key, at, len(chosen), progress) for at, c in enumerate(chosen)]
+                samples = [_samples(source, c.key, at, len(chosen), progress) for at, c in enumerate(chosen)]
+            return _on_one_clock(samples, [c.key.properties.get("wf_start_time") for c in chosen])
 
         cut = getattr(getattr(file, "file_status", None), "incomplete_final_segment", False)
         meta = {"properties": {key: str(value) for key, value in file.properties.items()}, "cut": bool(cut)}
         yield Contents(channels, read, meta=meta)
+
+
+def _described(channel: Any) -> Channel:
+    """The channel by its name, of which a unit in brackets counts where no property has one."""
+    unit, (name, beside, short) = _unit(channel), split_heading(channel.name)
+    name = channel.name if unit else name
+    return Channel(f"{channel.group_name}/{name}", unit or beside, short, channel)
+
+
+def _on_one_clock(samples: list[Samples], starts: list[Any]) -> list[Samples]:
+    """The samples with the times of waveforms that began at different instants counted from the first of these."""
+    if any(start is None for start, found in zip(starts, samples, strict=True) if found.time is not None):
+        return samples
+    first = min((start for start, found in zip(starts, samples, strict=True) if found.time is not None), default=None)
+    return [
+        found if found.time is None else Samples(found.values, found.time + _seconds(start - first))
+        for start, found in zip(starts, samples, strict=True)
+    ]
+
+
+def _seconds(duration: Any) -> float:
+    if isinstance(duration, np.timedelta64):
+        return float(duration.astype("timedelta64[ns]").astype(float) * 1e-9)
+    return float(duration.total_seconds())
 
 
 def _holds_numbers(channel: Any) -> bool:
@@ -51,7 +78,7 @@ def _unit(channel: Any) -> str:
     return str(next((channel.properties[key] for key in _UNIT_KEYS if channel.properties.get(key)), ""))
 
 
-def _samples(channel: Any, at: int, count: int, progress: Progress) -> Samples:
+def _samples(source: str, channel: Any, at: int, count: int, progress: Progress) -> Samples:
     size = len(channel)
     first = channel[:1]
     if first.dtype.kind == "M":
@@ -62,12 +89,17 @@ def _samples(channel: Any, at: int, count: int, progress: Progress) -> Samples:
     for start in range(0, size, _BLOCK):
         values[start : start + _BLOCK] = channel[start : start + _BLOCK]
         progress((at + min((start + _BLOCK) / size, 1.0)) / count)
-    return Samples(values, _times(channel, size))
+    return Samples(values, _times(source, channel, size))
 
 
-def _times(channel: Any, size: int) -> Any:
+def _times(source: str, channel: Any, size: int) -> Any:
     interval = channel.properties.get("wf_increment")
     if not interval:
         return None
+    unit = str(channel.properties.get("wf_xunit_string") or "s")
+    second = fits("time", unit) and parse_quantity(f"1 {unit}", "s")
+    if not second:
+        raise RecordError(f"{source}: {channel.name!r} is over {unit!r}, not over the time. Choose another channel.")
     offset = float(channel.properties.get("wf_start_offset") or 0.0)
-    return offset + float(interval) * np.arange(size)
+    times = offset + float(interval) * np.arange(size)
+    return times if second == 1.0 else second * times

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -396,30 +397,79 @@ def assert_same(signals, expected):
 @pytest.mark.parametrize(
     ("header", "renamed"),
     [
-        ("weg [m], links [mm], rechts [mm]", "distance [m], height [mm], right [mm]"),
-        ("s [m], links [mm], rechts [mm]", "s [m], height [mm], right [mm]"),
+        ("recorrido [m], izquierda [mm], derecha [mm]", "distance [m], height [mm], other [mm]"),
+        ("s [m], izquierda [mm], derecha [mm]", "s [m], height [mm], other [mm]"),
         ("weg, hoehe", "distance [m], height [mm]"),
         ("x, z", "x [m], z [mm]"),
         ("x [s], z [mm]", "x [m], z [mm]"),
         ("x [m], y [mm], z [mm]", "x [m], height [mm], other [mm]"),
+        ("", "distance [m], height [mm]"),
     ],
 )
-def test_what_is_advised_about_the_columns_of_a_profile_can_be_done_in_its_file(
-    header: str, renamed: str, tmp_path: Path
-) -> None:
-    """No key of a study file names columns: the advice is about the file, and mends it."""
-    count, path = header.count(",") + 1, tmp_path / "study.toml"
-    path.write_text(text_of('profile = "road.csv"'), encoding="utf-8")
+def test_what_is_advised_about_the_columns_of_a_profile_can_be_done(header: str, renamed: str, tmp_path: Path) -> None:
+    """In its file, or by the keys that are named, which may need to be followed one after another."""
+    count, path = (header or renamed).count(",") + 1, tmp_path / "study.toml"
     rng = np.random.default_rng(9)
     heights = np.cumsum(rng.normal(size=(4000, count - 1)), axis=0)
     lines = [", ".join(f"{x:.6g}" for x in (0.1 * i, *row)) for i, row in enumerate(heights)]
-    (tmp_path / "road.csv").write_text("\n".join([header, *lines]), encoding="utf-8")
+    (tmp_path / "road.csv").write_text("\n".join([*filter(None, [header]), *lines]), encoding="utf-8")
+    keys: dict[str, str] = {}
+    while True:
+        said = "".join(f"{key} = {{ {entries} }}\n" for key, entries in keys.items())
+        path.write_text(text_of(f'profile = "road.csv"\n{said}'), encoding="utf-8")
+        try:
+            by_keys = load_study(path).line
+            break
+        except StudyError as error:
+            (line,) = str(error).splitlines()
+            assert "in the file" in line or "behind the name" in line
+            advised = re.search(r"(columns|units) = \{ (.*?) \}", line)
+            assert advised, line
+            key, entries = advised.groups()
+            keys[key] = ", ".join(filter(None, [keys.get(key), entries]))
+        assert len(said) < 200
+    assert header == "x [s], z [mm]" or keys
+    (tmp_path / "road.csv").write_text("\n".join([renamed, *lines]), encoding="utf-8")
+    path.write_text(text_of('profile = "road.csv"'), encoding="utf-8")
+    assert by_keys is not None
+    assert by_keys.roughness == pytest.approx(load_study(path).line.roughness, rel=1e-12)
+
+
+BAD_KEYS = {
+    'columns = { depth = "z" }': "road.columns",
+    "columns = { height = -1 }": "road.columns",
+    "columns = 3": "road.columns",
+    'units = { height = "N" }': "road.units",
+    "units = {}": "road.units",
+    'interval = "0 m"': "road.interval",
+    'columns = { height = "no" }': "has no single column 'no' for the height",
+}
+
+
+@pytest.mark.parametrize("keys", BAD_KEYS)
+def test_bad_keys_of_a_profile_are_one_sentence(keys: str, tmp_path: Path) -> None:
+    (tmp_path / "road.csv").write_text("distance [m], height [mm]\n0, 1\n1, 2\n2, 1\n", encoding="utf-8")
+    path = tmp_path / "study.toml"
+    path.write_text(text_of(f'profile = "road.csv"\n{keys}'), encoding="utf-8")
     with pytest.raises(StudyError) as caught:
         load_study(path)
     (line,) = str(caught.value).splitlines()
-    advice, _, python = line.partition("in Python")
-    assert python
-    assert "=" not in advice
-    assert "in the file" in advice or "behind the name" in advice
-    (tmp_path / "road.csv").write_text("\n".join([renamed, *lines]), encoding="utf-8")
-    assert load_study(path).line is not None
+    assert BAD_KEYS[keys] in line
+    path.write_text(text_of(f'roughness = "5e-7 m^3/cycle"\n{keys}'), encoding="utf-8")
+    with pytest.raises(StudyError):
+        load_study(path)
+
+
+def test_a_simulation_reads_a_profile_by_its_keys(tmp_path: Path) -> None:
+    """A table without a header and with remarks, in a file in UTF-16: the motion of the same table with a header."""
+    rows = [f"{0.1 * i:.1f};{np.sin(0.1 * i):.6f}".replace(".", ",") for i in range(400)]
+    (tmp_path / "bare.csv").write_text("\n".join(f"{row};ok" for row in rows) + "\nEnde\n", encoding="utf-16")
+    (tmp_path / "named.csv").write_text("\n".join(["distance [m];height [mm]", *rows]), encoding="utf-8")
+    keys = 'columns = { distance = 0, height = 1 }\nunits = { distance = "m", height = "mm" }'
+    bare = simulation(tmp_path, "", f'kind = "profile"\nfile = "bare.csv"\n{keys}', vehicle="")
+    named = simulation(tmp_path, "", 'kind = "profile"\nfile = "named.csv"', vehicle="")
+    time = np.linspace(0.0, 1.0, 50)
+    assert np.array_equal(bare.make_signal()(time), named.make_signal()(time))
+    (tmp_path / "again.toml").write_text(write_simulation(bare), encoding="utf-8")
+    assert load_simulation(tmp_path / "again.toml") == bare
+    assert "columns" not in named.resolved()["signal"]

@@ -14,7 +14,8 @@ class Action(StrEnum):
     CHANNEL = "channel"  # (role, name or number)
     UNIT = "unit"  # (role, unit)
     UNITS = "units"  # several such pairs
-    INTERVAL = "interval"  # [s], or None for any
+    COLUMN = "column"  # several (role, name or number) of a profile
+    INTERVAL = "interval"  # [s], or [m] of a profile, or None for any
     GAPS = "gaps"  # "fill", "longest" or [s]
     TRIM = "trim"
     RESAMPLE = "resample"
@@ -55,6 +56,7 @@ def in_python(text: Text) -> str:
 _IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
     Action.CHANNEL: lambda value: f"{value[0]}={value[1]!r}",
     Action.UNIT: lambda value: f"units={{{value[0]!r}: {value[1]!r}}}",
+    Action.COLUMN: lambda value: ", ".join(f"{role}={name!r}" for role, name in value),
     Action.UNITS: lambda value: f"units={dict(value)!r}",
     Action.INTERVAL: lambda value: "interval=" if value is None else f"interval={value:.6g}",
     Action.GAPS: lambda value: f"gaps={value!r}",

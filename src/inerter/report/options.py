@@ -37,6 +37,7 @@ def _gaps(value: str | float) -> str:
 _OPTIONS: Mapping[Action, Callable[[Any], str]] = {
     Action.CHANNEL: _channel,
     Action.UNIT: lambda value: f'--unit "{value[0]}={value[1]}"',
+    Action.COLUMN: lambda value: str(Remedy(Action.COLUMN, value)),
     Action.UNITS: lambda value: " ".join(f'--unit "{role}={unit}"' for role, unit in value),
     Action.INTERVAL: _interval,
     Action.GAPS: _gaps,

@@ -29,6 +29,7 @@ class Profile:
     height: Matrix  # (n,) [m]
     right: Matrix | None = None  # (n,) [m]
     source: str = "profile"
+    notes: tuple[str, ...] = ()  # sentences about how it was read
 
     def __post_init__(self) -> None:
         for name in ("distance", "height", "right"):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
@@ -15,8 +16,10 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError, UnitError
 from inerter.records import tables
-from inerter.records.channels import Channel
+from inerter.records.channels import Channel, Contents
+from inerter.records.choosing import folded
 from inerter.records.optional import library, translated
+from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import Sampled
 from inerter.units import parse_quantity, shown
@@ -25,10 +28,14 @@ Matrix = NDArray[np.float64]
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
 # Words that tell a column by themselves, in the order in which they are looked for.
 _WORDS = {
-    "distance": r"distance|dist|chainage|station|stationing|position|pos|x|s|u",
-    "right": r"right|r|zr",
-    "height": r"left|l|zl|height|elevation|profile|altitude|z|y",
+    "distance": r"distance|dist|chainage|station|stationing|stationierung|position|pos|weg|strecke|distanz|abscisse"
+    r"|x|s|u",
+    "right": r"right|rechts|droite|r|zr",
+    "height": r"left|links|gauche|l|zl|height|elevation|profile|hohe|hoehe|profil|hauteur|altitude|z|y",
 }
+
+
+_EXAMPLES = {"distance": "m", "height": "mm"}
 
 
 class Columns(TypedDict, total=False):
@@ -121,21 +128,22 @@ def _from_table(
         raise RecordError(f"The interval between points must be a positive number of m, got {interval!r}.")
     if interval is not None and named.get("distance") is not None:
         raise RecordError(f"Give the interval ({interval:g} m) or the column of distances, not both.")
+    asked = {role: named.get(role) for role in _WORDS}
     try:
         with tables.opened(name, source) as contents:
-            columns = dict(zip(contents.channels, contents.read(contents.channels, _silent), strict=True))
+            chosen = _chosen(source, contents, asked, spaced=interval is not None)
+            worth = _scales(source, chosen, units, spaced=interval is not None)
+            values = _read(contents, [chosen[role] for role in worth])
     except OSError as problem:
         raise RecordError(f"{source} cannot be opened: {problem.strerror}.") from None
-    values = {channel: np.asarray(samples.values, dtype=float) for channel, samples in columns.items()}
-    chosen = _chosen(source, values, {role: named.get(role) for role in _WORDS}, spaced=interval is not None)
-    found: dict[str, Matrix] = {
-        role: np.asarray(values[channel] * _scale(source, role, channel, units), dtype=float)
-        for role, channel in chosen.items()
-        if not (role == "distance" and interval is not None)
-    }
+    found = {role: np.asarray(v * worth[role], dtype=float) for role, v in zip(worth, values, strict=True)}
     if interval is not None:
         found["distance"] = interval * np.arange(found["height"].size, dtype=float)
-    return Profile(found["distance"], found["height"], found.get("right"), source)
+    return Profile(found["distance"], found["height"], found.get("right"), source, contents.notes)
+
+
+def _read(contents: Contents, channels: list[Channel]) -> list[Matrix]:
+    return [np.asarray(samples.values, dtype=float) for samples in contents.read(channels, _silent)]
 
 
 def _silent(fraction: float) -> None:
@@ -143,10 +151,10 @@ def _silent(fraction: float) -> None:
 
 
 def _chosen(
-    source: str, values: Mapping[Channel, Matrix], named: Mapping[str, str | int | None], spaced: bool
+    source: str, contents: Contents, named: Mapping[str, str | int | None], spaced: bool
 ) -> dict[str, Channel]:
     """The column of each role; `spaced` says that no distances are needed."""
-    channels = tuple(values)
+    channels = contents.channels
     asked = {role: _named(source, channels, role, given) for role, given in named.items() if given is not None}
     chosen = dict(asked)
     for role, words in _WORDS.items():
@@ -156,12 +164,12 @@ def _chosen(
             if len(alike) > 1:
                 names = " and ".join(channel.label for channel in alike[:3])
                 raise RecordError(
-                    f"{source}: {names} may both be the {role}. Leave that name to one of them in the file, or in "
-                    f"Python name it: {role}={alike[0].name!r}."
+                    f"{source}: {names} may both be the {role}. Leave that name to one of them in the file, or name it: ",
+                    *(Remedy(Action.COLUMN, ((role, alike[0].name),)), "."),
                 )
             chosen |= {role: alike[0]} if alike else {}
     if chosen == asked and not any(channel.unit for channel in channels):  # no header, or a remark taken for one
-        chosen |= _by_order(source, values, chosen, spaced)
+        chosen |= _by_order(source, contents, chosen, spaced)
     for role in ("distance", "height"):
         if role not in chosen and not (role == "distance" and spaced):
             raise _unnamed(source, role, [channel for channel in channels if channel not in chosen.values()], channels)
@@ -172,23 +180,35 @@ def _chosen(
 
 def _unnamed(source: str, role: str, left: Sequence[Channel], channels: Sequence[Channel]) -> RecordError:
     there = ", ".join(channel.label for channel in channels[:12])
-    spaced = ", or give the interval" * (role == "distance")
     return RecordError(
         f'{source}: no column has an obvious name for the {role}; there are {there}. Write "{role}" over it in the '
-        f"file, or in Python name it, such as {role}={(left or channels)[0].name!r}{spaced}."
+        f"file, or name it, such as ",
+        Remedy(Action.COLUMN, ((role, (left or channels)[0].name),)),
+        *((", or give ", Remedy(Action.INTERVAL, 0.1)) if role == "distance" else ()),
+        ".",
     )
 
 
 def _is_called(name: str, words: str) -> bool:
-    plain = re.sub(r"[_.\-/]", " ", name).casefold()
+    plain = re.sub(r"[_.\-/]", " ", folded(name))
     return re.search(rf"(?<!\w)(?:{words})(?!\w)", plain) is not None
 
 
+def _numbers(contents: Contents, channels: Iterable[Channel]) -> dict[Channel, Matrix]:
+    """The columns that hold numbers alone."""
+    found = {}
+    for channel in channels:
+        with suppress(RecordError):  # remarks
+            found[channel] = _read(contents, [channel])[0]
+    return found
+
+
 def _by_order(
-    source: str, values: Mapping[Channel, Matrix], chosen: Mapping[str, Channel], spaced: bool
+    source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool
 ) -> dict[str, Channel]:
     """Of a table without a header: the distance is the one column that increases; then heights, left before right."""
-    left = [channel for channel in values if channel not in chosen.values()]
+    values = _numbers(contents, [channel for channel in contents.channels if channel not in chosen.values()])
+    left = list(values)
     found: dict[str, Channel] = {}
     if "distance" not in chosen and not spaced:
         rising = [channel for channel in left if np.all(np.diff(values[channel]) > 0.0)]
@@ -196,7 +216,9 @@ def _by_order(
             which = "no column increases" if not rising else "several columns increase"
             raise RecordError(
                 f"{source} has no header, and {which} throughout, so that the distance is not known. Write names "
-                f'over the columns, such as "distance [m], height [mm]", or in Python name it by number, distance=0.'
+                f'over the columns, such as "distance [m], height [mm]", or name both by number, counted from 0, ',
+                *(Remedy(Action.COLUMN, (("distance", 0), ("height", 1))), ", with "),
+                *(Remedy(Action.UNITS, tuple(_EXAMPLES.items())), "."),
             )
         found["distance"] = rising[0]
         left.remove(rising[0])
@@ -216,22 +238,37 @@ def _named(source: str, channels: Sequence[Channel], role: str, given: object) -
     return alike[0]
 
 
-def _scale(source: str, role: str, channel: Channel, units: Mapping[str, str]) -> float:
-    """What one unit of the column is worth [m]."""
-    kind = "distance" if role == "distance" else "height"
-    unit = units.get(kind, channel.unit)
-    example = {"distance": "m", "height": "mm"}[kind]
-    if not isinstance(unit, str) or not unit.strip():
+def _scales(source: str, chosen: Mapping[str, Channel], units: Mapping[str, str], spaced: bool) -> dict[str, float]:
+    """What one unit of each column is worth [m], by role; `spaced` says that distances are not read."""
+    read = {role: channel for role, channel in chosen.items() if not (role == "distance" and spaced)}
+    given = {role: units.get(_kind(role), channel.unit) for role, channel in read.items()}
+    bare = [role for role, unit in given.items() if not isinstance(unit, str) or not unit.strip()]
+    if bare:
+        kinds = {_kind(role): read[role].name for role in bare}
+        names = " and ".join(repr(name) for name in kinds.values())
+        over = ", ".join(f"{kind} [{_EXAMPLES[kind]}]" for kind in kinds)
         raise RecordError(
-            f'{source}: {channel.name!r} has no unit. Write it behind the name, such as "{kind} [{example}]", or in '
-            f'Python name it: units={{"{kind}": "{example}"}}.'
+            f"{source}: {names} {'has' if len(kinds) == 1 else 'have'} no unit. Write it behind the name, such as "
+            f'"{over}", or name it: ',
+            *(Remedy(Action.UNITS, tuple((kind, _EXAMPLES[kind]) for kind in kinds)), "."),
         )
+    return {role: _scale(source, role, read[role], unit) for role, unit in given.items()}
+
+
+def _kind(role: str) -> str:
+    return "distance" if role == "distance" else "height"
+
+
+def _scale(source: str, role: str, channel: Channel, unit: str) -> float:
+    """What one unit of the column is worth [m]."""
+    kind = _kind(role)
     try:
         worth = parse_quantity(f"1 {unit.strip()}", "m")
     except UnitError:
         raise RecordError(
             f"{source}: the unit {shown(unit)} of {channel.name!r} is none of length. Write another behind the "
-            f'name, such as "{kind} [{example}]", or in Python name it: units={{"{kind}": "{example}"}}.'
+            f'name, such as "{kind} [{_EXAMPLES[kind]}]", or name it: ',
+            *(Remedy(Action.UNITS, ((kind, _EXAMPLES[kind]),)), "."),
         ) from None
     return worth
 

@@ -14,12 +14,12 @@ from pydantic import ConfigDict, Field, model_validator
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.fields import Field as Quantity
+from inerter.files.common import profiles
 from inerter.files.common.entries import TEXT, positive, word
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.schema import checked
 from inerter.files.common.suggest import some
 from inerter.files.common.tables import Shape
-from inerter.roads.reading import read_profile
 from inerter.roads.spectrum import N0, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
@@ -34,6 +34,7 @@ COHERENCE = (_TRACK, _CORNER)  # what has a unit
 _LEVEL = "level"
 _FORMS = 'track = "1.5 m", level = 0.6 or wavenumber = "0.2 cycle/m"'
 _ROUGH = ("roughness", "class", "profile")  # keys that say how rough a road is
+_OF_PROFILES = ("track", "columns", "units", "interval")
 _SIDES = tuple(filter(None, TRACKS))
 _WAVINESS, _TO = 1.5, 2.5  # of profiles for which a road of waviness 2 stands without a warning
 _WIDTH = 110  # of a remark
@@ -87,6 +88,19 @@ class RoadTable(Shape):
         description="Of a profile of two tracks: the one that is taken; their mean if left out.",
         examples=['track = "left"'],
     )
+    columns: Annotated[dict[str, str | int] | None, checked(profiles.columns, lambda: profiles.COLUMNS_SCHEMA)] = Field(
+        default=None,
+        description="Of a profile: which column is which, by name or number from 0, where that is not obvious.",
+        examples=[profiles.COLUMNS_EXAMPLE],
+    )
+    units: Annotated[dict[str, str] | None, checked(profiles.units, lambda: profiles.UNITS_SCHEMA)] = Field(
+        default=None, description="Of a profile whose table has none.", examples=[profiles.UNITS_EXAMPLE]
+    )
+    interval: Annotated[float | None, positive("m")] = Field(
+        default=None,
+        description="Of a profile without distances: from row to row.",
+        examples=[profiles.SPACING_EXAMPLE],
+    )
     coherence: CoherenceTable | None = Field(
         default=None,
         description="How alike left and right track are, for vehicles on two tracks; the same road if left out.",
@@ -103,8 +117,11 @@ class RoadTable(Shape):
             *others, last = given
             both, of = ("both ", "two") if len(given) == 2 else ("", "three")
             raise EntryError(got=f"{both}{', '.join(others)} and {last}", expected=f"one of the {of}")
-        if "track" in table and "profile" not in table:
-            raise EntryError(got="a track", fault="there is no profile that it is of", expected="profile, or no track")
+        for key in _OF_PROFILES:
+            if key in table and "profile" not in table:
+                fault = f"there is no profile that {'it is' if key in ('track', 'interval') else 'they are'} of"
+                article = {"track": "a ", "interval": "an "}.get(key, "")
+                raise EntryError(got=article + key, fault=fault, expected=f"profile, or no {key}")
         if given in (["class"], ["profile"]):
             known = ROAD_CLASSES.get(str(table.get("class")), ROAD_CLASSES["A"])  # of another, or until it is read
             return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
@@ -126,6 +143,7 @@ class MeasuredLine:
     lowest: float  # [cycle/m]
     highest: float
     shape: RoadShape | None = None  # of the spectrum about the line of waviness 2
+    reading: tuple[str, ...] = ()  # sentences about how the file was read
 
     @property
     def source(self) -> str:
@@ -141,7 +159,7 @@ class MeasuredLine:
             f"the road is the line of waviness 2 through {self.source}, of class {letter} of ISO 8608, with "
             f"the roughness {format_quantity(self.roughness, 'm^3/cycle', 6)}; {own} "
             f"has the waviness {self.waviness:.2f} and "
-            f"a scatter by a factor of {self.scatter:.2f}"
+            f"a scatter by a factor of {self.scatter:.2f}" + "".join(f". {said.rstrip('.')}" for said in self.reading)
         )
 
     @property
@@ -178,13 +196,14 @@ def line_through(table: RoadTable | None, beside: Path) -> tuple[MeasuredLine | 
             place = "beside this file" if Path(table.profile).name == table.profile else "as seen from this file"
             raise EntryError(got=shown(table.profile), fault=f"there is no such file {place}", expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        spectrum = road_spectrum(read_profile(path), track=track)
+        measured = profiles.read(path, table.columns, table.units, table.interval)
+        spectrum = road_spectrum(measured, track=track)
     except EntryError as error:
         problem = error.problem
         return None, [at(("road", "profile"), got=problem.got, fault=problem.fault, expected=problem.expected)]
     except (RecordError, OSError, ValueError) as error:  # the last: a name that no file can have
         return None, [at(("road", "profile"), str(error))]
-    return _line(path, digest, track, spectrum), []
+    return _line(path, digest, track, spectrum, measured.notes), []
 
 
 _PROFILE = 'a table of distances and heights, such as profile = "road.csv"'
@@ -198,7 +217,7 @@ def remark(line: MeasuredLine | None) -> str:
     return "".join(f"# {part}\n" for part in wrap(text, _WIDTH)) + "\n"
 
 
-def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum) -> MeasuredLine:
+def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum, reading: tuple[str, ...]) -> MeasuredLine:
     return MeasuredLine(
         path=path,
         digest=digest,
@@ -211,6 +230,7 @@ def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum) -> Measur
         lowest=spectrum.lowest,
         highest=spectrum.highest,
         shape=spectrum.road(1.0).shape,
+        reading=reading,
     )
 
 

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from pydantic import PlainValidator
 
 from inerter.errors import RecordError, RowError, SignalError
+from inerter.files.common import profiles
 from inerter.files.common.entries import any_quantity, one_of, positive, text, whole, yes_or_no
-from inerter.roads.reading import profile, read_profile
 from inerter.rows import Rows, made_of_rows
 from inerter.signals.harmonics import cosine, flat_multisine, random_road, sine
 from inerter.signals.records import held_noise, recorded
@@ -54,6 +54,11 @@ def _frequency(name: str, value: str, default: Any = NEEDED) -> SignalKey:
     return SignalKey("Hz", f'{name} = "{value} Hz"', default)
 
 
+def _braced(example: str) -> str:
+    """An example in which braces are no places of words."""
+    return example.replace("{", "{{").replace("}", "}}")
+
+
 _SEED = SignalKey("", "seed = 0", 0, lambda unit: whole(0, 2**63 - 1))
 _FILE = SignalKey("", 'file = "road.csv"', check=_plain(text))
 _WAVE = {
@@ -79,13 +84,14 @@ class SignalKind:
     random: bool = False  # a road with the coherence that [road] says
 
 
-def _measured(file: str, track: str, speed: float) -> Signal | Mapping[str, Signal]:
-    if track != BOTH:
-        return profile(file, speed, track)
+def _measured(file: str, track: str, speed: float, **reading: Any) -> Signal | Mapping[str, Signal]:
     try:
-        found = read_profile(file).signals(speed)
+        measured = profiles.read(file, **reading)
     except RecordError as problem:
         raise SignalError(str(problem)) from None
+    if track != BOTH:
+        return measured.driven(speed, track)
+    found = measured.signals(speed)
     if isinstance(found, Signal):
         raise SignalError(f"{Path(file).name} has one track; leave the track out, or give a profile of two.")
     return found
@@ -160,7 +166,13 @@ _OWN = (
     SignalKind(
         "profile",
         _measured,
-        {"file": _FILE, "track": SignalKey("", 'track = "left"', "", _plain(one_of("a track", (*TRACKS, BOTH))))},
+        {
+            "file": _FILE,
+            "track": SignalKey("", 'track = "left"', "", _plain(one_of("a track", (*TRACKS, BOTH)))),
+            "columns": SignalKey("", _braced(profiles.COLUMNS_EXAMPLE), None, _plain(profiles.columns)),
+            "units": SignalKey("", _braced(profiles.UNITS_EXAMPLE), None, _plain(profiles.units)),
+            "interval": SignalKey("m", profiles.SPACING_EXAMPLE, None),
+        },
         needs=("speed",),
         of_roads=True,
     ),

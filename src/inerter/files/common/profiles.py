@@ -1,0 +1,105 @@
+"""The keys of a file that say how the table of a measured profile is read, where the table does not say it itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from inerter.errors import RecordError
+from inerter.files.common.entries import positive_in
+from inerter.files.common.problem import EntryError
+from inerter.files.common.suggest import nearest
+from inerter.records.remedy import Action, Remedy
+from inerter.roads.profile import Profile
+from inerter.roads.reading import Columns, read_profile
+from inerter.units import PURE, format_quantity, is_unit_for, shown
+
+_UNITS = ("distance", "height")
+COLUMNS_EXAMPLE = 'columns = { distance = "Station", height = 2 }'
+UNITS_EXAMPLE = 'units = { distance = "m", height = "mm" }'
+SPACING_EXAMPLE = 'interval = "0.1 m"'
+COLUMNS_SCHEMA: dict[str, Any] = {
+    "type": "object",
+    "properties": {
+        role: {"anyOf": [{"type": "string", "minLength": 1}, {"type": "integer", "minimum": 0}]}
+        for role in Columns.__annotations__
+    },
+    "additionalProperties": False,
+}
+UNITS_SCHEMA: dict[str, Any] = {
+    "type": "object",
+    "properties": {kind: {"type": "string", "minLength": 1} for kind in _UNITS},
+    "additionalProperties": False,
+}
+
+
+def columns(value: Any) -> dict[str, str | int]:
+    """Which column is which, by name or by number from 0."""
+    known = tuple(Columns.__annotations__)
+    for role, name in _table(value, known, COLUMNS_EXAMPLE).items():
+        if isinstance(name, bool) or not isinstance(name, str | int) or name == "" or (name != str(name) and name < 0):
+            raise EntryError(got=f"{role} = {shown(name)}", expected="the name of a column, or its number from 0")
+    return dict(value)
+
+
+def units(value: Any) -> dict[str, str]:
+    """Units of distances and of heights."""
+    for kind, unit in _table(value, _UNITS, UNITS_EXAMPLE).items():
+        if not isinstance(unit, str) or not unit.strip() or unit == PURE or not _is_length(unit):
+            raise EntryError(got=f"{kind} = {shown(unit)}", expected=f"a unit of length, as in {UNITS_EXAMPLE}")
+    return dict(value)
+
+
+def spacing(value: Any) -> float:
+    """The distance between rows [m]."""
+    return positive_in(value, "m")
+
+
+def read(
+    path: Path | str,
+    columns: dict[str, str | int] | None = None,
+    units: dict[str, str] | None = None,
+    interval: float | None = None,
+) -> Profile:
+    """The profile in a file, read as these keys say.
+
+    Raises `RecordError`, whose remedies are keys of a file.
+    """
+    named: Any = columns or {}
+    try:
+        return read_profile(path, units=units, interval=interval, **named)
+    except RecordError as error:
+        raise RecordError(as_keys(error.args)) from None
+
+
+def as_keys(text: Iterable[object]) -> str:
+    """The parts of a sentence, such as the `args` of a `RecordError`, with keys of a file in the place of Python's calls.
+
+    >>> as_keys(("Name it: ", Remedy(Action.COLUMN, (("distance", "Station"),)), "."))
+    'Name it: columns = { distance = "Station" }.'
+    """
+    return "".join(_key(part) if isinstance(part, Remedy) else str(part) for part in text)
+
+
+def _key(remedy: Remedy) -> str:
+    if remedy.action == Action.INTERVAL:
+        return f'interval = "{format_quantity(remedy.value or 0.1, "m")}"'
+    pairs = ", ".join(f"{role} = {shown(value) if isinstance(value, str) else value}" for role, value in remedy.value)
+    return f"{'units' if remedy.action == Action.UNITS else 'columns'} = {{ {pairs} }}"
+
+
+def _table(value: Any, known: tuple[str, ...], example: str) -> dict[str, Any]:
+    if not isinstance(value, dict) or not value:
+        raise EntryError(got=shown(value), expected=f"a table such as {example}")
+    for role in value:
+        if role not in known:
+            raise EntryError(got=shown(role), expected=f"one of {', '.join(known)}", hint=nearest(role, known))
+    return value
+
+
+def _is_length(unit: str) -> bool:
+    try:
+        return is_unit_for(unit, "m")
+    except ValueError:
+        return False

@@ -164,6 +164,15 @@ def format_quantity(value: float, unit: str, digits: int = 4) -> str:
     return f"{rounded / scale:.12g} {name}"
 
 
+def is_prefixed(given: str, unit: str) -> bool:
+    """Whether `format_quantity` may write quantities in `unit` in this unit.
+
+    >>> is_prefixed("kN/m", "N/m"), is_prefixed("km/h", "m/s")
+    (True, False)
+    """
+    return given in (unit, *(name for _, _, name in _PREFIXES.get(unit, ())))
+
+
 def headed(what: str, unit: str) -> str:
     """What a column or an axis holds, with its unit in brackets if it has one.
 

@@ -141,3 +141,44 @@ def test_a_simulation_on_a_road_says_its_class_and_doubts_what_no_road_is(tmp_pa
     assert "Warning: no public road is as rough as class G" in said
     _, said = check(tmp_path, replaced(text, "sprung_mass", '"363.5 g"'), capsys)
     assert "Warning: no half car is like this one: sprung mass 0.3635 kg, less than 2 kg." in said
+
+
+FRICTION = """
+[vehicle]
+model = "quarter-car"
+sprung_mass = "250 kg"
+unsprung_mass = "35 kg"
+tyre_stiffness = "150 kN/m"
+[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "60 kN/m"
+c = "3 kN s/m"
+f = "30 N"
+[layouts]
+S = "k | c | f"
+[indices.own]
+kind = "KIND"
+element = "f"
+[study]
+indices = ["own"]
+evaluate = ["METHOD"]
+"""
+
+
+@pytest.mark.parametrize("kind", ["element-force", "element-stroke", "element-velocity"])
+@pytest.mark.parametrize("method", ["norm", "statistical-linearisation"])
+def test_check_refuses_a_friction_where_its_force_or_motion_cannot_be_had(tmp_path, capsys, kind, method):
+    code, said = check(tmp_path, FRICTION.replace("KIND", kind).replace("METHOD", method), capsys)
+    assert code == 2
+    assert "layouts.S: " in said
+    assert "expected-value" in said or "'f_stroke'" in said
+    assert call(["run", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out")]) == 2
+    assert " ".join(capsys.readouterr().err.split()) == said
+
+
+@pytest.mark.parametrize("kind", ["element-force", "element-stroke"])
+def test_check_accepts_a_friction_where_it_can(tmp_path, capsys, kind):
+    code, said = check(tmp_path, FRICTION.replace("KIND", kind).replace("METHOD", "expected-value"), capsys)
+    assert (code, "ok" in said) == (0, True)

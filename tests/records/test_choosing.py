@@ -35,7 +35,9 @@ def test_following_the_hints_reads_the_file(order: tuple[str, ...], tmp_path: Pa
 
 def test_without_units_no_channel_is_proposed(tmp_path: Path) -> None:
     record = bench(100)
-    path = write_csv(tmp_path / "a.csv", [["Tiempo", "Recorrido", "Fuerza"]], [record.time, record.displacement, record.force])
+    path = write_csv(
+        tmp_path / "a.csv", [["Tiempo", "Recorrido", "Fuerza"]], [record.time, record.displacement, record.force]
+    )
     with pytest.raises(RecordError, match=r"there are Tiempo .*Name it: displacement='name'\."):
         it.read_record(path)
 

@@ -47,7 +47,10 @@ def table(rng: np.random.Generator, path: Path, names: dict[str, str], units: di
     if style == "DIN":
         heads = {role: f"{heads[role]} / {units[role]}" for role in roles}
     elif style == "in":
-        heads = {role: f"{heads[role]} in {units[role]}" if not remark else f"{heads[role]} [{units[role]}]" for role in roles}
+        heads = {
+            role: f"{heads[role]} in {units[role]}" if not remark else f"{heads[role]} [{units[role]}]"
+            for role in roles
+        }
     elif not below:
         heads = {role: f"{heads[role]} {style[0]}{units[role]}{style[1]}" for role in roles}
     rows = [[heads[role] for role in roles]]

@@ -16,7 +16,7 @@ from inerter.errors import RecordError
 BENCH = bench(120)
 T, X, F = BENCH.time, BENCH.displacement, BENCH.force
 SI = {"time": "s", "displacement": "m", "force": "N"}
-ROW, COLUMN = np.atleast_2d, lambda values: np.atleast_2d(values).T  # noqa: E731
+ROW, COLUMN = np.atleast_2d, lambda values: np.atleast_2d(values).T
 
 
 def control_desk(names, time_unit="s", rasters=None):

@@ -90,7 +90,7 @@ def run(
         print("".join(f"{line}\n" for line in lines), end="")
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
-        told = answers(result.data, loaded, result.budgets)
+        told = answers(result.data, loaded, result.budgets, tolerances=result.tolerances)
         print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
     return _judge(result)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from textwrap import fill
 
@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from inerter.errors import Status, StatusKind
-from inerter.units import digits_at, format_number, format_quantity, headed, parse_quantity, places_borne
+from inerter.units import digits_at, format_number, format_quantity, headed, is_prefixed, parse_quantity, places_borne
 
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
@@ -97,6 +97,23 @@ def swept_element(results: xr.Dataset) -> str | None:
 def swept_words(results: xr.Dataset) -> list[str]:
     """What is swept, in words."""
     return [str(results[place].attrs["long_name"]) for place in swept_places(results)]
+
+
+def swept_scale(results: xr.Dataset, place: str) -> Scale:
+    """The unit of swept values for people: that in which the file gives them, or a prefix of the SI unit that suits."""
+    unit, written = results[place].attrs["units"], results[place].attrs.get("written", "")
+    if not written or is_prefixed(written, unit):
+        return scale(results[place].values, unit)
+    return Scale(1.0 / parse_quantity(f"1 {written}", unit), written)
+
+
+def swept_text(results: xr.Dataset, place: str, value: float, write: Callable[..., str], error: float = np.nan) -> str:
+    """A swept value [SI] with its unit, as `write` has it."""
+    unit, written = results[place].attrs["units"], results[place].attrs.get("written", "")
+    if not written or is_prefixed(written, unit):
+        return write(value, unit, error)
+    factor = swept_scale(results, place).factor
+    return write(value * factor, written, error * factor)
 
 
 def swept_label(results: xr.Dataset, place: str, unit: str) -> str:

@@ -25,6 +25,7 @@ from inerter.figures.labels import (
     scale,
     swept_label,
     swept_places,
+    swept_scale,
     titled,
     typeset,
 )
@@ -102,10 +103,7 @@ def _ordered(data: xr.Dataset) -> xr.Dataset:
 
 def _places(data: xr.Dataset) -> tuple[Array, Array]:
     """The swept values in the units of the axes."""
-    first, second = (
-        data[place].values * scale(data[place].values, data[place].attrs["units"]).factor
-        for place in swept_places(data)
-    )
+    first, second = (data[place].values * swept_scale(data, place).factor for place in swept_places(data))
     return first, second
 
 
@@ -164,7 +162,7 @@ def _draw_zero(data: xr.Dataset, numbers: Array, ax: Axes) -> None:
 
 def _label(data: xr.Dataset, ax: Axes, x: Array, y: Array) -> None:
     for place, which, values in zip(swept_places(data), ("x", "y"), (x, y), strict=True):
-        unit = scale(data[place].values, data[place].attrs["units"]).unit
+        unit = swept_scale(data, place).unit
         ax.set(**{f"{which}label": swept_label(data, place, unit)})
         if suits_log_axis(values):
             log_axis(ax, which)

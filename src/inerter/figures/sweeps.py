@@ -27,6 +27,7 @@ from inerter.figures.labels import (
     one_method,
     scale,
     swept_element,
+    swept_scale,
     swept_label,
     titled,
     way,
@@ -160,6 +161,6 @@ def _sweep(results: xr.Dataset, index: str) -> _Sweep:
     if element is None:
         raise StudyError("Got results of a study without a sweep; these figures are drawn over a swept value.")
     data = one_method(results).sel(index=index).sortby(element).transpose("layout", element, ...)
-    unit = scale(data[element].values, data[element].attrs["units"])
+    unit = swept_scale(data, element)
     styles = layout_styles(layouts(results), results.attrs["baseline"])
     return _Sweep(data, data[element].values * unit.factor, swept_label(results, element, unit.unit), styles)

@@ -25,7 +25,7 @@ from inerter.networks.transform import map_elements
 from inerter.systems.arrivals import Arrival, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
-from inerter.systems.outputs import force_of, velocity_of
+from inerter.systems.outputs import force_of, stroke_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
@@ -99,10 +99,10 @@ def check_damped(mechanism: Mechanism) -> None:
 
 
 def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
-    """Raises `PerformanceIndexError` for the velocity or force of a friction: a damper has its place."""
+    """Raises `PerformanceIndexError` for the stroke, velocity or force of a friction: a damper has its place."""
     branches = full_graph(mechanism).branches
     frictions = [branch.label for branch in branches if branch.element.statistical is Statistical.DAMPER]
-    told = {called(label) for label in frictions for called in (force_of, velocity_of)}
+    told = {called(label) for label in frictions for called in (force_of, velocity_of, stroke_of)}
     for name in names:
         if name in told:
             raise PerformanceIndexError(

@@ -32,6 +32,9 @@ def checked(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> E
         if result.status.ok and not bound <= most:
             largest = max(several, key=lambda source: source.bound)
             message = f"the value may be off by {bound:.1e} of itself, more than {most:g}, mostly by {largest.name}"
+            if math.isnan(bound):
+                unknown = ", ".join(source.name for source in several if math.isnan(source.bound))
+                message = f"how much the value may be off by {unknown} is not known"
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
     return result
 

@@ -78,6 +78,15 @@ class Controlled(Protocol):
 
 
 @runtime_checkable
+class Refusing(Protocol):
+    """A method that refuses some questions about a design, whatever its values."""
+
+    def check(self, vehicle: Vehicle, index: Index) -> None:
+        """Raises what `estimate` would raise before it computes anything."""
+        ...
+
+
+@runtime_checkable
 class Compiled(Protocol):
     """A method that calls compiled code."""
 

@@ -78,6 +78,10 @@ class StatisticalLinearisation:
         closure.check_idle()
         return closure
 
+    def check(self, vehicle: Vehicle, index: Index) -> None:
+        """Raises what `estimate` would raise for the design's elements and the index's outputs, whatever the values."""
+        self._closure(vehicle, index)
+
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
         """The compiled code that it calls; a search of a design without friction calls that of `Norm`."""
         if question.is_peak:

@@ -204,7 +204,11 @@ def _with_headers(variables: Mapping[str, Any]) -> dict[str, Any]:
         match = _CATMAN.fullmatch(name)
         header = variables.get(f"{match[1]}_Header") if match else None
         if isinstance(header, dict) and _is_vector(value):
-            found[name] = {"data": value, "name": "".join(_texts(header, _NAMES)), "unit": "".join(_texts(header, _UNITS))}
+            found[name] = {
+                "data": value,
+                "name": "".join(_texts(header, _NAMES)),
+                "unit": "".join(_texts(header, _UNITS)),
+            }
         else:
             found[name] = value
     return found

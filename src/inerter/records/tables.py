@@ -188,7 +188,9 @@ def _described(
     numbers = [cell for line in lines[at:] for cell in _cells(line, delimiter) if _is_number(cell)]
     decimal = "," if delimiter != "," and any("," in cell for cell in numbers) else "."
     preamble = tuple(line.strip() for line in lines[: at - above][:50] if line.strip())
-    return TableLayout(delimiter, decimal, columns, offset, at + 1, encoding, names, units, shorts, not header, preamble)
+    return TableLayout(
+        delimiter, decimal, columns, offset, at + 1, encoding, names, units, shorts, not header, preamble
+    )
 
 
 def _header(source: str, above: list[str], delimiter: str | None, columns: int) -> tuple[list[list[str]], int]:

@@ -13,25 +13,32 @@ from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
+from inerter.files.study.tolerances import ToleranceOutcome
 from inerter.report.budgets import end_of_range
 from inerter.report.findings import Wording, Writer, best_layouts, headlines
 from inerter.report.fronts import front_sentences
 from inerter.report.plausibility import result_warnings
 from inerter.report.question import spoken
+from inerter.report.tolerances import tolerance_sentences
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
 
 def answers(
-    results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome] = (), write: Writer = with_unit
+    results: xr.Dataset,
+    study: Study,
+    budgets: Sequence[BudgetOutcome] = (),
+    write: Writer = with_unit,
+    tolerances: Sequence[ToleranceOutcome] = (),
 ) -> list[str]:
-    """Warnings, a sentence for each index, and one for each budget of a layout that is the best for one."""
+    """Warnings, a sentence for each index, with and without scatter, and for each budget of a layout that is best."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     return [
         *result_warnings(one_method(results), study),
         *input_warnings(study),
         *(() if study.line is None else study.line.warnings),
         *headlines(results, Wording(write, static)),
+        *tolerance_sentences(results, tolerances, write),
         *front_sentences(results, write),
         *_of_budgets(results, study, budgets, write),
         *_of_limits(results, study, write),

@@ -28,6 +28,7 @@ from inerter.figures.labels import (
     percent,
     swept_element,
     swept_places,
+    swept_text,
     swept_words,
     titled,
     way,
@@ -139,7 +140,7 @@ def place_text(results: xr.Dataset, place: dict[str, float], write: Writer = wit
     """Swept values with their units, as a sentence has them if they are `named`."""
     texts = []
     for name, value in place.items():
-        text = write(value, results[name].attrs["units"], np.nan)
+        text = swept_text(results, name, value, write)
         texts.append(f"{results[name].attrs['long_name']} = {text}" if named else text)
     return ", ".join(texts) or "n/a"
 
@@ -204,18 +205,17 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
     for index in indices(results):
         for name in compared(results):
             found = {by: crossings(one, index, name) for by, one in ways.items()}
-            unit = results[element].attrs["units"]
-            texts = [_places(places, unit, write) + by for by, places in found.items() if places]
+            texts = [_places(results, places, write) + by for by, places in found.items() if places]
             if texts:
                 said = f"{name} and {baseline} are equally good at {words} = {', '.join(texts)}"
                 sentences.append((index, said))
     return sentences
 
 
-def _places(found: list[tuple[float, float]], unit: str, write: Writer) -> str:
+def _places(results: xr.Dataset, found: list[tuple[float, float]], write: Writer) -> str:
     """Swept values with their errors; of many the first, and how many there are."""
-    more = len(found) - _MOST_PLACES
-    texts = [write(at, unit, error) for at, error in found[:_MOST_PLACES]]
+    more, element = len(found) - _MOST_PLACES, str(swept_element(results))
+    texts = [swept_text(results, element, at, write, error) for at, error in found[:_MOST_PLACES]]
     return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 

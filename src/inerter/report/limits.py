@@ -19,6 +19,7 @@ from inerter.figures.labels import (
     one_method,
     printed,
     swept_places,
+    swept_text,
     swept_words,
     titled,
     typeset,
@@ -117,5 +118,5 @@ def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_un
         if holds
     ]
     ends = [[float(entry[place][i]) for i in dict.fromkeys((run[0], run[-1]))] for run in runs]
-    told = [" to ".join(write(end, entry[place].attrs["units"], np.nan) for end in pair) for pair in ends]
+    told = [" to ".join(swept_text(entry, place, end, write) for end in pair) for pair in ends]
     return f"at {count} of {size} values", f"{words} = {listed(told)}" if len(told) <= _MOST_RANGES else ""

@@ -88,7 +88,7 @@ def report(
             swept=bool(swept),
             searched=study.optimise is not None,
             headlines=[
-                *map(printed_sentence, answers(results, study, budgets, printed)),
+                *map(printed_sentence, answers(results, study, budgets, printed, tolerances)),
                 *([f"{road}."] if (road := roads_sentence(study)) else []),
             ],
             vehicle=vehicle_rows(study),

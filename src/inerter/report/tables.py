@@ -31,6 +31,7 @@ from inerter.figures.labels import (
     shows_error,
     swept_element,
     swept_places,
+    swept_scale,
     swept_words,
     titled,
     typeset,
@@ -183,8 +184,8 @@ def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> str:
 
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     element, (words,) = str(swept_element(results)), swept_words(results)
-    data, unit = results.sel(index=index).sortby(element), results[element].attrs["units"]
-    swept, values = scale(data[element].values, unit), scale(data["value"].values, index_unit(results, index))
+    data = results.sel(index=index).sortby(element)
+    swept, values = swept_scale(data, element), scale(data["value"].values, index_unit(results, index))
     points = _some(data, element)
     rows = []
     for point in points:
@@ -209,7 +210,7 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
     """Values of the first place in rows, of the second in columns."""
     first, second = swept_places(results)
     data = results.sel(index=index, layout=layout).sortby([first, second])
-    down, across = (scale(data[place].values, data[place].attrs["units"]) for place in (first, second))
+    down, across = (swept_scale(data, place) for place in (first, second))
     values = scale(data["value"].values, index_unit(results, index))
     rows = []
     for i in _spread(data.sizes[first], _MOST_SWEPT):

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
-from inerter.figures.labels import printed, with_unit
+import numpy as np
+import xarray as xr
+
+from inerter.figures.labels import index_title, printed, with_unit
 from inerter.files.study.tolerances import SHARE, ToleranceOutcome
 from inerter.report.findings import Writer
 from inerter.report.tables import Cell, Row, Table
@@ -39,6 +42,48 @@ def tolerance_tables(found: Sequence[ToleranceOutcome]) -> list[Table]:
     return [Table("Best designs when values scatter", ["Design", *_HEADER], rows)] if rows else []
 
 
+def tolerance_sentences(
+    results: xr.Dataset, found: Sequence[ToleranceOutcome], write: Writer = with_unit
+) -> Iterator[str]:
+    """For each index that scatters the layout with the lowest quantile, and those of which there is none."""
+    for index in dict.fromkeys(one.index for one in found):
+        own = [one for one in found if one.index == index]
+        title = index_title(results, index)
+        known = [one for one in own if one.ok and np.isfinite(one.numbers.get("quantile", np.nan))]
+        told = [_best_sentence(title, known, results.attrs["baseline"], write)] if known else []
+        told += [
+            f"No answer for {title} of {one.layout} when values scatter: {one.message.rstrip('.')}."
+            for one in own
+            if one not in known
+        ]
+        yield " ".join(told)
+
+
+def _best_sentence(title: str, known: Sequence[ToleranceOutcome], baseline: str | None, write: Writer) -> str:
+    """The layout with the lowest quantile, compared with the baseline, and with the order of nominal designs."""
+    by_quantile = sorted(known, key=lambda one: one.numbers["quantile"])
+    best, nominal = by_quantile[0], min(known, key=lambda one: one.numbers["nominal"])
+    _, deviation, quantile, worst = _numbers(best, write)
+    base = next((one for one in known if one.layout == baseline), None)
+    compared = ""
+    if base is not None and base is not best and base.numbers["quantile"] > 0.0:
+        part = 100.0 * (1.0 - best.numbers["quantile"] / base.numbers["quantile"])
+        compared = f", {part:.3g} % better than {base.layout}, which scatters too"
+    elif base is best and len(known) > 1:
+        compared = "; no other layout is better than this baseline"
+    due = f", mostly due to {next(iter(_shares(best)))[1]}" if best.effects else ""
+    order = f" Without scatter {nominal.layout} is best." if nominal is not best else ""
+    return (
+        f"Best {title} when values scatter, by what {100 * SHARE:g} % of cases stay below: {best.layout}, "
+        f"{quantile.strip()}{compared}; standard deviation {deviation.strip()}{due}, worst {worst.strip()}.{order}"
+    )
+
+
+def _shares(one: ToleranceOutcome) -> list[tuple[float, str]]:
+    """Parts of the variance with the values that they are due to, the largest first."""
+    return sorted(((total, name) for name, (_, total) in one.effects.items()), reverse=True)
+
+
 def _numbers(one: ToleranceOutcome, write: Writer) -> list[str]:
     nan = float("nan")
     return [write(one.numbers.get(name, nan), one.unit, nan) for name in _NUMBERS]
@@ -46,5 +91,4 @@ def _numbers(one: ToleranceOutcome, write: Writer) -> list[str]:
 
 def _due(one: ToleranceOutcome) -> str:
     """What the scatter is due to, the largest part first."""
-    parts = sorted(((total, name) for name, (_, total) in one.effects.items()), reverse=True)
-    return ", ".join(f"{name} {100.0 * max(total, 0.0):.0f} %" for total, name in parts) or "–"
+    return ", ".join(f"{name} {100.0 * max(total, 0.0):.0f} %" for total, name in _shares(one)) or "–"

@@ -150,9 +150,7 @@ def _silent(fraction: float) -> None:
     pass
 
 
-def _chosen(
-    source: str, contents: Contents, named: Mapping[str, str | int | None], spaced: bool
-) -> dict[str, Channel]:
+def _chosen(source: str, contents: Contents, named: Mapping[str, str | int | None], spaced: bool) -> dict[str, Channel]:
     """The column of each role; `spaced` says that no distances are needed."""
     channels = contents.channels
     asked = {role: _named(source, channels, role, given) for role, given in named.items() if given is not None}
@@ -203,9 +201,7 @@ def _numbers(contents: Contents, channels: Iterable[Channel]) -> dict[Channel, M
     return found
 
 
-def _by_order(
-    source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool
-) -> dict[str, Channel]:
+def _by_order(source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool) -> dict[str, Channel]:
     """Of a table without a header: the distance is the one column that increases; then heights, left before right."""
     values = _numbers(contents, [channel for channel in contents.channels if channel not in chosen.values()])
     left = list(values)

@@ -69,7 +69,9 @@ class SignalRequest:
     def resolved(self) -> dict[str, Any]:
         """How a file says it, in SI units."""
         units = self.units
-        values = {name: f"{v!r} {units[name]}" if units[name] else v for name, v in self.values.items() if v is not None}
+        values = {
+            name: f"{v!r} {units[name]}" if units[name] else v for name, v in self.values.items() if v is not None
+        }
         return {"kind": self.kind, "input": self.input, **values}
 
 

@@ -25,7 +25,7 @@ from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tolerances import tolerance_cases
 from inerter.methods.asking import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.methods.method import Compiled, asked_of
+from inerter.methods.method import Compiled, Refusing, asked_of
 from inerter.methods.registry import is_blind
 from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
@@ -107,8 +107,14 @@ def _check_design(study: Study, layout: str) -> None:
     if any(map(is_blind, study.methods)):
         for mechanism, question in questions:
             linear_problem(mechanism, question, CONVENTIONS[study.conventions])
-    else:
-        piecewise(vehicle.with_values({name: middle(value) for name, value in vehicle.free_values().items()}))
+    halfway = {name: middle(value) for name, value in vehicle.free_values().items()}
+    if not all(map(is_blind, study.methods)):
+        piecewise(vehicle.with_values(halfway))
+    for method in map(study.method, study.evaluate):
+        if isinstance(method, Refusing):
+            for index in over:
+                for case, one in asked_of(vehicle.with_values(halfway), index):
+                    method.check(case, one)
     if study.optimise is not None and vehicle.free_values():
         check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations

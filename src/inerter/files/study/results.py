@@ -219,7 +219,11 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         coords["limit"] = [f"{one.words} (swept)" if one.words in swept_words else one.label for one in study.limits]
         coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
     for sweep in study.sweeps:
-        attributes = {"units": sweep.unit, "long_name": sweep.words}
+        attributes = {
+            "units": sweep.unit,
+            "long_name": sweep.words,
+            **({"written": sweep.written} if sweep.written else {}),
+        }
         coords[sweep.label] = (sweep.label, list(sweep.values), attributes)
     data = xr.Dataset(variables, coords)
     for name in PERCENT & set(variables):

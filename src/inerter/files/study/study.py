@@ -47,6 +47,7 @@ class Sweep:
     values: tuple[float, ...]
     unit: str
     words: str  # what is swept
+    written: str = field(default="", compare=False)  # the unit in which the file gives the values; empty if in several
 
     @property
     def label(self) -> str:

@@ -86,7 +86,8 @@ def _sweep(study: Study, place: Place, entry: Entry) -> Sweep:
         values = _spread(number, entry, *values)
     elif len(set(values)) < len(values):
         raise EntryError(got="the same value more than once", expected="each once")
-    return Sweep(place, values, number.unit, number.words)
+    units = set(map(unit_in, texts))
+    return Sweep(place, values, number.unit, number.words, units.pop() if len(units) == 1 else "")
 
 
 def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:

@@ -1,0 +1,65 @@
+"""Swept values in text, page and figures have the unit in which the file gives them; files of results are in SI."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+from study_text import study_text
+
+from inerter.cli.main import call
+from inerter.figures.labels import swept_scale
+from inerter.files.study.loading import load_study
+from inerter.files.study.running import run_study
+
+SWEPT = {  # the sweep, what is to be read, what is not, and the values in SI units
+    "km/h": ('road.speed = ["40 km/h", "80 km/h"]', ("40 km/h", "80 km/h"), "11.11", (40 / 3.6, 80 / 3.6)),
+    "Gd(n0)": ('road.roughness = ["16e-6 m^3", "64e-6 m^3"]', ("1.6e-05 m^3", "6.4e-05 m^3"), "8e-08", (8e-8, 32e-8)),
+    "tonnes": ('vehicle.sprung_mass = ["0.2 t", "0.4 t"]', ("0.2 t", "0.4 t"), "200 kg", (200.0, 400.0)),
+    "pounds": ('k = ["100 lbf/in", "200 lbf/in"]', ("100 lbf/in", "200 lbf/in"), "17.51", (17512.68, 35025.37)),
+    "prefix": ('k = ["20 kN/m", "40 kN/m"]', ("20 kN/m", "40 kN/m"), "20000", (2e4, 4e4)),
+}
+
+
+@pytest.mark.parametrize("name", SWEPT)
+def test_swept_values_are_told_as_the_file_wrote_them(tmp_path, capsys, name):
+    sweep, told, other, values = SWEPT[name]
+    path = tmp_path / "study.toml"
+    path.write_text(study_text(f'indices = ["J1"]\n[study.sweep]\n{sweep}'), encoding="utf-8")
+    assert call(["run", str(path), "-o", str(tmp_path / "out"), "-j", "1"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert any(one in text for one in told)
+    assert other not in text
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert other not in page.partition("</table>")[0].rpartition("<svg")[0] or name == "prefix"
+    with open(tmp_path / "out" / "summary.csv", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    column = next(key for key in rows[0] if key.split(" [")[0] in sweep)
+    assert sorted({float(row[column]) for row in rows}) == pytest.approx(values, rel=1e-5)
+
+
+def test_units_that_differ_within_a_sweep_are_told_in_si(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(study_text('indices = ["J1"]\nsweep = { road.speed = ["36 km/h", "20 m/s"] }'), encoding="utf-8")
+    result = run_study(load_study(path), tmp_path / "out", jobs=1)
+    assert swept_scale(result.data, "road.speed").unit == "m/s"
+
+
+def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
+    """The layout with the lower quantile of tolerances.csv, and the one that is best without scatter where it is another."""
+    path = tmp_path / "study.toml"
+    settings = 'indices = ["J1"]\ntolerance = { k = "20 %", c = "15 %", b = "90 %" }'
+    path.write_text(study_text(settings, layouts='S1 = "k | c"\nS2 = "k | c | b"'), encoding="utf-8")
+    assert call(["run", str(path), "-o", str(tmp_path / "out"), "-j", "1"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    with open(tmp_path / "out" / "tolerances.csv", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    best = min(rows, key=lambda row: float(row["quantile_0.95"]))
+    said = f"Best ride comfort when values scatter, by what 95 % of cases stay below: {best['layout']}, "
+    assert said in text
+    told = float(text.partition(said)[2].split(" m/s^2")[0])
+    assert told == pytest.approx(float(best["quantile_0.95"]), rel=5e-4)
+    nominal = min(rows, key=lambda row: float(row["nominal"]))
+    assert (f"Without scatter {nominal['layout']} is best" in text) == (nominal is not best)
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "when values scatter, by what 95" in page

@@ -1,4 +1,4 @@
-"""Whether files with quantities over all magnitudes that `inerter check` accepts end in time, in a result or a sentence.
+"""Whether valid files with quantities over all magnitudes end in time, in a result or in one sentence.
 
     python benchmarks/extremes.py [--count 300] [--limit 20] [--first 0] [--jobs 2] [--keep FOLDER]
 

@@ -27,8 +27,8 @@ from inerter.figures.labels import (
     one_method,
     scale,
     swept_element,
-    swept_scale,
     swept_label,
+    swept_scale,
     titled,
     way,
 )

@@ -57,7 +57,7 @@ _ROAD = '[road]\nspeed = "25 m/s"\nroughness = "5e-7 m^3/cycle"\n'
 _FREE = """
 [elements]
 k = "60 kN/m"
-c = { from = "100 N s/m", to = "100 kN s/m" }
+c = { from = "100 N s/m", to = "100000 N s/m" }
 b = { from = "1 kg", to = "2000 kg" }
 [layouts]
 S1 = "k | c"

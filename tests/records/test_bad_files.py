@@ -123,8 +123,9 @@ BAD = {
     "volts": (columns(time, x, ("F [V]", F)), {}, "what one count or volt of the file is worth"),
     "kilograms": (columns(time, x, ("F [kg]", F)), {}, "is a mass, not a force"),
     "capital kilograms": (columns(time, x, ("F [KG]", F)), {}, "is a mass, not a force"),
-    "dashes for units": (text("t,x,F\n-,-,-\n" + "".join(ROWS)), {}, "'t', 'x' and 'F' have no unit. .* units={'time': 's', 'displ"),
-    "no header": (text("".join(ROWS)), {}, "no header above its 3 columns. .* time=0, displacement=1, force=2 and units="),
+    "dashes for units": (
+        text("t,x,F\n-,-,-\n" + "".join(ROWS)), {}, "'t', 'x' and 'F' have no unit. .* units={'time': 's', "),
+    "no header": (text("".join(ROWS)), {}, "no header above its 3 columns. .* time=0, displacement=1, force=2 and "),
     "thousands": (changed(30, '0.06,0.001,"1,234.5"\n'), {}, 'line 32: "1,234.5" has separators of thousands'),
     "thousands everywhere": (text("".join(f"1'{i:03d}.5;2'500.0\n" for i in range(9))), {}, "separators of thousands"),
     "a sum below the numbers": (text(HEADER + "".join(ROWS) + "Summe;1;2\n"), {}, "line 62: expected 3 cells, got 1"),

@@ -73,7 +73,7 @@ MAT = {
         control_desk(["Model Root/mess/Weg/Out1", '"Model Root"/"mess"/"Kraft"']), {}, "displacement from Messung.Y."
     ),
     "ControlDesk without units of time": (control_desk(["Weg", "Kraft"], ""), {}, "ControlDesk writes times in s"),
-    "ControlDesk of two rasters": (control_desk(["Weg", "Kraft"], rasters=[T, T, T[:5]]), {}, "force from Messung.Y.Kr"),
+    "ControlDesk of two rasters": (control_desk(["Weg", "Kraft"], rasters=[T, T, T[:5]]), {}, "force from Messung.Y"),
     "ControlDesk by name": (control_desk(["a", "b"]), {"displacement": "a", "force": "b"}, None),
     "Simulink": (scope(), {"units": SI}, "Simulink writes times in s"),
     "catman": (catman(), {}, "time from Channel_1_Data.Zeit 1 - Standardmessrate [s]"),

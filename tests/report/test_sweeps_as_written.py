@@ -46,7 +46,7 @@ def test_units_that_differ_within_a_sweep_are_told_in_si(tmp_path):
 
 
 def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
-    """The layout with the lower quantile of tolerances.csv, and the one that is best without scatter where it is another."""
+    """The layout with the lower quantile of tolerances.csv, and the best one without scatter if that is another."""
     path = tmp_path / "study.toml"
     settings = 'indices = ["J1"]\ntolerance = { k = "20 %", c = "15 %", b = "90 %" }'
     path.write_text(study_text(settings, layouts='S1 = "k | c"\nS2 = "k | c | b"'), encoding="utf-8")

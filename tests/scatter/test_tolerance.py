@@ -284,3 +284,15 @@ def test_a_robust_quantile_is_that_of_its_design(seed):
     assert low <= truth.value <= high
     assert truth.interval[0] < truth.value < truth.interval[1]
     assert truth.standard_error < found.estimate.standard_error
+
+
+@pytest.mark.campaign
+def test_designs_beyond_double_precision_are_sampled_less_and_said_so():
+    """Masses 44 decades apart: each value takes thousands of times longer, so 256 are taken, of the same sample."""
+    strut = it.Spring(1.07503e16, name="k") | it.Damper(2.38633e-10, name="c")
+    car = it.QuarterCar(sprung_mass=5.24436e-23, unsprung_mass=2.87718e21, tyre_stiffness=77555.9e3, strut=strut)
+    comfort = it.RideComfort(it.Road(roughness=7464.31, speed=2.77159e-22))
+    found = it.tolerance(car, comfort, NORM, spread={"k": 0.05, "c": 0.15}, seed=0)
+    assert found.values.size == 2 * 256
+    assert str(found.status.kind) == "inaccurate"
+    assert "256 of 4096 designs of the sample" in found.status.message

@@ -29,6 +29,7 @@ from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 _ASIDE = 0.0137  # relative distance from the middle of the bounds, another one for each value
 _ASTRIDE, _SAME = 1e-4, 1e-7  # relative distance at which a gradient is looked at; what it and values may be off by
 _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
@@ -157,6 +158,11 @@ class CompiledQuestion:
         if points.shape[0] <= _FEW or unsure.size > 0.9 * points.shape[0]:
             values[unsure[:_MOST_EXACT]] = self.known(points[unsure[:_MOST_EXACT]])
         return np.where(np.isnan(values), np.inf, values)
+
+    def is_unsure(self, points: Array) -> Bools:
+        """Whether double precision does not suffice for the index, at each row of `points`."""
+        found = self._compiled(points) if self.is_peak else self._compiled_norms(points)
+        return np.asarray(np.isnan(found.reshape(points.shape[0], -1)).any(axis=1))
 
     def known(self, points: Array) -> Array:
         """The index at each row of `points`; infinite where it is, nan where it is not known."""
@@ -331,14 +337,14 @@ def evaluate_problems(
     for members in groups.values():
         if questions[members[0]].is_peak:
             compiled = CompiledQuestion(problems[members[0]])
-            result[:, members[0]] = compiled.known(_rows(compiled.problem.descriptor, points, result.shape[0]))
+            result[:, members[0]] = compiled.known(rows_of(compiled.problem.descriptor, points, result.shape[0]))
             continue
         asked = [problems[i].question for i in members]
         found = {o.output: (o, f) for one in asked for o, f in zip(one.outputs, one.filters, strict=True)}
         outputs, filters = (tuple(part) for part in zip(*found.values(), strict=True))
         joint = linear_problem(mechanism, replace(asked[0], outputs=outputs, filter=filters), conventions)
         compiled = CompiledQuestion(joint)
-        norms = compiled.output_norms(_rows(joint.descriptor, points, result.shape[0]))
+        norms = compiled.output_norms(rows_of(joint.descriptor, points, result.shape[0]))
         places = [o.output for o in outputs]
         for i in members:
             columns = [places.index(o.output) for o in questions[i].outputs]
@@ -353,6 +359,7 @@ def _shared_filter(question: Question) -> Any:
     return several.pop() if len(several) == 1 else (question.outputs, question.filters)
 
 
-def _rows(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:
+def rows_of(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:
+    """Values (designs, free values) in the order of the descriptor."""
     columns = [points[name] for name in descriptor.free]
     return np.ascontiguousarray(np.column_stack(columns)) if columns else np.empty((count, 0))

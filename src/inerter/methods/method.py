@@ -78,6 +78,15 @@ class Controlled(Protocol):
 
 
 @runtime_checkable
+class Doubting(Protocol):
+    """A method of which many values take much longer where double precision does not suffice."""
+
+    def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, NDArray[np.float64]]) -> float:
+        """The part of many designs for which it does not."""
+        ...
+
+
+@runtime_checkable
 class Refusing(Protocol):
     """A method that refuses some questions about a design, whatever its values."""
 

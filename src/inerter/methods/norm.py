@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError
 from inerter.indices.question import Index, Question
-from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of
+from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of, rows_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.objective import Differentiable
@@ -55,6 +55,13 @@ class Norm:
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
         return evaluate_problems(mechanism, [index.question(mechanism) for index in indices], conventions, points)
+
+    def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> float:
+        """The part of many designs for which double precision does not suffice, each of which takes some 10 ms."""
+        mechanism = vehicle.mechanism()
+        problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
+        rows = rows_of(problem.descriptor, points, next(iter(points.values())).size)
+        return float(np.mean(CompiledQuestion(problem).is_unsure(rows)))
 
     def objective(self, vehicle: Vehicle, index: Index) -> Differentiable:
         """The index as a function of the free values, compiled, with its gradient."""

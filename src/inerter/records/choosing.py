@@ -58,8 +58,8 @@ def choose(
 ) -> tuple[dict[str, Channel], list[str]]:
     """The channel of each role: the one that was asked for, else the one with an obvious name; and a note of choices.
 
-    A channel whose name begins with such a word is taken where no other of the file has a unit of its role. `timed` says
-    that the times are known without a channel.
+    A channel whose name begins with such a word is taken where no other of the file has a unit of its role. `timed`
+    says that the times are known without a channel.
 
     Raises `RecordError`, which lists what there is, where a needed channel is not found or not clear.
     """

@@ -63,8 +63,8 @@ def opened(path: str, source: str) -> Iterator[Contents]:
     channels = tuple(_channels(_with_headers(kept), "", {}, notes))
     if objects and not channels:
         raise RecordError(
-            f"{source}: {', '.join(objects)} can be read by MATLAB alone, such as a timetable or a timeseries. Save the "
-            f"vectors in it as variables of their own, such as time, displacement and force."
+            f"{source}: {', '.join(objects)} can be read by MATLAB alone, such as a timetable or a timeseries. Save "
+            f"the vectors in it as variables of their own, such as time, displacement and force."
         )
 
     def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:

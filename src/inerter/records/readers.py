@@ -62,9 +62,10 @@ def read_record(
     """The record in a file of measurements: .csv, .tsv, .txt, .tdms, .mf4, .mdf or .mat.
 
     The channels are the keywords `displacement`, `force`, `time`, `velocity` and `acceleration`. One is named as in the
-    file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name (time, displacement, position,
-    x, force, load, ..., Zeit, Weg, Kraft, temps, ...). Units come from the file; `units`, such as {"force": "kgf"}, adds or overrules them, and may
-    say what one volt is worth, {"force": "250 N"}.
+    file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name in English, German or French
+    (time, displacement, position, x, force, load, Zeit, Weg, Kraft, temps, ...), of which a note tells where it is a
+    choice. Units come from the file; `units`, such as {"force": "kgf"}, adds or overrules them, and may say what one
+    volt is worth, {"force": "250 N"}.
     `interval` [s] gives the sampling where the file has no times, or overrules them.
 
     Samples that are missing or no finite numbers are refused; `gaps="fill"` interpolates up to 10 in a row, a number

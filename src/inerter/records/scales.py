@@ -50,7 +50,7 @@ def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[
 
 
 def check_present(source: str, chosen: Mapping[str, Channel], given: Mapping[str, str]) -> None:
-    """Raises `RecordError`, which names all of them, if several channels have no unit, neither in the file nor given."""
+    """Raises `RecordError`, which names all of them, if several channels have a unit neither in the file nor given."""
     bare = {role: c for role, c in chosen.items() if role not in given and not c.unit.strip()}
     if len(bare) < 2:
         return

@@ -49,7 +49,7 @@ def tolerance_sentences(
     for index in dict.fromkeys(one.index for one in found):
         own = [one for one in found if one.index == index]
         title = index_title(results, index)
-        known = [one for one in own if one.ok and np.isfinite(one.numbers.get("quantile", np.nan))]
+        known = [one for one in own if np.isfinite(one.numbers.get("quantile", np.nan))]
         told = [_best_sentence(title, known, results.attrs["baseline"], write)] if known else []
         told += [
             f"No answer for {title} of {one.layout} when values scatter: {one.message.rstrip('.')}."
@@ -73,8 +73,10 @@ def _best_sentence(title: str, known: Sequence[ToleranceOutcome], baseline: str 
         compared = "; no other layout is better than this baseline"
     due = f", mostly due to {next(iter(_shares(best)))[1]}" if best.effects else ""
     order = f" Without scatter {nominal.layout} is best." if nominal is not best else ""
+    doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
+    certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)
     return (
-        f"Best {title} when values scatter, by what {100 * SHARE:g} % of cases stay below: {best.layout}, "
+        f"{certain}Best {title} when values scatter, by what {100 * SHARE:g} % of cases stay below: {best.layout}, "
         f"{quantile.strip()}{compared}; standard deviation {deviation.strip()}{due}, worst {worst.strip()}.{order}"
     )
 

@@ -162,7 +162,8 @@ def _chosen(source: str, contents: Contents, named: Mapping[str, str | int | Non
             if len(alike) > 1:
                 names = " and ".join(channel.label for channel in alike[:3])
                 raise RecordError(
-                    f"{source}: {names} may both be the {role}. Leave that name to one of them in the file, or name it: ",
+                    f"{source}: {names} may both be the {role}. Leave that name to one of them in the file, or "
+                    f"name it: ",
                     *(Remedy(Action.COLUMN, ((role, alike[0].name),)), "."),
                 )
             chosen |= {role: alike[0]} if alike else {}

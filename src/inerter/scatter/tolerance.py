@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from numbers import Integral
 from typing import Any
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import DesignError, Status, StatusKind
-from inerter.methods.asking import Asked, estimate_of
+from inerter.methods.asking import Asked, estimate_of, is_composed
 from inerter.methods.averages import CONFIDENCE
-from inerter.methods.method import Estimate, Method, evaluate, evaluate_many
+from inerter.methods.method import Doubting, Estimate, Method, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
 from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of
 from inerter.vehicle.changed import changed
@@ -27,6 +27,7 @@ from inerter.work.running import mapped, running_on
 Array = NDArray[np.float64]
 _MOST_CORNERS = 10  # values that scatter, whose extremes are all combined
 _FEWEST = 16  # samples
+_TRIED, _FEW = 64, 256  # designs that are tried before the sample, and those that are taken where each takes long
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +100,8 @@ def tolerance(
     some, other quantities one by one, on the `executor` if there is one.
 
     Raises `DesignError` for a name that stands for nothing, a spread that is not between 0 and 1, and samples that are
-    no power of two; and what `evaluate` raises.
+    no power of two; and what `evaluate` raises. Where most of the designs need more digits than double precision has,
+    256 samples are taken at the most, and the status is "inaccurate".
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52)
@@ -116,7 +118,27 @@ def tolerance(
         raise DesignError(f"The seed is a whole number from 0 on, got {seed!r}.")
     with one_blas_thread(), running_on(executor):
         here = evaluate(design, index, method)
-        return _found(design, index, method, scatter, int(samples), int(seed), here)
+        fewer = _affordable(design, index, method, scatter, int(samples), int(seed))
+        found = _found(design, index, method, scatter, fewer, int(seed), here)
+        if fewer == samples or not found.status.ok:
+            return found
+        reason = f"{fewer} of {samples} designs of the sample were taken, since most need more digits than 16"
+        return replace(found, status=Status(StatusKind.INACCURATE, reason))
+
+
+def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter, samples: int, seed: int) -> int:
+    """How many samples to take: few where most values need more digits than double precision has."""
+    if (
+        samples <= _FEW
+        or is_composed(index)
+        or not isinstance(method, Doubting)
+        or not elements_scatter(design, scatter)
+    ):
+        return samples
+    unit = scipy.stats.qmc.Sobol(len(scatter.names), rng=np.random.default_rng(seed)).random(_TRIED)
+    own = nominal(design, scatter)
+    points = dict(zip(own, (scatter.factors(unit) * np.array(list(own.values()))).T, strict=True))
+    return _FEW if method.share_unsure(loosened(design, scatter), index, points) > 0.5 else samples
 
 
 def _found(

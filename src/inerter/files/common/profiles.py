@@ -74,7 +74,7 @@ def read(
 
 
 def as_keys(text: Iterable[object]) -> str:
-    """The parts of a sentence, such as the `args` of a `RecordError`, with keys of a file in the place of Python's calls.
+    """The parts of a sentence, such as the `args` of a `RecordError`, with keys of a file instead of Python's calls.
 
     >>> as_keys(("Name it: ", Remedy(Action.COLUMN, (("distance", "Station"),)), "."))
     'Name it: columns = { distance = "Station" }.'

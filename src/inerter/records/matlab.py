@@ -119,7 +119,7 @@ def _recorder(variables: Mapping[str, Any], prefix: str, notes: dict[str, None])
     if step is not None and len(values) == 1 and isinstance(step, int | float) and step > 0.0:
         start = variables.get(keys.get("t0", ""), 0.0)
         first = float(start) if isinstance(start, int | float) else 0.0
-        return _rows(variables, prefix, first + float(step) * np.arange(np.size(values[0])))
+        return _rows(variables, prefix, np.asarray(first + float(step) * np.arange(np.size(values[0])), dtype=float))
     clocks = [variables[keys[key]] for key in _CLOCKS if key in keys and _is_vector(variables[keys[key]])]
     if len(clocks) == 1 and len(values) == 1 and np.size(values[0]) == np.size(clocks[0]) and "data" in keys:
         second = _second(variables, keys, notes)

@@ -38,7 +38,8 @@ def columns(value: Any) -> dict[str, str | int]:
     """Which column is which, by name or by number from 0."""
     known = tuple(Columns.__annotations__)
     for role, name in _table(value, known, COLUMNS_EXAMPLE).items():
-        if isinstance(name, bool) or not isinstance(name, str | int) or name == "" or (name != str(name) and name < 0):
+        is_name = isinstance(name, str) and name != ""
+        if not is_name and (isinstance(name, bool) or not isinstance(name, int) or name < 0):
             raise EntryError(got=f"{role} = {shown(name)}", expected="the name of a column, or its number from 0")
     return dict(value)
 

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
 INSTALL = "Install the same versions in all places."
+_LOST = "the scheduler has ended, or the connection to it was lost."
 _FRESH = 2.0  # seconds for which a number of workers is taken as it was
 _FIRST = 60.0  # seconds within which the first worker must be there
 _counted: WeakKeyDictionary[Executor, tuple[float, int]] = WeakKeyDictionary()
@@ -44,9 +46,24 @@ def slots(executor: Executor) -> int:
         return int(told or os.cpu_count() or 1)
     when, count = _counted.get(executor, (-_FRESH, 0))
     if time.monotonic() - when >= _FRESH:
-        count = sum(client.nthreads().values())
+        with _reached():
+            count = sum(client.nthreads().values())
         _counted[executor] = time.monotonic(), count
     return count
+
+
+@contextmanager
+def _reached() -> Iterator[None]:
+    """A scheduler that cannot be reached in this block has ended: what its client raises then are errors of any kind.
+
+    Raises `WorkError`.
+    """
+    try:
+        yield
+    except WorkError:
+        raise
+    except Exception as error:
+        raise WorkError(_LOST) from error
 
 
 def deaths(error: Exception) -> int:
@@ -75,14 +92,9 @@ def check(executor: Executor) -> None:
     client = _client(executor)
     if client is None:
         return
-    if not client.nthreads():
-        try:
-            client.wait_for_workers(1, timeout=_FIRST)
-        except TimeoutError:
-            raise WorkError(
-                f"the scheduler has no workers, and none came within {_FIRST:.0f} s. Start some, such as: "
-                f"dask worker {client.scheduler_info()['address']} --nthreads 1"
-            ) from None
+    with _reached():
+        if not client.nthreads():
+            _wait_for_workers(client)
     for place, answer in _answers(client):
         if isinstance(answer, BaseException):
             raise WorkError(f"{place} cannot load this package ({answer}). {INSTALL}")
@@ -96,13 +108,29 @@ def check(executor: Executor) -> None:
             )
 
 
+def _wait_for_workers(client: Client) -> None:
+    """Raises `WorkError` if none comes."""
+    try:
+        client.wait_for_workers(1, timeout=_FIRST)
+    except TimeoutError:
+        raise WorkError(
+            f"the scheduler has no workers, and none came within {_FIRST:.0f} s. Start some, such as: "
+            f"dask worker {client.scheduler_info()['address']} --nthreads 1"
+        ) from None
+
+
 def _answers(client: Client) -> Iterator[tuple[str, Any]]:
     """What the scheduler, which unpacks work before it passes it on, and the workers say of themselves, or an error."""
     try:
-        yield "the scheduler", client.run_on_scheduler(told)
-    except Exception as error:  # whatever kept it from loading this
-        yield "the scheduler", error
-    for address, answer in client.run(told, on_error="return").items():
+        answer = client.run_on_scheduler(told)
+    except Exception as error:  # whatever kept it from loading this, if it is there
+        with _reached():
+            client.nthreads()
+        answer = error
+    yield "the scheduler", answer
+    with _reached():
+        answers = client.run(told, on_error="return")
+    for address, answer in answers.items():
         yield f"the worker {address}", answer
 
 
@@ -136,7 +164,8 @@ def places(executor: Executor) -> tuple[Worker, ...]:
 
 
 def _workers(client: Client) -> dict[str, dict[str, Any]]:
-    return dict(client.scheduler_info(n_workers=-1)["workers"])
+    with _reached():
+        return dict(client.scheduler_info(n_workers=-1)["workers"])
 
 
 def _client(executor: Executor) -> Client | None:

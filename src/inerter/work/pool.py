@@ -7,27 +7,26 @@ named, and plain data.
 from __future__ import annotations
 
 import os
-import pickle
 import time
 from collections.abc import Callable, Iterable, Iterator, Sized
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import chain
 from typing import Any
 
 from inerter.errors import WorkError
 from inerter.work import cluster
-from inerter.work.origin import origin
-from inerter.work.pieces import Cutter, Item, Piece, Result, Worked, loaded, worked
+from inerter.work.pieces import Cutter, Item, Piece, Result, loaded, worked
 from inerter.work.processes import Processes, is_started
+from inerter.work.returns import Returned, check_executor, returned, submitted
 
 KILLS = 3  # processes that an item may end
+_FAULTS = 3  # times that an executor may give something else back than the results of a piece
 _SHORT = 3.0  # seconds: to start processes takes about as long
 _TOLD = 0.5  # seconds after which the pace of the first items tells how long all will take
 _AT_ONCE = 0.1  # seconds for which results of this process are kept back, to come together
-_GONE = "the executor that the work was handed to has ended, or lost its connection."
 _AHEAD = 2  # pieces for each process of ours: the one that it works on, and the next
 _AFAR = 8  # for each of another executor, where pieces and results may be on their way for as long as a piece takes
 
@@ -44,6 +43,7 @@ class Pool:
         self._given = executor
         self._own: Processes | None = None
         if executor is not None:
+            check_executor(executor)
             cluster.check(executor)
 
     def __enter__(self) -> Pool:
@@ -111,7 +111,7 @@ class Pool:
         waiting = iter(items)
         if self._given is None and (self.jobs == 1 or self._own is None):
             start = _Start(partial(self._begun, work) if self.jobs > 1 else None, left)
-            for found in _at_home(here or work, waiting, start):
+            for found in _at_home(partial(_persistent, here or work, lost), waiting, start):
                 left = None if left is None else left - len(found)
                 yield found
         for first in waiting:  # there is more
@@ -131,16 +131,20 @@ class Pool:
                 if not under_way:
                     return
                 done, _ = wait(under_way, return_when=FIRST_COMPLETED)
+                error: Exception | None = None
                 for future in done:
+                    try:
+                        found = returned(future, work, under_way[future])
+                    except WorkError as none:
+                        found = Returned([], error=none)
                     piece = under_way.pop(future)
-                    deaths, found, seconds = _result(future, (work, piece))
-                    if not deaths:
-                        cutter.learn(piece, seconds)
-                        yield found
-                    elif piece.alone and piece.deaths + deaths >= KILLS:
+                    if found.results:
+                        yield found.results
+                    error = error or found.error or _taken(cutter, piece, found)
+                    if piece.alone and piece.deaths + found.deaths >= KILLS:
                         yield [_lost(piece.items[0], lost)]
-                    else:
-                        cutter.back(piece, deaths)
+                if error is not None:  # when all that came with it is yielded
+                    raise error
         finally:
             for future in under_way:
                 future.cancel()
@@ -150,13 +154,10 @@ class Pool:
     ) -> None:
         executor = self._given or self._processes()
         slots, ahead = max(self.slots, 1), _AHEAD if self._given is None else _AFAR
-        try:
-            while len(under_way) < ahead * slots and (piece := cutter.take(slots)):
-                under_way[executor.submit(worked, work, piece)] = piece
-            if not under_way and (piece := cutter.take_alone()):
-                under_way[executor.submit(worked, work, piece)] = piece
-        except (BrokenExecutor, RuntimeError):  # the latter: it was shut down
-            raise WorkError(_GONE) from None
+        while len(under_way) < ahead * slots and (piece := cutter.take(slots)):
+            under_way[submitted(executor, worked, work, piece)] = piece
+        if not under_way and (piece := cutter.take_alone()):
+            under_way[submitted(executor, worked, work, piece)] = piece
 
     def _processes(self) -> Processes:
         if self._own is None:
@@ -202,48 +203,35 @@ def _at_home(work: Callable[[Item], Result], items: Iterator[Item], start: _Star
         yield found
 
 
-def _result(future: Future[Worked[Result]], call: object) -> tuple[int, list[Result], float]:
-    """How many processes have ended on a piece, its results if none, and how long they took [s]."""
-    try:
-        found = future.result()
-    except CancelledError:
-        raise WorkError(_GONE) from None
-    except Exception as error:
-        if isinstance(error, ModuleNotFoundError):
-            raise WorkError(
-                f"a process of the executor cannot load what it is to call ({error}). {cluster.INSTALL}"
-            ) from None
-        deaths = cluster.deaths(error)
-        if not deaths:
-            _check_sent(call)
-            raise
-        return deaths, [], 0.0
-    if found.origin != origin():
-        raise WorkError(
-            "a process of the executor has another version of inerter, or of the libraries that make its numbers. "
-            f"{cluster.INSTALL}"
-        )
-    return 0, list(found.results), found.seconds
-
-
-def _check_sent(call: object) -> None:
-    """Raises `WorkError` if a call cannot be sent to another process."""
-    try:
-        pickle.dumps(call)
-    except Exception as error:
-        raise WorkError(
-            f"this work cannot be handed to other processes ({error}). What is your own must be a class or function of "
-            "a module, and not made inside a function; or leave the executor out."
-        ) from None
+def _taken(cutter: Cutter[Item], piece: Piece[Item], found: Returned[Any]) -> WorkError | None:
+    """Take note of what came back of a piece; returns the error of an executor that fails again and again."""
+    rest = replace(piece, items=piece.items[len(found.results) :])
+    if found.fault and piece.faults + 1 >= _FAULTS:
+        return WorkError(f"the executor has failed {_FAULTS} times on one piece of work: {found.fault}.")
+    if found.fault:
+        cutter.repeat(piece)
+    elif not found.deaths:
+        cutter.learn(piece, found.seconds)
+    elif not (piece.alone and piece.deaths + found.deaths >= KILLS):
+        cutter.back(rest, found.deaths)
+    return None
 
 
 def _lost(item: Item, lost: Callable[[Item], Result] | None) -> Result:
     if lost is not None:
         return lost(item)
     raise WorkError(
-        f"{KILLS} processes have ended while they worked on the same piece, {str(item)[:80]}, perhaps for want of "
-        "memory. Fewer processes need less of it."
+        f"{KILLS} processes have ended, or had no memory left, while they worked on the same piece, {str(item)[:80]}. "
+        "Fewer processes need less memory."
     )
+
+
+def _persistent(work: Callable[[Item], Result], lost: Callable[[Item], Result] | None, item: Item) -> Result:
+    """The result of work in this process, which is done again as often as elsewhere where there is no memory left."""
+    for _ in range(KILLS):
+        with suppress(MemoryError):
+            return work(item)
+    return _lost(item, lost)
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Generic
 
+from inerter.errors import WorkError
 from inerter.work.pieces import THREADS, Item, Result
 from inerter.work.pool import Pool, pooled
 
@@ -63,6 +64,8 @@ def mapped(
         found[number] = result
         if progress is not None:
             progress(len(found) / len(items))
+    if len(found) != len(items):
+        raise WorkError(f"the executor has given {len(found)} of {len(items)} results, and some of them twice.")
     return [found[number] for number in range(len(items))]
 
 

@@ -26,7 +26,7 @@ from inerter.work.pool import KILLS
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
 _OK = StatusKind.OK.value
-ENDED = f"{KILLS} processes ended while they worked on it, perhaps for want of memory"
+ENDED = f"{KILLS} processes ended, or had no memory left, while they worked on it"
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 

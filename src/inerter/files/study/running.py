@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from inerter.errors import StatusKind
+from inerter.errors import StatusKind, WorkError
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.study import journal as journals
 from inerter.files.study.budgets import BudgetCase, BudgetOutcome, budget_cases, budgets_csv
@@ -180,6 +180,9 @@ def _computed(
             append(*(one.to_json() for one in ready))
             done |= {one.case: one for one in ready}
             tell(ready[-1])
+        lost = len(found.pending()) + len(set(further) - set(done))
+        if lost:
+            raise WorkError(f"the executor has given no result for {lost} of {total}, and others in their place.")
     return found, done, len(pending)
 
 

@@ -14,14 +14,17 @@ from textwrap import wrap
 from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
 from inerter.cli.options import OWN, Cluster
+from inerter.cli.pace import Pace
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
 from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
+from inerter.files.study.study import Study
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.answers import answers
@@ -61,7 +64,7 @@ def run(
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,
-        progress(study.stem, items, executor) as shown,
+        progress(study.stem, items, executor, _pace(loaded)) as shown,
     ):
         result = run_study(
             loaded,
@@ -93,6 +96,12 @@ def run(
         told = answers(result.data, loaded, result.budgets, tolerances=result.tolerances)
         print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
     return _judge(result)
+
+
+def _pace(study: Study) -> Pace:
+    """How much work the designs of a study are: those that are not searched are all alike."""
+    free = {name: len(study.design(name).free_values()) if study.optimise else 1 for name in study.layouts}
+    return Pace(free, len(cases(study)) // max(len(study.layouts), 1))
 
 
 def papers() -> int:

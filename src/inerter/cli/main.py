@@ -19,6 +19,7 @@ from inerter import __version__
 from inerter.app.serve import LIMIT, RECORD_LIMIT
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
 from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
+from inerter.cli.pulse import alive
 from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
 from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
@@ -304,7 +305,8 @@ def main() -> int:
     endure()
     heed()
     try:
-        code = call(sys.argv[1:])
+        with alive():
+            code = call(sys.argv[1:])
     except KeyboardInterrupt:  # while another was told
         code = INTERRUPTED
     finally:

@@ -1,4 +1,4 @@
-"""Progress of long work, on stderr: a bar on a terminal, some lines elsewhere."""
+"""Progress of long work, on stderr: a bar on a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
@@ -22,13 +22,14 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from inerter.cli.pace import Pace
+from inerter.cli.pulse import Pulse, pulse
 from inerter.files.study.cases import Outcome
 from inerter.files.study.journal import Further
 from inerter.files.study.running import Progress as Report
 from inerter.kernels.prepare import Told
 from inerter.work.cluster import slots
-
-_SELDOM = 60.0  # seconds between two lines on a log
+from inerter.work.progress import Listener, Step, listening
 
 
 class Shown(NamedTuple):
@@ -38,45 +39,116 @@ class Shown(NamedTuple):
     kernels: Told  # which kernel is compiled before that
 
 
+@dataclass
+class _Study:
+    """How far a study is, in words."""
+
+    what: str
+    items: str
+    executor: Executor | None
+    pace: Pace
+    done: int = 0
+    total: int = 0
+    kept: int = 0  # done in an earlier run
+    not_ok: int = 0
+    begun: float | None = None
+    compiling: str = ""
+
+    def count(self, done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
+        """Take note of what is done."""
+        if self.begun is None:
+            self.begun, self.kept = time.monotonic(), done
+            self.pace.begin(done)
+        elif last is not None:
+            self.pace.finish(last.layout, done - self.done)
+        self.done, self.total, self.not_ok, self.compiling = done, total, not_ok, ""
+
+    def begin_kernel(self, title: str, number: int, total: int) -> None:
+        """Take note of a kernel that is begun."""
+        self.compiling = f"compiling kernels {number} of {total}: {title}"
+
+    def words(self, step: Step) -> str:
+        """All that is known, in a line."""
+        self.pace.take(step)
+        if self.begun is None:
+            return f"{self.what}: {self.compiling or step}"
+        part = self.part()
+        rate = f", {self.rate():.3g} a second" if self.done > self.kept + 9 else ""
+        count = f"{self.done} of {self.total} {self.items} found{_not_ok(self.not_ok)}{rate}"
+        return f"{self.what}: {count}{f'; {part}' if part else ''}{self.pace.left()}{_hands(self.executor)}"
+
+    def part(self) -> str:
+        """The design under way of which most is done, in words."""
+        parts = sorted(self.pace.parts.values(), key=lambda step: step.share or 0.0)
+        return str(parts[-1]) if parts else ""
+
+    def rate(self) -> float:
+        """Items a second since the beginning."""
+        assert self.begun is not None
+        return (self.done - self.kept) / max(time.monotonic() - self.begun, 1e-3)
+
+
 @contextmanager
-def progress(what: str, items: str = "designs", executor: Executor | None = None) -> Iterator[Shown]:
-    """Callbacks that show how far the work is; `items` says what there is to find, `executor` who looks for it."""
-    if not sys.stderr.isatty():
-        yield Shown(
-            _Lines(what, items, executor),
-            lambda title, number, total: print(_kernel(what, title, number, total), file=sys.stderr, flush=True),
-        )
-        return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[pace]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=None, pace="")
-        pace = _Pace()
+def progress(
+    what: str, items: str = "designs", executor: Executor | None = None, pace: Pace | None = None
+) -> Iterator[Shown]:
+    """Callbacks that show how far the work is.
+
+    `items` says what there is to find, `executor` who looks for it, `pace` how much work the designs are.
+    """
+    study = _Study(what, items, executor, Pace({}) if pace is None else pace)
+    with _on_terminal(study) if sys.stderr.isatty() else _in_lines(study) as shown:
+        yield shown
+
+
+@contextmanager
+def _in_lines(study: _Study) -> Iterator[Shown]:
+    """A line when designs are begun, one when all are found, and one whenever it was silent for long."""
+    with pulse(study.words) as printer:
 
         def show(done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
-            pace.begin(done)
-            name = f"{what}: {last.layout} {last.index}{_not_ok(not_ok)}" if last else what
-            told = f"{pace.rate(done):.3g}/s{_hands(executor)}" if last else ""
-            bar.update(task, completed=done, total=total, description=name, pace=told)
+            study.count(done, total, last, not_ok)
+            if last is None and done < total:
+                kept = f", {done} of them done before" if done else ""
+                printer.say(f"{study.what}: {total} {study.items} to find{kept}")
+            elif last is not None and done == total:
+                printer.say(f"{study.what}: all {total} {study.items} found")
 
         def begun(title: str, number: int, total: int) -> None:
-            bar.update(task, completed=number - 1, total=total, description=_kernel(what, title, number, total))
+            study.begin_kernel(title, number, total)
+            printer.say(f"{study.what}: {study.compiling}")
 
         yield Shown(show, begun)
+
+
+@contextmanager
+def _on_terminal(study: _Study) -> Iterator[Shown]:
+    """A bar, which moves."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(study.what, total=None)
+
+        def update(step: Step) -> None:
+            words = study.words(step)
+            if study.begun is None:
+                bar.update(task, description=words)
+                return
+            parts = sum(one.share or 0.0 for one in study.pace.parts.values())
+            text = f"{study.what}: {study.part() or study.items}{_not_ok(study.not_ok)}{study.pace.left()}"
+            bar.update(task, completed=study.done + parts, total=study.total, description=text)
+
+        with listening(Listener(update, every=0.5)):
+            yield Shown(study.count, study.begin_kernel)
 
 
 @contextmanager
 def steps(what: str) -> Iterator[Callable[[str, int, int], None]]:
     """A callback that shows how far each of several pieces of work is: its name, steps done, and all steps."""
     if not sys.stderr.isatty():
-        yield _Pieces(what)
+        pieces = _Pieces(what)
+        with pulse(pieces.words) as printer:
+            pieces.printer = printer
+            yield pieces
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
@@ -92,47 +164,41 @@ def steps(what: str) -> Iterator[Callable[[str, int, int], None]]:
 
 @dataclass
 class _Pieces:
-    """A line when a piece begins, and one when it ends."""
+    """A line when a piece begins, one when it ends, and one whenever it was silent for long."""
 
     what: str
-    begun: set[str] = field(default_factory=set)
+    counts: dict[str, tuple[int, int]] = field(default_factory=dict)
+    printer: Pulse | None = None
 
     def __call__(self, piece: str, done: int, total: int) -> None:
-        if piece not in self.begun:
-            self.begun.add(piece)
+        is_new = piece not in self.counts
+        self.counts[piece] = done, total
+        if self.printer is None:
+            return
+        if is_new:
             kept = f", {done} of them done before" if done else ""
-            print(f"{self.what}: {piece}, {total} steps{kept}", file=sys.stderr, flush=True)
+            self.printer.say(f"{self.what}: {piece}, {total} steps{kept}")
         elif done == total:
-            print(f"{self.what}: {piece} done", file=sys.stderr, flush=True)
+            self.printer.say(f"{self.what}: {piece} done")
+
+    def words(self, step: Step) -> str:
+        """The piece under way, how far it is, and what it does."""
+        under_way = [f"{piece}, {done} of {total}" for piece, (done, total) in self.counts.items() if done < total]
+        return ": ".join((self.what, *under_way[-1:], str(step)))
 
 
 @contextmanager
 def fraction(what: str) -> Iterator[Callable[[float], None]]:
     """A callback that shows what part of one long piece of work is done."""
     if not sys.stderr.isatty():
-        yield _Every(what)
+        part = [0.0]
+        with pulse(lambda step: f"{what}: {100 * part[0]:.0f} % done"):
+            yield lambda done: part.__setitem__(0, done)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=1.0)
         yield lambda done: bar.update(task, completed=done)
-
-
-@dataclass
-class _Every:
-    """A line whenever ten seconds have gone by since the last."""
-
-    what: str
-    last: float = field(default_factory=time.monotonic)
-
-    def __call__(self, done: float) -> None:
-        if time.monotonic() - self.last > 10.0:
-            self.last = time.monotonic()
-            print(f"{self.what}: {100 * done:.0f} % done", file=sys.stderr, flush=True)
-
-
-def _kernel(what: str, title: str, number: int, total: int) -> str:
-    return f"{what}: compiling kernels {number} of {total}: {title}"
 
 
 def _hands(executor: Executor | None) -> str:
@@ -143,56 +209,3 @@ def _hands(executor: Executor | None) -> str:
 
 def _not_ok(count: int) -> str:
     return f", {count} not ok" if count else ""
-
-
-@dataclass
-class _Pace:
-    """How fast work goes on that may have begun in an earlier run."""
-
-    at: float | None = None
-    before: int = 0
-
-    def begin(self, done: int) -> None:
-        """Take the first time that this is called for the beginning."""
-        if self.at is None:
-            self.at, self.before = time.monotonic(), done
-
-    def rate(self, done: int) -> float:
-        """Items a second since the beginning."""
-        assert self.at is not None
-        return (done - self.before) / max(time.monotonic() - self.at, 1e-3)
-
-
-@dataclass
-class _Lines:
-    """A line when designs are begun, one when all are found, and one whenever a minute has gone by."""
-
-    what: str
-    items: str
-    executor: Executor | None = None
-    pace: _Pace = field(default_factory=_Pace)
-    last: float = field(default_factory=time.monotonic)
-
-    def __call__(self, done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
-        self.pace.begin(done)
-        if last is None and done < total:
-            kept = f", {done} of them done before" if done else ""
-            self._say(f"{total} {self.items} to find{kept}")
-        elif last is not None and done == total:
-            self._say(f"all {total} {self.items} found")
-        elif last is not None and time.monotonic() - self.last > _SELDOM:
-            rate = self.pace.rate(done)
-            left = f"{rate:.3g} a second, about {_duration((total - done) / rate)} left"
-            self._say(f"{done} of {total} {self.items} found{_not_ok(not_ok)}, {left}{_hands(self.executor)}")
-
-    def _say(self, text: str) -> None:
-        self.last = time.monotonic()
-        print(f"{self.what}: {text}", file=sys.stderr, flush=True)
-
-
-def _duration(seconds: float) -> str:
-    """A time for people, in the largest unit of which there are two."""
-    for unit, size in (("h", 3600.0), ("min", 60.0)):
-        if seconds >= 2.0 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds:.0f} s"

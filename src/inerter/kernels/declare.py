@@ -13,6 +13,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from inerter.errors import InerterError
+from inerter.work.progress import told_if_long
 
 F = TypeVar("F", bound=Callable[..., Any])
 Signature = str | Callable[[Any], Any] | None  # in the compiler's words, or made from its module of types
@@ -93,9 +94,10 @@ class Kernel:
         if self._compiled is None and way() == NONE:
             self._compiled = _quiet(self.function)
         if self._compiled is None:
-            from inerter.kernels.compiler import compiled  # noqa: PLC0415 - heavy
+            with told_if_long(f"compiling a numerical kernel ({self.title})"):
+                from inerter.kernels.compiler import compiled  # noqa: PLC0415 - heavy
 
-            self._compiled = compiled(self.function, self.signature, **self.options)
+                self._compiled = compiled(self.function, self.signature, **self.options)
         return self._compiled
 
     @property

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from inerter.kernels.cache import is_kept, told
 from inerter.kernels.declare import TUNED, Kernel, way
+from inerter.work.progress import Step, listener_here, told_if_long
 
 if TYPE_CHECKING:
     from inerter.work.pool import Pool
@@ -48,6 +49,7 @@ def prepare_on(pool: Pool | None, kernels: Sequence[Kernel], progress: Told | No
 
 def _compile(missing: list[Kernel], progress: Told | None) -> None:
     waiting, helpers = deque(enumerate(missing, 1)), min(os.cpu_count() or 1, _MOST, len(missing)) - 1
+    listener = listener_here()
 
     def upcoming() -> Iterator[Kernel]:
         while waiting:
@@ -55,9 +57,11 @@ def _compile(missing: list[Kernel], progress: Told | None) -> None:
                 number, kernel = waiting.popleft()
                 if progress is not None:
                     progress(kernel.title, number, len(missing))
+                if listener is not None:
+                    listener.tell(Step(f"compiling kernels ({kernel.title})", number, len(missing)))
                 yield kernel
 
-    with told(progress is None), ExitStack() as stack:
+    with told(progress is None), told_if_long("compiling the numerical kernels"), ExitStack() as stack:
         for _ in range(helpers):
             stack.enter_context(_helper(upcoming()))
         for kernel in upcoming():

@@ -19,7 +19,9 @@ from numpy.typing import NDArray
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.levels import LogRows, lowest_level
 from inerter.optimisation.limits import Bound, Sense
-from inerter.optimisation.local import LocalOptimum
+from inerter.optimisation.local import LocalOptimum, tell_of_costly
+from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
+from inerter.work.progress import report
 
 Array = NDArray[np.float64]
 KEPT = 1e-7  # of a logarithm beyond its limit that counts as kept; the exact optimum lies on it
@@ -113,16 +115,21 @@ def _logs(function: Differentiable, point: Array, which: Any, following: bool) -
 
 def searches(problem: Limited, first: Sequence[Array]) -> list[LocalOptimum]:
     """A local search from each start; those that come close to the best within the limits are carried to the end."""
-    near = [_approached(problem, start) for start in first]
+    near = searches_from(first, partial(_approached, problem), APPROACHED)
     near.sort(key=lambda local: (max(local.excess, _TIGHT), local.value))
     ended: list[LocalOptimum] = []
-    for local in near:
+    for number, local in enumerate(near):
         if local.excess > near[0].excess + _TIGHT or local.value > near[0].value * (1.0 + _PROMISING):
             ended.append(local)
             continue
         here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < _SAME_PLACE)
         same = next(here, None)
-        ended.append(polished(problem, local) if same is None else replace(same, evaluations=local.evaluations))
+        if same is None:
+            share = APPROACHED + (1.0 - APPROACHED) * number / len(near)
+            report("ends", number, len(near), best=lowest([*ended, *near]), share=share)
+            ended.append(kept_search(local.point, partial(polished, problem, local)))
+        else:
+            ended.append(replace(same, evaluations=local.evaluations))
     return ended
 
 
@@ -172,12 +179,14 @@ def trust_region_within(problem: Limited, start: Array) -> LocalOptimum:
     assert problem.objective is not None
     objective, best = problem.objective, [LocalOptimum(start, np.inf, 0, np.inf)]
     memory: dict[bytes, tuple[float, Array]] = {}
+    most = 80 * start.size
 
     def at(x: Array) -> tuple[float, Array]:
         if x.tobytes() not in memory:
             point = np.clip(np.exp(x), problem.lower, problem.upper)[None]
             value = float(objective.values(point)[0])
             over = np.array([float(bound.excess(point)[0]) for bound in problem.bounds])
+            tell_of_costly(len(memory) + 1, most, best[0])
             here = LocalOptimum(point[0], value, 0, float(over.max()))
             if np.isfinite(value) and _no_worse(here, best[0]):
                 best[0] = here
@@ -192,7 +201,7 @@ def trust_region_within(problem: Limited, start: Array) -> LocalOptimum:
         method="COBYQA",
         bounds=scipy.optimize.Bounds(np.log(problem.lower), np.log(problem.upper)),
         constraints=scipy.optimize.NonlinearConstraint(lambda x: at(x)[1], -np.inf, 0.0),
-        options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-4, "maxfev": 80 * start.size},
+        options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-4, "maxfev": most},
     )
     return replace(best[0], evaluations=len(memory))
 

@@ -10,6 +10,8 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from inerter.work.progress import evaluated
+
 Array = NDArray[np.float64]
 
 
@@ -44,6 +46,7 @@ def lowest_level(
         key = z[:-1].tobytes()
         if key not in memory:
             memory[key] = rows(np.clip(np.exp(z[:-1]), lower, upper))
+            evaluated()
         return memory[key]
 
     first = np.append(np.log(start), 0.0)

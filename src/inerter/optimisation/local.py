@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.levels import LogRows, below, lowest_level
+from inerter.work.progress import evaluated, report
 
 Array = NDArray[np.float64]
 _LEVEL_TOLERANCE = 1e-9  # relative height of a peak above the level that ends the minimax search
@@ -39,6 +40,7 @@ def descend(objective: Differentiable, start: Array, lower: Array, upper: Array)
     def logarithm(x: Array) -> tuple[float, Array]:
         point = np.clip(np.exp(x), lower, upper)  # exp(log(bound)) may miss the bound by rounding
         value, gradient = objective.value_and_gradient(point)
+        evaluated()
         if not (np.isfinite(value) and value > 0.0 and np.all(np.isfinite(gradient))):
             return -_HIDDEN, np.zeros_like(x)
         return float(np.log(value)), gradient * point / value
@@ -57,11 +59,13 @@ def descend(objective: Differentiable, start: Array, lower: Array, upper: Array)
 
 def trust_region(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     """The local optimum of a costly index near `start`, by a trust-region search without derivatives."""
-    best = [LocalOptimum(start, np.inf, 0)]
+    best, count, most = [LocalOptimum(start, np.inf, 0)], [0], 60 * start.size
 
     def logarithm(x: Array) -> float:
         point = np.clip(np.exp(x), lower, upper)
         value = float(objective.values(point[None])[0])
+        count[0] += 1
+        tell_of_costly(count[0], most, best[0])
         if value < best[0].value:
             best[0] = LocalOptimum(point, value, 0)
         return float(np.log(value)) if 0.0 < value < np.inf else -_HIDDEN
@@ -71,9 +75,15 @@ def trust_region(objective: Objective, start: Array, lower: Array, upper: Array)
         np.log(start),
         method="COBYQA",
         bounds=scipy.optimize.Bounds(np.log(lower), np.log(upper)),
-        options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-3, "maxfev": 60 * start.size},
+        options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-3, "maxfev": most},
     )
     return LocalOptimum(best[0].point, best[0].value, int(result.nfev))
+
+
+def tell_of_costly(count: int, most: int, best: LocalOptimum) -> None:
+    """Tell how many of the most evaluations are done, and what the best of them is."""
+    lowest = best.value if np.isfinite(best.value) else None
+    report("evaluations", count, most, best=lowest, share=count / most)
 
 
 def approach(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from functools import partial
 from numbers import Integral
 
 import numpy as np
@@ -23,8 +24,11 @@ from inerter.optimisation.constrained import KEPT, KEPT_COSTLY, Limited, searche
 from inerter.optimisation.held import Held, held_at, infeasible
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
+from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
 from inerter.optimisation.threads import one_blas_thread
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.kept import resumed
+from inerter.work.progress import report, within
 from inerter.work.running import running_on
 
 Array = NDArray[np.float64]
@@ -34,6 +38,7 @@ _MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are valued, and searches from 
 _APART = 0.05  # logarithmic distance from which on two starts of such searches are two
 _PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is carried to the end
 _SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
+_QUICK = 0.1  # share of a search by simulation that its quick beginnings take
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
 
@@ -149,13 +154,17 @@ def _best(
     problem = Limited(objective, bounds_of(vehicle, limits, method), lower, upper)
     quick = isinstance(objective, Differentiable) and is_smooth(problem.bounds)
     agreement = AGREEMENT if quick else COSTLY_AGREEMENT
-    linear = None if method.sees is Sees.NEITHER else _linear_optimum(vehicle, index, method, limits, seed, starts)
+    linear = None
+    if method.sees is not Sees.NEITHER:
+        with within("best linear design", 0.0, 0.5 * _QUICK):
+            linear = _linear_optimum(vehicle, index, method, limits, seed, starts)
     if quick:
         first, evaluations = _starting_points(problem if limits else objective, lower, upper, starts, seed)
         found = _searches(problem, first)
     else:
         first = [] if linear is None else [linear]
-        first += _quick_optima(vehicle, index, method, limits, (lower, upper), starts, seed)
+        with within("quick approximation", 0.5 * _QUICK, _QUICK):
+            first += _quick_optima(vehicle, index, method, limits, (lower, upper), starts, seed)
         found, evaluations = _costly_searches(problem, _apart(first))
     evaluations += sum(local.evaluations for local in found)
     kept = KEPT if quick else KEPT_COSTLY
@@ -255,9 +264,16 @@ def _costly_searches(problem: Limited, tried: list[Array]) -> tuple[list[LocalOp
     limited = problem if problem.bounds else objective
     values = limited.values(np.array(tried)) if tried else np.zeros(0)
     best_first = np.argsort(values, kind="stable")[:_MOST_SEARCHES]
-    if problem.bounds:
-        return [trust_region_within(problem, tried[i]) for i in best_first], len(tried)
-    return [trust_region(objective, tried[i], lower, upper) for i in best_first], len(tried)
+    found = []
+    for number, i in enumerate(best_first):
+        shares = _QUICK + (1.0 - _QUICK) * np.array([number, number + 1]) / len(best_first)
+        with within(f"search {number + 1} of {len(best_first)}", *shares.tolist()):
+            if problem.bounds:
+                search = partial(trust_region_within, problem, tried[i])
+            else:
+                search = partial(trust_region, objective, tried[i], lower, upper)
+            found.append(kept_search(tried[i], search))
+    return found, len(tried)
 
 
 def _searches(problem: Limited, first: list[Array]) -> list[LocalOptimum]:
@@ -267,21 +283,22 @@ def _searches(problem: Limited, first: list[Array]) -> list[LocalOptimum]:
     objective, lower, upper = problem.objective, problem.lower, problem.upper
     assert isinstance(objective, Differentiable)
     if not first or objective.active(first[0]) is None:
-        return [descend(objective, start, lower, upper) for start in first]
-    near = [approach(objective, start, lower, upper) for start in first]
+        return searches_from(first, lambda start: descend(objective, start, lower, upper), 1.0)
+    near = searches_from(first, lambda start: approach(objective, start, lower, upper), APPROACHED)
     near.sort(key=lambda local: local.value)
     ended: list[LocalOptimum] = []
-    for local in near:
+    for number, local in enumerate(near):
         if local.value > near[0].value * (1.0 + _PROMISING):
             ended.append(local)
             continue
         here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < _SAME_PLACE)
         same = next(here, None)
-        ended.append(
-            polish(objective, local, lower, upper)
-            if same is None
-            else LocalOptimum(same.point, same.value, local.evaluations)
-        )
+        if same is None:
+            share = APPROACHED + (1.0 - APPROACHED) * number / len(near)
+            report("ends", number, len(near), best=lowest([*ended, *near]), share=share)
+            ended.append(kept_search(local.point, partial(polish, objective, local, lower, upper)))
+        else:
+            ended.append(LocalOptimum(same.point, same.value, local.evaluations))
     return ended
 
 
@@ -304,13 +321,18 @@ def _starting_points(
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
     unit = _even(2 ** min(6 + lower.size, 12), lower.size, seed)
     points = np.exp(np.log(lower) + unit * (np.log(upper) - np.log(lower)))
-    values = objective.values(points)
-    neighbours = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * lower.size + 1)[1])
-    order = np.argsort(values, kind="stable")
-    minima = [i for i in order if np.isfinite(values[i]) and values[i] <= values[neighbours[i]].min()]
-    known = set(minima)
-    others = [i for i in order if np.isfinite(values[i]) and i not in known]
-    return [points[i] for i in (minima + others)[:starts]], len(points)
+    report("samples", 0, len(points), share=0.0)
+
+    def best_first() -> list[int]:
+        values = objective.values(points)
+        neighbours = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * lower.size + 1)[1])
+        order = np.argsort(values, kind="stable").tolist()
+        minima = [i for i in order if np.isfinite(values[i]) and values[i] <= values[neighbours[i]].min()]
+        known = set(minima)
+        others = [i for i in order if np.isfinite(values[i]) and i not in known]
+        return (minima + others)[:starts]
+
+    return [points[int(i)] for i in resumed(points[:starts].tobytes(), best_first)], len(points)
 
 
 def _even(count: int, size: int, seed: int) -> Array:

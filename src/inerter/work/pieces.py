@@ -17,6 +17,7 @@ from secrets import token_hex
 from typing import Generic, TypeVar
 
 from inerter.errors import InerterError
+from inerter.work.forwarding import forwarding
 from inerter.work.origin import origin
 
 Item = TypeVar("Item")
@@ -60,8 +61,9 @@ def worked(work: Callable[[Item], Result], piece: Piece[Item]) -> Worked[Result]
     results: list[Result] = []
     failed: Exception | None = None
     try:
-        for item in piece.items:
-            results.append(work(item))
+        with forwarding():
+            for item in piece.items:
+                results.append(work(item))
     except Exception as error:  # told from errors of whoever sends it
         if not isinstance(error, InerterError):
             error.add_note(traceback.format_exc())

@@ -18,6 +18,7 @@ from typing import Any
 
 from inerter.errors import WorkError
 from inerter.work import cluster
+from inerter.work.forwarding import receive
 from inerter.work.pieces import Cutter, Item, Piece, Result, loaded, worked
 from inerter.work.processes import Processes, is_started
 from inerter.work.returns import Returned, check_executor, returned, submitted
@@ -26,6 +27,7 @@ KILLS = 3  # processes that an item may end
 _FAULTS = 3  # times that an executor may give something else back than the results of a piece
 _SHORT = 3.0  # seconds: to start processes takes about as long
 _TOLD = 0.5  # seconds after which the pace of the first items tells how long all will take
+_LOOK = 0.25  # seconds between two looks at what own processes tell
 _AT_ONCE = 0.1  # seconds for which results of this process are kept back, to come together
 _AHEAD = 2  # pieces for each process of ours: the one that it works on, and the next
 _AFAR = 8  # for each of another executor, where pieces and results may be on their way for as long as a piece takes
@@ -130,7 +132,8 @@ class Pool:
                 self._submit(work, cutter, under_way)
                 if not under_way:
                     return
-                done, _ = wait(under_way, return_when=FIRST_COMPLETED)
+                done, _ = wait(under_way, _LOOK if self._given is None else None, FIRST_COMPLETED)
+                self._receive()
                 error: Exception | None = None
                 for future in done:
                     try:
@@ -148,6 +151,11 @@ class Pool:
         finally:
             for future in under_way:
                 future.cancel()
+
+    def _receive(self) -> None:
+        """Pass on what own processes have told."""
+        for message in self._own.told() if self._own is not None else ():
+            receive(message)
 
     def _submit(
         self, work: Callable[[Item], Result], cutter: Cutter[Item], under_way: dict[Future[Any], Piece[Item]]

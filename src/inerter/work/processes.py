@@ -1,4 +1,4 @@
-"""Processes of our own, as an executor."""
+"""Processes of our own, as an executor; what they tell while they work is passed on."""
 
 from __future__ import annotations
 
@@ -8,22 +8,26 @@ import signal
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import partial
+from multiprocessing.connection import Connection
 from multiprocessing.connection import wait as wait_for_end
 from multiprocessing.process import BaseProcess
 from multiprocessing.util import Finalize
 from typing import Any
 
 from inerter.errors import WorkError
+from inerter.work.forwarding import forward_to
 from inerter.work.own_process import leave, look_for_garbage_seldom
 from inerter.writing import undisturbed
 
 _ASKED, _KILLED = 0.4, 10.0  # seconds that a process has to end, and to be gone where it must
 _LAST = -1000  # of what a process does when it ends
+_LOOK = 0.1  # seconds between two looks at what processes tell, where none did
 
 
 @dataclass(eq=False)
@@ -57,6 +61,15 @@ class Processes(Executor):
         self.jobs = jobs
         self._singles: list[_Single] = []
         self._processes: set[BaseProcess] = set()
+        self._told: deque[Any] = deque()
+        self._connections: list[Connection] = []
+        self._reader: threading.Thread | None = None
+        self._over = threading.Event()
+
+    def told(self) -> Iterator[Any]:
+        """What the processes have told since this was last asked for."""
+        while self._told:
+            yield self._told.popleft()
 
     def submit(self, call: Callable[..., Any], /, *args: object, **keywords: object) -> Future[Any]:
         """Have a call made by the process that has least to do.
@@ -85,6 +98,7 @@ class Processes(Executor):
             single.executor.shutdown(wait=wait, cancel_futures=cancel_futures)
         if not wait:
             _end(self._processes)
+        self._over.set()
         self._singles = []
 
     def _started(self) -> _Single:
@@ -95,8 +109,26 @@ class Processes(Executor):
 
     def _added(self) -> _Single:
         context = multiprocessing.get_context("spawn")
-        self._singles.append(_Single(ProcessPoolExecutor(1, context, initializer=_begin_worker)))
+        here, there = context.Pipe(duplex=False)
+        self._connections.append(here)
+        if self._reader is None:
+            self._reader = threading.Thread(target=self._read, daemon=True)
+            self._reader.start()
+        executor = ProcessPoolExecutor(1, context, initializer=_begin_worker, initargs=(there,))
+        self._singles.append(_Single(executor))
         return self._singles[-1]
+
+    def _read(self) -> None:
+        """Read what processes tell, so that none of them ever waits for that."""
+        while not self._over.is_set():
+            for connection in wait_for_end(list(self._connections), timeout=_LOOK):
+                try:
+                    self._told.append(connection.recv())  # type: ignore[union-attr]
+                except Exception:  # the process has ended, in the midst of it perhaps
+                    with suppress(ValueError):
+                        self._connections.remove(connection)  # type: ignore[arg-type]
+        for connection in self._connections:
+            connection.close()
 
     def _watched(self, single: _Single, call: Callable[..., Any], *args: object) -> Future[Any]:
         others = set(multiprocessing.active_children()) - self._processes
@@ -146,8 +178,9 @@ def _deaf_to_interrupts() -> Iterator[None]:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _begin_worker() -> None:
+def _begin_worker(upwards: Connection) -> None:
     look_for_garbage_seldom()
+    forward_to(upwards.send)
     Finalize(None, _leave, exitpriority=_LAST)
     parent = multiprocessing.parent_process()
     if parent is not None:

@@ -18,6 +18,7 @@ from typing import Generic
 from inerter.errors import WorkError
 from inerter.work.pieces import THREADS, Item, Result
 from inerter.work.pool import Pool, pooled
+from inerter.work.progress import logged
 
 _POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
 
@@ -26,9 +27,10 @@ _POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
 def running_on(executor: Executor | Pool | None) -> Iterator[Pool | None]:
     """Work inside that comes apart runs on this; on what is said already, or on threads of this process, without."""
     if executor is None:
-        yield pool_here()
+        with logged():
+            yield pool_here()
         return
-    with pooled(executor=executor) as pool:
+    with logged(), pooled(executor=executor) as pool:
         before = _POOL.set(pool)
         try:
             yield pool

@@ -30,6 +30,11 @@ class BudgetCase:
     index: str
     parameter: str
 
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return f"budget of {self.parameter}, {self.layout} {self.index}"
+
     def run(self, study: Study, outcomes: Mapping[Case, Outcome], threads: int = 1) -> BudgetOutcome:
         """The budget of the design that was found. A failure is an outcome with a status and a sentence."""
         return _run(study, outcomes, self, threads)
@@ -64,7 +69,7 @@ class BudgetOutcome:
     @property
     def name(self) -> str:
         """What it is, in messages."""
-        return f"budget of {self.parameter}, {self.layout} {self.index}"
+        return self.case.name
 
     @property
     def ok(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -22,11 +22,14 @@ from inerter.optimisation.threads import one_blas_thread
 from inerter.systems.descriptor import is_held_by_springs
 from inerter.systems.graph import linear_graph
 from inerter.vehicle.mechanism import Mechanism
+from inerter.work.kept import Row, resuming
 from inerter.work.pool import KILLS
+from inerter.work.progress import report, within
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
 _OK = StatusKind.OK.value
 ENDED = f"{KILLS} processes ended, or had no memory left, while they worked on it"
+_SEARCHED = 0.95  # share of the work on a case that the search takes
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 
@@ -38,6 +41,11 @@ class Case:
     index: str
     point: int = 0
     swept: tuple[float, ...] = field(default=(), compare=False)  # the value of each sweep at that point
+
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return f"{self.layout} {self.index}{f' at point {self.point + 1}' if self.point else ''}"
 
 
 @dataclass(frozen=True)
@@ -134,14 +142,19 @@ def portable(study: Study) -> Study:
     return replace(study, sweeps=tuple(replace(sweep, values=()) for sweep in study.sweeps))
 
 
-def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
+def run_case(study: Study, case: Case, threads: int = 1, known: Mapping[str, Sequence[Row]] | None = None) -> Outcome:
     """Find the best design of one of the `cases` and judge it by every method and index of the study.
 
-    Methods that simulate use `threads`. A failure is an outcome with a status and a sentence, so that one case never
-    ends a study.
+    Methods that simulate use `threads`. `known` are searches that an earlier run has kept, by the name of the case. A
+    failure is an outcome with a status and a sentence, so that one case never ends a study.
     """
     try:
-        with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        with (
+            one_blas_thread(),
+            np.errstate(over="ignore", invalid="ignore", divide="ignore"),
+            within(case.name),
+            resuming(case.name, known or {}),
+        ):
             return _run(study, case, threads)
     except FAILURES as error:
         return _failed(study, case, str(error))
@@ -190,12 +203,15 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         method = study.method(study.optimise, threads)
         limits = [limit for several in limits_in(study) for limit in several]
         free = vehicle
-        found = optimise(free, study.asked(case.index, case.layout), method, subject_to=limits, seed=study.seed)
+        asked = study.asked(case.index, case.layout)
+        with within("search", 0.0, _SEARCHED):
+            found = optimise(free, asked, method, subject_to=limits, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
         fields = {name: getattr(found, name) for name in fields}
         fields["limits"] = [list(one) for one in kept(study, free, found.limits)]
 
     def estimate(method: str, index: str) -> Estimate:
+        report(f"values by {method}", share=_SEARCHED if found is not None else None)
         if found is not None and (method, index) == (study.optimise, case.index):
             return found.estimate
         try:

@@ -30,6 +30,11 @@ class FrontCase:
 
     layout: str
 
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return f"front of {self.layout}"
+
     def run(self, study: Study, outcomes: Mapping[Case, Outcome], threads: int = 1) -> FrontOutcome:
         """The front. A failure is an outcome with a status and a sentence."""
         limits = [limit for several in limits_in(study) for limit in several]
@@ -70,7 +75,7 @@ class FrontOutcome:
     @property
     def name(self) -> str:
         """What it is, in messages."""
-        return f"front of {self.layout}"
+        return self.case.name
 
     @property
     def index(self) -> str:

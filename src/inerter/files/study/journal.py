@@ -1,4 +1,4 @@
-"""The journal of a study: one line a finished case, budget or front."""
+"""The journal of a study: one line a finished case, budget or front, and lines of searches that they came to before."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from inerter.files.study.fronts import FrontOutcome
 from inerter.files.study.study import Study
 from inerter.files.study.tolerances import ToleranceOutcome
 from inerter.work.journal import Journal
+from inerter.work.kept import Kept
 
 NAME = "journal.jsonl"
 Further = BudgetOutcome | FrontOutcome | ToleranceOutcome
@@ -22,6 +23,7 @@ _FURTHER: dict[str, type[Further]] = {  # by a key that others lack
     "jumps": FrontOutcome,
     "effects": ToleranceOutcome,
 }
+_KINDS: dict[str, type[Further | Kept]] = {**_FURTHER, "rows": Kept}
 
 
 def journal_of(study: Study, path: Path) -> Journal:
@@ -30,10 +32,13 @@ def journal_of(study: Study, path: Path) -> Journal:
     return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
 
 
-def outcomes(journal: Journal) -> Iterator[Outcome | Further]:
-    """What is finished, one by one; raises `StudyError` for an entry that is none of a study."""
+def outcomes(journal: Journal) -> Iterator[Outcome | Further | Kept]:
+    """What is finished, and searches of what is not, one by one.
+
+    Raises `StudyError` for an entry that is none of a study.
+    """
     for entry in journal.read():
-        kind = next((kind for key, kind in _FURTHER.items() if key in entry), Outcome)
+        kind = next((kind for key, kind in _KINDS.items() if key in entry), Outcome)
         try:
             yield kind(**entry)
         except TypeError:

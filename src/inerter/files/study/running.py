@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -28,14 +28,17 @@ from inerter.files.study.tolerances import ToleranceCase, ToleranceOutcome, tole
 from inerter.files.study.written import write_resolved
 from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
+from inerter.work.kept import Kept, Row, joined, kept_by, resuming
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, pooled
+from inerter.work.progress import logged, within
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
 BUDGETS, FRONTS, TOLERANCES = "budgets.csv", "fronts.csv", "tolerances.csv"
 NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, FRONTS, TOLERANCES, VERSIONS, f"{FIGURES}/", REPORT)
 _FurtherCase = BudgetCase | FrontCase | ToleranceCase
+_Known = Mapping[str, Sequence[Row]]  # searches of cases that have not ended, by the names of those
 _Done = dict[_FurtherCase, journals.Further]
 Progress = Callable[[int, int, Outcome | journals.Further | None, int], None]
 
@@ -104,8 +107,9 @@ def run_study(
     yet; `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
 
     Every finished case is in the journal at once, or those that were handed out together when the last of them is done.
-    With `resume`, cases in the journal are not computed again, and the results are the same, byte for byte, as those of
-    an undisturbed run. With `force`, the results that the folder holds stay until these are whole.
+    So are searches of a case that goes on, about once a second; `inerter.progress` tells of these. With `resume`, cases
+    and searches in the journal are not computed again, and the results are the same, byte for byte, as those of an
+    undisturbed run. With `force`, the results that the folder holds stay until these are whole.
 
     Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, if it holds what is not
     from this study, or if another run is writing to it, and then nothing has been changed; `WorkError` if the disk is
@@ -157,7 +161,7 @@ def _computed(
     """All cases, budgets and fronts, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
     found = Gathered(study)
-    done = _read(journal, found) if results.resume else {}
+    done, known = _read(journal, found) if results.resume else ({}, {})
     further: list[_FurtherCase] = [*budget_cases(study), *front_cases(study), *tolerance_cases(study)]
     pending = found.pending()
     if pending:
@@ -170,13 +174,17 @@ def _computed(
 
     tell(None)
     results.list_journal(journals.NAME)
-    with journal.appending(results.resume) as append:
-        for several in _outcomes(study, pending, pool):
+    with (
+        logged(),
+        journal.appending(results.resume) as append,
+        kept_by(lambda kept: append(kept.to_json())),
+    ):
+        for several in _outcomes(study, pending, pool, known):
             append(*(outcome.to_json() for outcome in several))
             for outcome in several:
                 found.enter(outcome)
             tell(several[-1])
-        for ready in _further(study, found, [case for case in further if case not in done], pool):
+        for ready in _further(study, found, [case for case in further if case not in done], pool, known):
             append(*(one.to_json() for one in ready))
             done |= {one.case: one for one in ready}
             tell(ready[-1])
@@ -186,36 +194,41 @@ def _computed(
     return found, done, len(pending)
 
 
-def _read(journal: Journal, found: Gathered) -> _Done:
-    """Enter the cases of a journal; returns what else it has."""
+def _read(journal: Journal, found: Gathered) -> tuple[_Done, _Known]:
+    """Enter the cases of a journal; returns what else it has, and the searches of what has not ended."""
     done: _Done = {}
+    searches: dict[str, list[Kept]] = {}
     for one in journals.outcomes(journal):
-        if isinstance(one, Outcome):
+        if isinstance(one, Kept):
+            searches.setdefault(one.name, []).append(one)
+        elif isinstance(one, Outcome):
             found.enter(one)
+            searches.pop(one.case.name, None)
         else:
             done[one.case] = one
-    return done
+            searches.pop(one.name, None)
+    return done, {name: joined(several) for name, several in searches.items()}
 
 
-def _outcomes(study: Study, pending: Pending, pool: Pool) -> Iterator[list[Outcome]]:
+def _outcomes(study: Study, pending: Pending, pool: Pool, known: _Known) -> Iterator[list[Outcome]]:
     """Outcomes as they are done, those that come together in one list."""
-    small = portable(study)
-    here = partial(run_case, small, threads=pool.jobs)
-    return pool.batches(partial(run_case, small), pending, here, partial(lost_case, small))
+    run = partial(run_case, portable(study), known=known)
+    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_case, portable(study)))
 
 
 def _further(
-    study: Study, found: Gathered, pending: list[_FurtherCase], pool: Pool
+    study: Study, found: Gathered, pending: list[_FurtherCase], pool: Pool, known: _Known
 ) -> Iterator[list[journals.Further]]:
     """Budgets and fronts as they are done, those that come together in one list."""
-    run = partial(_run_further, portable(study), found.designs)
+    run = partial(_run_further, portable(study), found.designs, known)
     return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(_lost_further, study))
 
 
 def _run_further(
-    study: Study, designs: Mapping[Case, Outcome], case: _FurtherCase, threads: int = 1
+    study: Study, designs: Mapping[Case, Outcome], known: _Known, case: _FurtherCase, threads: int = 1
 ) -> journals.Further:
-    return case.run(study, designs, threads)
+    with within(case.name), resuming(case.name, known):
+        return case.run(study, designs, threads)
 
 
 def _lost_further(study: Study, case: _FurtherCase) -> journals.Further:

@@ -34,6 +34,11 @@ class ToleranceCase:
     layout: str
     index: str
 
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return f"tolerance of {self.layout} {self.index}"
+
     def run(self, study: Study, outcomes: Mapping[Case, Outcome], threads: int = 1) -> ToleranceOutcome:
         """The tolerance of the design that was found. A failure is an outcome with a status and a sentence."""
         method = study.evaluate[0]
@@ -93,7 +98,7 @@ class ToleranceOutcome:
     @property
     def name(self) -> str:
         """What it is, in messages."""
-        return f"tolerance of {self.layout} {self.index}"
+        return self.case.name
 
     @property
     def ok(self) -> bool:

@@ -1,0 +1,62 @@
+"""A sign of life on stderr: whatever a command does, a line comes before two seconds of silence have gone by."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from inerter.work.progress import Listener, Step, listening
+
+_SILENCE = 1.8  # seconds after which something is said, so that two have not gone by when it can be read
+_LOOK = 0.4  # seconds between two looks at the clock
+_SHORT, _LONG = 600.0, 3600.0  # seconds of work up to which a log has a line every two seconds, or every ten
+_THEN = {_SHORT: 1.0, _LONG: 5.0}  # silences, as multiples, up to these
+_SELDOM = 30.0
+
+
+class Pulse:
+    """Prints what work is under way whenever nothing was printed for as long as a reader bears.
+
+    In a log that is two seconds in the first ten minutes, ten in the first hour and a minute afterwards.
+    """
+
+    def __init__(self, words: Callable[[Step], str], begun: float | None = None) -> None:
+        self.words = words
+        self.begun = time.monotonic() if begun is None else begun
+        self.printed = time.monotonic()
+
+    def __call__(self, step: Step) -> None:
+        now = time.monotonic()
+        factor = next((f for end, f in _THEN.items() if now - self.begun < end), _SELDOM)
+        if now - self.printed >= _SILENCE * factor:
+            self.say(f"{self.words(step)}, {duration(now - self.begun)}")
+
+    def say(self, text: str) -> None:
+        """Print a line."""
+        self.printed = time.monotonic()
+        print(text, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def pulse(words: Callable[[Step], str]) -> Iterator[Pulse]:
+    """What prints steps of the work in this block, in the given words and with the time, and can print more."""
+    printer = Pulse(words)
+    with listening(Listener(printer, every=_LOOK)):
+        yield printer
+
+
+@contextmanager
+def alive() -> Iterator[None]:
+    """The same for a command that says nothing else."""
+    with pulse(lambda step: f"inerter: {step}"):
+        yield
+
+
+def duration(seconds: float) -> str:
+    """A time for people, in the largest unit of which there are two."""
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.0f} s"

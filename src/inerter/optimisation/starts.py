@@ -1,0 +1,44 @@
+"""Local searches one after another: told of while they go on, and kept where long work keeps its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.optimisation.local import LocalOptimum
+from inerter.work.kept import resumed
+from inerter.work.progress import report
+
+Array = NDArray[np.float64]
+_KEPT = 1e-4  # of a logarithm beyond its limit up to which a value is told as the lowest
+SAMPLED, APPROACHED = 0.1, 0.7  # shares of a search that are done with its sample, and with all first searches
+
+
+def searches_from(starts: Sequence[Array], search: Callable[[Array], LocalOptimum], end: float) -> list[LocalOptimum]:
+    """The end of a search from each start; `end` is the share of all work that is done then."""
+    found: list[LocalOptimum] = []
+    for number, start in enumerate(starts):
+        share = SAMPLED + (end - SAMPLED) * number / len(starts)
+        report("starts", number, len(starts), best=lowest(found), share=share)
+        found.append(kept_search(start, lambda start=start: search(start)))  # type: ignore[misc]
+    report("starts", len(starts), len(starts), best=lowest(found), share=end)
+    return found
+
+
+def kept_search(start: Array, search: Callable[[], LocalOptimum]) -> LocalOptimum:
+    """The end of a search, as it was kept or as it is found now."""
+
+    def numbers() -> list[float]:
+        found = search()
+        return [found.value, found.evaluations, found.excess, *found.point]
+
+    value, evaluations, excess, *point = resumed(start.tobytes(), numbers)
+    return LocalOptimum(np.array(point), value, int(evaluations), excess)
+
+
+def lowest(found: Sequence[LocalOptimum]) -> float | None:
+    """The lowest value that keeps the limits; None if there is none yet."""
+    values = [local.value for local in found if local.excess <= _KEPT and np.isfinite(local.value)]
+    return min(values, default=None)

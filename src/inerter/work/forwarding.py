@@ -1,0 +1,65 @@
+"""Steps and kept rows of our own processes on their way to the one that waits for them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+
+from inerter.work.kept import Kept, keep, kept_by
+from inerter.work.progress import Step, heard, listener_here
+
+_OFTEN = 0.25  # seconds between two steps of one process
+_SEND: list[Callable[[object], object]] = []  # of a process of ours
+
+
+def forward_to(send: Callable[[object], object]) -> None:
+    """Have all that this process tells while it works sent to the one that started it."""
+    _SEND[:] = [send]
+
+
+class _Sender:
+    """Sends a step now and then."""
+
+    def __init__(self, send: Callable[[object], object]) -> None:
+        self.send, self.step, self.evaluations = send, Step(""), 0
+        self.told, self.sent = 0.0, False
+
+    def tell(self, step: Step) -> None:
+        self.step, self.evaluations = step, step.evaluations
+        if step.over and not self.sent:  # nobody knows that it began
+            return
+        if step.over or time.monotonic() - self.told >= _OFTEN:
+            self.told, self.sent = time.monotonic(), not step.over
+            self.send(step)
+
+    def evaluated(self) -> None:
+        self.evaluations += 1
+        if time.monotonic() - self.told >= _OFTEN:
+            self.tell(replace(self.step, evaluations=self.evaluations))
+
+
+def _send(message: object) -> None:
+    with suppress(OSError, ValueError):  # nobody reads it any more
+        _SEND[0](message)
+
+
+@contextmanager
+def forwarding() -> Iterator[None]:
+    """What work in this block tells is sent, if this is a process of ours."""
+    if not _SEND:
+        yield
+        return
+    with heard(_Sender(_send)), kept_by(_send):
+        yield
+
+
+def receive(message: object) -> None:
+    """Tell what another process has told to whoever listens here, and keep what it has kept."""
+    if isinstance(message, Kept):
+        keep(message)
+        return
+    listener = listener_here()
+    if isinstance(message, Step) and listener is not None:
+        listener.tell(message)

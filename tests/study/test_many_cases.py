@@ -15,6 +15,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from campaigns import sampled
 from study_text import study_text
 
 from inerter.cli.main import call
+from inerter.cli.pace import Pace
 from inerter.cli.progress import progress
 from inerter.figures.curves import thinned_band
 from inerter.figures.labels import one_method
@@ -283,17 +285,24 @@ def test_progress_tells_how_many_are_not_ok_and_how_long_it_takes(
     bad = sum(drawn(study, case).kind != "ok" for case in cases(study))
     assert told[0] == (0, 40, 0)
     assert told[-1] == (40, 40, bad)
-    clock = iter([0.0, 0.0, 50.0, 100.0, *[100.0] * 20])
-    monkeypatch.setattr("inerter.cli.progress.time.monotonic", lambda: next(clock))
+    clock = [0.0]
+    for module in ("progress", "pace", "pulse"):
+        monkeypatch.setattr(f"inerter.cli.{module}.time", SimpleNamespace(monotonic=lambda: clock[0]))
     outcome = drawn(study, cases(study)[0])
-    with ThreadPoolExecutor(3) as threads, progress("many", executor=threads) as shown:
+    pace = Pace({"S1": 1, "S2": 1}, ("J1",), 500)
+    with ThreadPoolExecutor(3) as threads, progress("many", executor=threads, pace=pace) as shown:
         shown.cases(500, 1000, None, 0)
+        clock[0] = 50.0
         shown.cases(600, 1000, outcome, 2)
-        shown.cases(700, 1000, outcome, 3)
-    lines = capsys.readouterr().err.splitlines()
+        until = time.monotonic() + 60.0
+        lines: list[str] = []
+        while len(lines) < 2 and time.monotonic() < until:
+            time.sleep(0.05)
+            lines += capsys.readouterr().err.splitlines()
     assert lines[0] == "many: 1000 designs to find, 500 of them done before"
     assert re.fullmatch(
-        r"many: \d+ of 1000 designs found, [23] not ok, 2 a second, about \S+ \w+ left, 3 threads at work", lines[1]
+        r"many: 600 of 1000 designs found, 2 not ok, 2 a second, \S+ \w+ to \S+ \w+ left, 3 threads at work, 50 s",
+        lines[1],
     )
 
 

@@ -101,7 +101,7 @@ def run(
 def _pace(study: Study) -> Pace:
     """How much work the designs of a study are: those that are not searched are all alike."""
     free = {name: len(study.design(name).free_values()) if study.optimise else 1 for name in study.layouts}
-    return Pace(free, len(cases(study)) // max(len(study.layouts), 1))
+    return Pace(free, study.indices, cases(study).points)
 
 
 def papers() -> int:

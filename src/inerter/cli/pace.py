@@ -1,49 +1,56 @@
-"""How long a study will still take, from what was done of each of its designs."""
+"""How long the designs of a study will still take, from those that are done and the parts of those that are not."""
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from inerter.cli.pulse import duration
 from inerter.work.progress import Step
 
 _POWER = 2.5  # of the number of free values, with which the work on a design rises
-_KNOWN = 0.2  # share of a design that must be done for its kind to be known
-_SURE, _UNSURE = 1.35, 3.0  # factors within which the time left lies, where all kinds are known and where not
-_EARLY = 2.0  # seconds before which nothing is told
+_KNOWN = 0.2  # share of a design that must be done for the time of all of it to be known
+_SURE, _UNSURE = 1.6, 3.0  # factors within which the time left lies, where all kinds of designs are known and where not
+_EARLY, _EARLY_UNSURE = 2.0, 10.0  # seconds before which nothing is told, in the two cases
+Kind = tuple[str, str]  # of designs that are alike: layout and index
 
 
 @dataclass
 class Pace:
-    """Work that is done and left, where a design counts by its free values.
+    """The time that designs take: of each layout as many times as long as of each index.
 
-    `free` has the number of free values of each layout, in the order of the results; `each` is how many designs of each
-    there are. Of the time left a range is told: the pace is that of the designs and parts of designs that are done, and
-    those that are left may be others.
+    `free` has the number of free values of each layout, by which one is judged of which nothing is done; `each` is how
+    many designs there are of each layout and index. Of the time left a range is told, since those that are left may be
+    others than those that are done.
     """
 
     free: Mapping[str, int]
+    indices: Sequence[str] = ("",)
     each: int = 1
-    done: dict[str, float] = field(default_factory=dict)  # designs by layout
-    here: dict[str, float] = field(default_factory=dict)  # of these, those of this run
-    parts: dict[str, Step] = field(default_factory=dict)  # designs under way
-    since: dict[str, float] = field(default_factory=dict)  # when they were begun
+    left_of: dict[Kind, int] = field(default_factory=dict)  # designs
+    took: dict[Kind, list[float]] = field(default_factory=dict)  # seconds, and of how many designs
+    parts: dict[str, tuple[Step, float]] = field(default_factory=dict)  # designs under way, and when they were begun
     begun: float | None = None
+    last: float = 0.0
 
     def begin(self, kept: int) -> None:
         """So many designs, the first ones, were done before."""
-        self.begun = time.monotonic() if self.begun is None else self.begun
-        for layout in self.free:
-            self.done[layout] = float(min(kept, self.each))
-            kept -= int(self.done[layout])
+        self.begun = self.last = time.monotonic()
+        for kind in ((layout, index) for layout in self.free for index in self.indices):
+            self.left_of[kind] = self.each - min(kept, self.each)
+            kept = max(kept - self.each, 0)
 
-    def finish(self, layout: str, count: int) -> None:
-        """So many more designs are done, the last of which is one of a layout."""
-        if layout in self.free:
-            self.done[layout] = min(self.done.get(layout, 0.0) + count, float(self.each))
-            self.here[layout] = self.here.get(layout, 0.0) + count
+    def finish(self, layout: str, index: str, count: int) -> None:
+        """So many more designs are done, the last of which is of that kind."""
+        now, kind = time.monotonic(), (layout, index)
+        if kind in self.left_of:
+            took = self.took.setdefault(kind, [0.0, 0.0])
+            took[0] += (now - self.last) * max(len(self.parts), 1)
+            took[1] += count
+            self.left_of[kind] = max(self.left_of[kind] - count, 0)
+        self.last = now
 
     def take(self, step: Step) -> None:
         """A step of a design that is under way."""
@@ -52,12 +59,11 @@ class Pace:
         name = step.within[0]
         if step.over:
             self.parts.pop(name, None)
-            self.since.pop(name, None)
         elif name not in self.parts or step.share is not None:
-            self.parts[name] = step
-            self.since.setdefault(name, time.monotonic())
+            since = self.parts[name][1] if name in self.parts else time.monotonic()
+            self.parts[name] = step, since
 
-    def left(self) -> str:
+    def words(self) -> str:
         """The time left in words; empty where there is nothing to tell it by."""
         span = self.range()
         if span is None:
@@ -67,27 +73,43 @@ class Pace:
 
     def range(self) -> tuple[float, float] | None:
         """The least and the most time left [s]; None where there is nothing to tell it by."""
-        elapsed = 0.0 if self.begun is None else time.monotonic() - self.begun
-        shares = {name: step.share or 0.0 for name, step in self.parts.items()}
-        under_way = sum(self._weight(self._layout(name)) * share for name, share in shares.items())
-        worked = under_way + sum(self._weight(layout) * count for layout, count in self.here.items())
-        if elapsed < _EARLY or worked <= 0.0:
+        now = time.monotonic()
+        known = {kind: seconds / count for kind, (seconds, count) in self.took.items()}
+        shares = {name: step.share or 0.0 for name, (step, _) in self.parts.items()}
+        ends = {n: (now - self.parts[n][1]) * (1.0 - s) / s for n, s in shares.items() if s >= _KNOWN}
+        for name in ends:
+            kind = self._kind(name)
+            if kind in self.left_of:
+                known.setdefault(kind, (now - self.parts[name][1]) / shares[name])
+        all_known = all(kind in known for kind, count in self.left_of.items() if count)
+        if self.begun is None or now - self.begun < (_EARLY if all_known else _EARLY_UNSURE) or not known:
             return None
-        whole = sum(self._weight(layout) * (self.each - self.done.get(layout, 0.0)) for layout in self.free)
-        last = max((self._rest(name, share) for name, share in shares.items()), default=0.0)
-        left = max((whole - under_way) * elapsed / worked, last, 0.0)
-        seen = {layout for layout, count in self.here.items() if count}
-        seen |= {self._layout(name) for name, share in shares.items() if share >= _KNOWN}
-        wanted = {layout for layout in self.free if self.done.get(layout, 0.0) < self.each}
-        factor = _SURE if wanted <= seen else _UNSURE
+        each = self._times(known)
+        whole = sum(each[kind] * count for kind, count in self.left_of.items())
+        whole -= sum(each.get(self._kind(name), 0.0) * share for name, share in shares.items())
+        left = max(whole / max(len(self.parts), 1), *ends.values(), 0.0)
+        factor = _SURE if all_known else _UNSURE
         return left / factor, left * factor
 
-    def _rest(self, name: str, share: float) -> float:
-        return (time.monotonic() - self.since[name]) * (1.0 - share) / share if share >= _KNOWN else 0.0
+    def _times(self, known: Mapping[Kind, float]) -> dict[Kind, float]:
+        """Seconds that a design of each kind takes: a product of one factor by layout and one by index."""
+        rest = {kind: math.log(max(seconds, 1e-9)) - self._expected(kind) for kind, seconds in known.items()}
+        mean = sum(rest.values()) / len(rest)
+        by_layout, by_index = dict.fromkeys(self.free, mean), dict.fromkeys(self.indices, 0.0)
+        for _ in range(3):
+            for index in by_index:
+                off = [r - by_layout[kind[0]] for kind, r in rest.items() if kind[1] == index]
+                by_index[index] = sum(off) / len(off) if off else 0.0
+            for layout in by_layout:
+                off = [r - by_index[kind[1]] for kind, r in rest.items() if kind[0] == layout]
+                by_layout[layout] = sum(off) / len(off) if off else mean
+        fitted = {k: math.exp(self._expected(k) + by_layout[k[0]] + by_index[k[1]]) for k in self.left_of}
+        return fitted | {kind: seconds for kind, seconds in known.items() if kind in fitted}
 
-    def _layout(self, name: str) -> str:
-        """The layout of a design by its name, which begins with it."""
-        return next((layout for layout in self.free if name.startswith(f"{layout} ")), "")
+    def _expected(self, kind: Kind) -> float:
+        return _POWER * math.log(max(self.free[kind[0]], 1))
 
-    def _weight(self, layout: str) -> float:
-        return float(max(self.free.get(layout, 1), 1)) ** _POWER
+    def _kind(self, name: str) -> Kind:
+        """The kind of a design by its name."""
+        names = ((kind, " ".join(kind).strip()) for kind in self.left_of)
+        return next((kind for kind, own in names if name == own or name.startswith(f"{own} at ")), ("", ""))

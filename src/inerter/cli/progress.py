@@ -60,7 +60,7 @@ class _Study:
             self.begun, self.kept = time.monotonic(), done
             self.pace.begin(done)
         elif last is not None:
-            self.pace.finish(last.layout, done - self.done)
+            self.pace.finish(last.layout, last.index, done - self.done)
         self.done, self.total, self.not_ok, self.compiling = done, total, not_ok, ""
 
     def begin_kernel(self, title: str, number: int, total: int) -> None:
@@ -75,11 +75,11 @@ class _Study:
         part = self.part()
         rate = f", {self.rate():.3g} a second" if self.done > self.kept + 9 else ""
         count = f"{self.done} of {self.total} {self.items} found{_not_ok(self.not_ok)}{rate}"
-        return f"{self.what}: {count}{f'; {part}' if part else ''}{self.pace.left()}{_hands(self.executor)}"
+        return f"{self.what}: {count}{f'; {part}' if part else ''}{self.pace.words()}{_hands(self.executor)}"
 
     def part(self) -> str:
         """The design under way of which most is done, in words."""
-        parts = sorted(self.pace.parts.values(), key=lambda step: step.share or 0.0)
+        parts = sorted((step for step, _ in self.pace.parts.values()), key=lambda step: step.share or 0.0)
         return str(parts[-1]) if parts else ""
 
     def rate(self) -> float:
@@ -133,8 +133,8 @@ def _on_terminal(study: _Study) -> Iterator[Shown]:
             if study.begun is None:
                 bar.update(task, description=words)
                 return
-            parts = sum(one.share or 0.0 for one in study.pace.parts.values())
-            text = f"{study.what}: {study.part() or study.items}{_not_ok(study.not_ok)}{study.pace.left()}"
+            parts = sum(one.share or 0.0 for one, _ in study.pace.parts.values())
+            text = f"{study.what}: {study.part() or study.items}{_not_ok(study.not_ok)}{study.pace.words()}"
             bar.update(task, completed=study.done + parts, total=study.total, description=text)
 
         with listening(Listener(update, every=0.5)):

@@ -13,7 +13,7 @@ from inerter.work.progress import report
 
 Array = NDArray[np.float64]
 _KEPT = 1e-4  # of a logarithm beyond its limit up to which a value is told as the lowest
-SAMPLED, APPROACHED = 0.1, 0.7  # shares of a search that are done with its sample, and with all first searches
+SAMPLED, APPROACHED = 0.02, 0.95  # shares of a search that are done with its sample, and with all first searches
 
 
 def searches_from(starts: Sequence[Array], search: Callable[[Array], LocalOptimum], end: float) -> list[LocalOptimum]:

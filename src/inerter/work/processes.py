@@ -11,7 +11,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing.connection import Connection
@@ -121,12 +121,12 @@ class Processes(Executor):
     def _read(self) -> None:
         """Read what processes tell, so that none of them ever waits for that."""
         while not self._over.is_set():
-            for connection in wait_for_end(list(self._connections), timeout=_LOOK):
+            ready = wait_for_end(list(self._connections), timeout=_LOOK)
+            for connection in [one for one in self._connections if one in ready]:
                 try:
-                    self._told.append(connection.recv())  # type: ignore[union-attr]
+                    self._told.append(connection.recv())
                 except Exception:  # the process has ended, in the midst of it perhaps
-                    with suppress(ValueError):
-                        self._connections.remove(connection)  # type: ignore[arg-type]
+                    self._connections.remove(connection)
         for connection in self._connections:
             connection.close()
 

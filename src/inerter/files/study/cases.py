@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -22,14 +22,13 @@ from inerter.optimisation.threads import one_blas_thread
 from inerter.systems.descriptor import is_held_by_springs
 from inerter.systems.graph import linear_graph
 from inerter.vehicle.mechanism import Mechanism
-from inerter.work.kept import Row, resuming
 from inerter.work.pool import KILLS
 from inerter.work.progress import report, within
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
 _OK = StatusKind.OK.value
 ENDED = f"{KILLS} processes ended, or had no memory left, while they worked on it"
-_SEARCHED = 0.95  # share of the work on a case that the search takes
+_SEARCHED = 0.97  # share of the work on a case that the search takes
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 
@@ -142,18 +141,17 @@ def portable(study: Study) -> Study:
     return replace(study, sweeps=tuple(replace(sweep, values=()) for sweep in study.sweeps))
 
 
-def run_case(study: Study, case: Case, threads: int = 1, known: Mapping[str, Sequence[Row]] | None = None) -> Outcome:
+def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
     """Find the best design of one of the `cases` and judge it by every method and index of the study.
 
-    Methods that simulate use `threads`. `known` are searches that an earlier run has kept, by the name of the case. A
-    failure is an outcome with a status and a sentence, so that one case never ends a study.
+    Methods that simulate use `threads`. A failure is an outcome with a status and a sentence, so that one case never
+    ends a study.
     """
     try:
         with (
             one_blas_thread(),
             np.errstate(over="ignore", invalid="ignore", divide="ignore"),
             within(case.name),
-            resuming(case.name, known or {}),
         ):
             return _run(study, case, threads)
     except FAILURES as error:

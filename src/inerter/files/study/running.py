@@ -212,8 +212,13 @@ def _read(journal: Journal, found: Gathered) -> tuple[_Done, _Known]:
 
 def _outcomes(study: Study, pending: Pending, pool: Pool, known: _Known) -> Iterator[list[Outcome]]:
     """Outcomes as they are done, those that come together in one list."""
-    run = partial(run_case, portable(study), known=known)
+    run = partial(_run_case, portable(study), known)
     return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_case, portable(study)))
+
+
+def _run_case(study: Study, known: _Known, case: Case, threads: int = 1) -> Outcome:
+    with resuming(case.name, known):
+        return run_case(study, case, threads)
 
 
 def _further(

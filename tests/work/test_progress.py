@@ -156,15 +156,17 @@ def test_own_processes_pass_on_what_they_tell_and_keep() -> None:
     with heard() as steps, kept.kept_by(rows.append), Pool(2) as pool:
         pool.begin(int)
         list(pool.spread(eval, items))
-    assert [step for _, step in steps if step.what == "rows"][0].best == 1.5
+    assert next(step for _, step in steps if step.what == "rows").best == 1.5
     assert rows == [kept.Kept("a case", 2, [["mark", 1.0]])] * 2
 
 
 def test_an_abandoned_pool_ends_whatever_its_processes_tell() -> None:
-    with pytest.raises(ZeroDivisionError), Pool(2) as pool:
-        pool.begin(int)
-        many = f"[{MODULE}.report(str(i), i, 10**6) for i in range(10**5)]"
-        list(pool.spread(eval, [many, "1 / 0", many]))
+    many = f"[{MODULE}.report(str(i), i, 10**6) for i in range(10**5)]"
+    pool = Pool(2)
+    pool.begin(int)
+    results = pool.spread(eval, [many, "1 / 0", many])
+    with pytest.raises(ZeroDivisionError), pool:
+        list(results)
 
 
 def test_what_another_process_tells_is_taken_by_nobody_if_nobody_listens() -> None:

@@ -1,0 +1,170 @@
+"""The command line is never silent for more than two seconds, and says what is true of the time left."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from inerter.cli import pace as paces
+from inerter.cli import pulse as pulses
+from inerter.cli.pace import Pace
+from inerter.cli.progress import fraction, progress, steps
+from inerter.work.progress import Step, report, within
+
+SILENCE = 2.0  # seconds
+SLOW = """
+import sys, time
+from inerter.work import progress
+from inerter.cli import main
+inner = main.app
+def slow(*arguments, **settings):
+    time.sleep(5.0)
+    return 0
+main.app = slow
+sys.exit(main.main())
+"""
+
+
+def gaps(command: list[str]) -> tuple[list[float], list[str]]:
+    """Seconds between the lines of a process on stderr, from its first line to its end, and the lines."""
+    times, lines = [], []
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment) as process:
+        assert process.stderr is not None
+        for line in process.stderr:
+            times.append(time.monotonic())
+            lines.append(line)
+    times.append(time.monotonic())
+    return np.diff(times).tolist(), lines
+
+
+def test_a_command_that_says_nothing_has_a_pulse() -> None:
+    between, lines = gaps([sys.executable, "-c", SLOW, "check"])
+    assert len(lines) >= 2
+    assert all(line.startswith("inerter: preparing") for line in lines)
+    assert max(between) < 2.0 * SILENCE  # the machine may be busy
+
+
+def wait(seconds: float) -> None:
+    until = time.monotonic() + seconds
+    with within("S1 J1"):
+        while time.monotonic() < until:
+            report("starts", 3, 64, best=1.25, share=0.05)
+            time.sleep(0.05)
+
+
+def in_progress() -> None:
+    with progress("study") as shown:
+        shown.kernels("a kernel", 1, 9)
+        wait(2.5)
+        shown.cases(0, 9, None, 0)
+        wait(2.5)
+
+
+def in_steps() -> None:
+    with steps("paper") as show:
+        show("table", 0, 3)
+        wait(2.5)
+
+
+def in_fraction() -> None:
+    with fraction("record") as show:
+        show(0.25)
+        time.sleep(2.5)
+
+
+@pytest.mark.parametrize("work", [in_progress, in_steps, in_fraction], ids=lambda work: work.__name__)
+def test_each_way_to_show_progress_has_a_line_in_time(
+    work: Callable[[], None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    work()
+    lines = capsys.readouterr().err.splitlines()
+    assert len([line for line in lines if " s" in line]) >= (2 if work is in_progress else 1), lines
+    if work is not in_fraction:
+        assert any("starts 3 of 64, lowest 1.25" in line for line in lines), lines
+
+
+def test_lines_of_a_long_log_become_seldom(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    clock = [0.0]
+    monkeypatch.setattr(pulses, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    printer, printed = pulses.Pulse(str), list[float]()
+    while clock[0] < 3.0 * 3600.0:
+        clock[0] += 0.4
+        printer(Step("starts"))
+        if capsys.readouterr().err:
+            printed.append(clock[0])
+    between, ends = np.diff(printed), np.array(printed[1:])
+    assert between[ends < 600.0].max() <= SILENCE + 0.01
+    assert between[ends < 3600.0].max() <= 10.0
+    assert between.max() <= 60.0
+    assert len(printed) < 1000
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_the_time_left_is_in_the_range_that_is_told(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of studies whose designs take as long as is supposed, times something that nobody can know."""
+    random, clock = np.random.default_rng(seed), [0.0]
+    monkeypatch.setattr(paces, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    free = {f"S{i}": int(random.integers(1, 9)) for i in range(4)}
+    indices = {f"J{i}": float(random.uniform(0.5, 3.0)) for i in range(3)}
+    rate = {layout: float(random.uniform(0.7, 1.4)) for layout in free}
+    cases = [(layout, index) for layout in free for index in indices]
+    each = {c: free[c[0]] ** 2.5 * rate[c[0]] * indices[c[1]] * random.uniform(0.85, 1.18) for c in cases}
+    total, pace, told = sum(each.values()), Pace(free, tuple(indices)), list[tuple[float, Any]]()
+    pace.begin(0)
+    for case in cases:
+        begun = clock[0]
+        for share in np.linspace(0.0, 1.0, 40)[:-1]:
+            clock[0] = begun + each[case] * share
+            pace.take(Step("starts", within=(" ".join(case),), share=float(share)))
+            told.append((clock[0], pace.range()))
+        clock[0] = begun + each[case]
+        pace.take(Step("done", within=(" ".join(case),), share=1.0, over=True))
+        pace.finish(*case, 1)
+    assert pace.range() in (None, (0.0, 0.0))
+    late = [(total - at, span) for at, span in told if span is not None and at > 0.25 * total]
+    inside = [low <= left <= high for left, (low, high) in late]
+    assert np.mean(inside) > 0.9
+    assert all(math.isfinite(low + high) and low <= high for _, (low, high) in late)
+
+
+def test_designs_of_an_earlier_run_are_not_taken_for_quick_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [0.0]
+    monkeypatch.setattr(paces, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    pace = Pace({"S1": 3}, ("J1",), 100)
+    pace.begin(90)
+    clock[0] = 10.0
+    pace.finish("S1", "J1", 1)
+    span = pace.range()
+    assert span is not None
+    assert span[0] < 90.0 < span[1]
+
+
+@pytest.mark.campaign
+def test_a_run_tells_where_it_is_within_a_design(tmp_path: Path) -> None:
+    from study_text import study_text  # noqa: PLC0415
+
+    path = tmp_path / "study.toml"
+    elements = 'k = "20 kN/m"\nc = { from = "300 N s/m", to = "8 kN s/m" }\nb = { from = "1 kg", to = "400 kg" }'
+    path.write_text(
+        study_text('indices = ["J1"]\noptimise = "norm"', elements=elements, layouts='S = "k | c - b"'), "utf-8"
+    )
+    slow = (
+        "import sys, time\nfrom inerter.work import progress\nbefore = progress.evaluated\n"
+        "import inerter.optimisation.local as local\n"
+        "local.evaluated = lambda: (time.sleep(0.02), before())\n"
+        "from inerter.cli.main import main\nsys.exit(main())"
+    )
+    between, lines = gaps([sys.executable, "-c", slow, "run", str(path), "-o", str(tmp_path / "out"), "-j", "1"])
+    assert sum("S J1: search: starts" in line and "lowest" in line for line in lines) >= 2, lines
+    assert max(between) < 3.0 * SILENCE

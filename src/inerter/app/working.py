@@ -13,24 +13,35 @@ from typing import Any
 from inerter.app.calls import called
 from inerter.app.kinds import KINDS, Stopped
 from inerter.app.wire import decoded, encoded
+from inerter.work.progress import Step, progress
 from inerter.writing import whole
 
 REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "stop"
 _OFTEN = 0.05  # seconds between two lines about progress
+_SELDOM = 0.9  # the same about what is under way, where nothing else is told
 
 
 @dataclass
 class _Telling:
     folder: Path
     last: float = 0.0
+    count: tuple[int, int] = (0, 0)
 
     def __call__(self, done: int, total: int, told: str) -> None:
         if (self.folder / STOP).exists():
             raise Stopped
         now = time.monotonic()
+        self.count = done, total
         if now - self.last > _OFTEN or done == total:
             self.last = now
             write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told})
+
+    def step(self, step: Step) -> None:
+        """Tell how far what is under way is, beside how much is done; at least once a second."""
+        if (self.folder / STOP).exists():
+            raise Stopped
+        if not step.over and time.monotonic() - self.last > _SELDOM:
+            self(*self.count, f"{step}, {step.seconds:.0f} s")
 
 
 def work(folder: str) -> dict[str, Any]:
@@ -42,7 +53,9 @@ def work(folder: str) -> dict[str, Any]:
     def run() -> Any:
         nonlocal stopped
         try:
-            return resolve_name(KINDS[request["kind"]].home)(request, place, _Telling(place))
+            telling = _Telling(place)
+            with progress(telling.step):
+                return resolve_name(KINDS[request["kind"]].home)(request, place, telling)
         except Stopped:
             stopped = True
             return None

@@ -12,7 +12,8 @@ from inerter.work.progress import Step
 
 _POWER = 2.5  # of the number of free values, with which the work on a design rises
 _KNOWN = 0.2  # share of a design that must be done for the time of all of it to be known
-_SURE, _UNSURE = 1.6, 3.0  # factors within which the time left lies, where all kinds of designs are known and where not
+_SURE = 0.5, 1.6  # times what is expected, between which the time left lies: the first starts of a design take longest
+_UNSURE = 1.0 / 3.0, 3.0  # the same where designs of a kind are left that is not known
 _EARLY, _EARLY_UNSURE = 2.0, 10.0  # seconds before which nothing is told, in the two cases
 Kind = tuple[str, str]  # of designs that are alike: layout and index
 
@@ -88,8 +89,8 @@ class Pace:
         whole = sum(each[kind] * count for kind, count in self.left_of.items())
         whole -= sum(each.get(self._kind(name), 0.0) * share for name, share in shares.items())
         left = max(whole / max(len(self.parts), 1), *ends.values(), 0.0)
-        factor = _SURE if all_known else _UNSURE
-        return left / factor, left * factor
+        low, high = _SURE if all_known else _UNSURE
+        return left * low, left * high
 
     def _times(self, known: Mapping[Kind, float]) -> dict[Kind, float]:
         """Seconds that a design of each kind takes: a product of one factor by layout and one by index."""

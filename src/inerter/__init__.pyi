@@ -157,7 +157,7 @@ from inerter.vehicle.rig import Rig as Rig
 from inerter.vehicle.seat import Seat as Seat
 from inerter.vehicle.vehicle import VehicleModel as VehicleModel
 from inerter.work.pool import pooled as pooled
-from inerter.work.progress import Step as Step
+from inerter.work.progress import ProgressStep as ProgressStep
 from inerter.work.progress import progress as progress
 
 __version__: str

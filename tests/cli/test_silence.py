@@ -19,7 +19,7 @@ from inerter.cli import pace as paces
 from inerter.cli import pulse as pulses
 from inerter.cli.pace import Pace
 from inerter.cli.progress import fraction, progress, steps
-from inerter.work.progress import Step, report, within
+from inerter.work.progress import ProgressStep, report, within
 
 SILENCE = 2.0  # seconds
 SLOW = """
@@ -100,7 +100,7 @@ def test_lines_of_a_long_log_become_seldom(monkeypatch: pytest.MonkeyPatch, caps
     printer, printed = pulses.Pulse(str), list[float]()
     while clock[0] < 3.0 * 3600.0:
         clock[0] += 0.4
-        printer(Step("starts"))
+        printer(ProgressStep("starts"))
         if capsys.readouterr().err:
             printed.append(clock[0])
     between, ends = np.diff(printed), np.array(printed[1:])
@@ -126,10 +126,10 @@ def test_the_time_left_is_in_the_range_that_is_told(seed: int, monkeypatch: pyte
         begun = clock[0]
         for share in np.linspace(0.0, 1.0, 40)[:-1]:
             clock[0] = begun + each[case] * share
-            pace.take(Step("starts", within=(" ".join(case),), share=float(share)))
+            pace.take(ProgressStep("starts", within=(" ".join(case),), share=float(share)))
             told.append((clock[0], pace.range()))
         clock[0] = begun + each[case]
-        pace.take(Step("done", within=(" ".join(case),), share=1.0, over=True))
+        pace.take(ProgressStep("done", within=(" ".join(case),), share=1.0, over=True))
         pace.finish(*case, 1)
     assert pace.range() in (None, (0.0, 0.0))
     late = [(total - at, span) for at, span in told if span is not None and at > 0.25 * total]

@@ -26,15 +26,15 @@ KEEP = f"{KEPT}.keep({KEPT}.Kept('a case', 2, [['mark', 1.0]]))"
 
 
 @contextmanager
-def heard(clock: Callable[[], float] = time.monotonic) -> Iterator[list[tuple[float, it.Step]]]:
+def heard(clock: Callable[[], float] = time.monotonic) -> Iterator[list[tuple[float, it.ProgressStep]]]:
     """When each step came, by the clock or by the CPU, with the beginning and the end of the block."""
-    steps: list[tuple[float, it.Step]] = [(clock(), it.Step("begin"))]
+    steps: list[tuple[float, it.ProgressStep]] = [(clock(), it.ProgressStep("begin"))]
     with it.progress(lambda step: steps.append((clock(), step))):
         yield steps
-    steps.append((clock(), it.Step("end")))
+    steps.append((clock(), it.ProgressStep("end")))
 
 
-def largest_gap(steps: list[tuple[float, it.Step]]) -> float:
+def largest_gap(steps: list[tuple[float, it.ProgressStep]]) -> float:
     times = np.array([at for at, _ in steps])
     return float(np.diff(times).max())
 
@@ -104,7 +104,7 @@ def test_a_listener_that_raises_ends_the_work(monkeypatch: pytest.MonkeyPatch) -
     class Enough(Exception):  # noqa: N818
         pass
 
-    def stop(step: it.Step) -> None:
+    def stop(step: it.ProgressStep) -> None:
         raise Enough
 
     slowly(monkeypatch, 0.02)
@@ -170,7 +170,7 @@ def test_an_abandoned_pool_ends_whatever_its_processes_tell() -> None:
 
 
 def test_what_another_process_tells_is_taken_by_nobody_if_nobody_listens() -> None:
-    receive(it.Step("rows"))
+    receive(it.ProgressStep("rows"))
     receive(kept.Kept("a case", 0, []))
 
 

@@ -13,7 +13,7 @@ from typing import Any
 from inerter.app.calls import called
 from inerter.app.kinds import KINDS, Stopped
 from inerter.app.wire import decoded, encoded
-from inerter.work.progress import Step, progress
+from inerter.work.progress import ProgressStep, progress
 from inerter.writing import whole
 
 REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "stop"
@@ -36,7 +36,7 @@ class _Telling:
             self.last = now
             write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told})
 
-    def step(self, step: Step) -> None:
+    def step(self, step: ProgressStep) -> None:
         """Tell how far what is under way is, beside how much is done; at least once a second."""
         if (self.folder / STOP).exists():
             raise Stopped

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from inerter.cli.pulse import duration
-from inerter.work.progress import Step
+from inerter.work.progress import ProgressStep
 
 _POWER = 2.5  # of the number of free values, with which the work on a design rises
 _KNOWN = 0.2  # share of a design that must be done for the time of all of it to be known
@@ -32,7 +32,9 @@ class Pace:
     each: int = 1
     left_of: dict[Kind, int] = field(default_factory=dict)  # designs
     took: dict[Kind, list[float]] = field(default_factory=dict)  # seconds, and of how many designs
-    parts: dict[str, tuple[Step, float]] = field(default_factory=dict)  # designs under way, and when they were begun
+    parts: dict[str, tuple[ProgressStep, float]] = field(
+        default_factory=dict
+    )  # designs under way, and when they were begun
     begun: float | None = None
     last: float = 0.0
 
@@ -53,7 +55,7 @@ class Pace:
             self.left_of[kind] = max(self.left_of[kind] - count, 0)
         self.last = now
 
-    def take(self, step: Step) -> None:
+    def take(self, step: ProgressStep) -> None:
         """A step of a design that is under way."""
         if not step.within:
             return

@@ -29,7 +29,7 @@ from inerter.files.study.journal import Further
 from inerter.files.study.running import Progress as Report
 from inerter.kernels.prepare import Told
 from inerter.work.cluster import slots
-from inerter.work.progress import Listener, Step, listening
+from inerter.work.progress import Listener, ProgressStep, listening
 
 
 class Shown(NamedTuple):
@@ -67,7 +67,7 @@ class _Study:
         """Take note of a kernel that is begun."""
         self.compiling = f"compiling kernels {number} of {total}: {title}"
 
-    def words(self, step: Step) -> str:
+    def words(self, step: ProgressStep) -> str:
         """All that is known, in a line."""
         self.pace.take(step)
         if self.begun is None:
@@ -128,7 +128,7 @@ def _on_terminal(study: _Study) -> Iterator[Shown]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(study.what, total=None)
 
-        def update(step: Step) -> None:
+        def update(step: ProgressStep) -> None:
             words = study.words(step)
             if study.begun is None:
                 bar.update(task, description=words)
@@ -181,7 +181,7 @@ class _Pieces:
         elif done == total:
             self.printer.say(f"{self.what}: {piece} done")
 
-    def words(self, step: Step) -> str:
+    def words(self, step: ProgressStep) -> str:
         """The piece under way, how far it is, and what it does."""
         under_way = [f"{piece}, {done} of {total}" for piece, (done, total) in self.counts.items() if done < total]
         return ": ".join((self.what, *under_way[-1:], str(step)))

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from inerter.work.progress import Listener, Step, listening
+from inerter.work.progress import Listener, ProgressStep, listening
 
 _SILENCE = 1.8  # seconds after which something is said, so that two have not gone by when it can be read
 _LOOK = 0.4  # seconds between two looks at the clock
@@ -22,12 +22,12 @@ class Pulse:
     In a log that is two seconds in the first ten minutes, ten in the first hour and a minute afterwards.
     """
 
-    def __init__(self, words: Callable[[Step], str], begun: float | None = None) -> None:
+    def __init__(self, words: Callable[[ProgressStep], str], begun: float | None = None) -> None:
         self.words = words
         self.begun = time.monotonic() if begun is None else begun
         self.printed = time.monotonic()
 
-    def __call__(self, step: Step) -> None:
+    def __call__(self, step: ProgressStep) -> None:
         now = time.monotonic()
         factor = next((f for end, f in _THEN.items() if now - self.begun < end), _SELDOM)
         if now - self.printed >= _SILENCE * factor:
@@ -40,7 +40,7 @@ class Pulse:
 
 
 @contextmanager
-def pulse(words: Callable[[Step], str]) -> Iterator[Pulse]:
+def pulse(words: Callable[[ProgressStep], str]) -> Iterator[Pulse]:
     """What prints steps of the work in this block, in the given words and with the time, and can print more."""
     printer = Pulse(words)
     with listening(Listener(printer, every=_LOOK)):

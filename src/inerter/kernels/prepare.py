@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from inerter.kernels.cache import is_kept, told
 from inerter.kernels.declare import TUNED, Kernel, way
-from inerter.work.progress import Step, listener_here, told_if_long
+from inerter.work.progress import ProgressStep, listener_here, told_if_long
 
 if TYPE_CHECKING:
     from inerter.work.pool import Pool
@@ -58,7 +58,7 @@ def _compile(missing: list[Kernel], progress: Told | None) -> None:
                 if progress is not None:
                     progress(kernel.title, number, len(missing))
                 if listener is not None:
-                    listener.tell(Step(f"compiling kernels ({kernel.title})", number, len(missing)))
+                    listener.tell(ProgressStep(f"compiling kernels ({kernel.title})", number, len(missing)))
                 yield kernel
 
     with told(progress is None), told_if_long("compiling the numerical kernels"), ExitStack() as stack:

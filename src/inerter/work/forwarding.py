@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 from inerter.work.kept import Kept, keep, kept_by
-from inerter.work.progress import Step, heard, listener_here
+from inerter.work.progress import ProgressStep, heard, listener_here
 
 _OFTEN = 0.25  # seconds between two steps of one process
 _SEND: list[Callable[[object], object]] = []  # of a process of ours
@@ -23,10 +23,10 @@ class _Sender:
     """Sends a step now and then."""
 
     def __init__(self, send: Callable[[object], object]) -> None:
-        self.send, self.step, self.evaluations = send, Step(""), 0
+        self.send, self.step, self.evaluations = send, ProgressStep(""), 0
         self.told, self.sent = 0.0, False
 
-    def tell(self, step: Step) -> None:
+    def tell(self, step: ProgressStep) -> None:
         self.step, self.evaluations = step, step.evaluations
         if step.over and not self.sent:  # nobody knows that it began
             return
@@ -61,5 +61,5 @@ def receive(message: object) -> None:
         keep(message)
         return
     listener = listener_here()
-    if isinstance(message, Step) and listener is not None:
+    if isinstance(message, ProgressStep) and listener is not None:
         listener.tell(message)

@@ -22,7 +22,7 @@ _LONG = 2.0  # seconds after which work that nobody listens to is told of
 
 
 @dataclass(frozen=True)
-class Step:
+class ProgressStep:
     """How far long work is: `done` of `total` of what it counts, where `total` is 0 if that is not known.
 
     `within` names what it is part of, such as a design, the widest first; `best` is the lowest value of an index so
@@ -51,7 +51,7 @@ class Step:
 class Hearer(Protocol):
     """What steps are told to."""
 
-    def tell(self, step: Step) -> None:
+    def tell(self, step: ProgressStep) -> None:
         """Take a step."""
         ...
 
@@ -66,19 +66,19 @@ class Listener:
     What the function raises there is raised by the work at its next step.
     """
 
-    def __init__(self, call: Callable[[Step], object], every: float = _EVERY) -> None:
+    def __init__(self, call: Callable[[ProgressStep], object], every: float = _EVERY) -> None:
         self._call, self._every = call, every
         self._lock, self._end = RLock(), Event()
-        self._last, self._told = Step("preparing"), time.monotonic()
+        self._last, self._told = ProgressStep("preparing"), time.monotonic()
         self._begun, self._error = self._told, list[BaseException]()
         self._evaluations = 0
 
     @property
-    def last(self) -> Step:
+    def last(self) -> ProgressStep:
         """The last step."""
         return self._last
 
-    def tell(self, step: Step) -> None:
+    def tell(self, step: ProgressStep) -> None:
         """Take a step, of which the function is told at once if it is about something new."""
         with self._lock:
             if self._error:
@@ -126,8 +126,8 @@ _SHARES: ContextVar[tuple[float, float]] = ContextVar("shares", default=(0.0, 1.
 
 
 @contextmanager
-def progress(callback: Callable[[Step], object]) -> Iterator[None]:
-    """Have a function called with each `Step` of the work in this block, and at least once a second.
+def progress(callback: Callable[[ProgressStep], object]) -> Iterator[None]:
+    """Have a function called with each `ProgressStep` of the work in this block, and at least once a second.
 
     It is called by the thread that works, or by one that waits meanwhile; what it raises ends the work. Without it,
     steps go to the logger `inerter` with the level INFO, if that is switched on.
@@ -181,7 +181,7 @@ class _Log:
     def __init__(self) -> None:
         self._last = -_EVERY
 
-    def __call__(self, step: Step) -> None:
+    def __call__(self, step: ProgressStep) -> None:
         if step.seconds - self._last >= 0.9 * _EVERY and not step.over:
             self._last = step.seconds
             LOGGER.info("%s, %.0f s", step, step.seconds)
@@ -198,7 +198,7 @@ def report(what: str, done: int = 0, total: int = 0, *, best: float | None = Non
     if listener is not None:
         low, high = _SHARES.get()
         part = None if share is None else low + (high - low) * share
-        listener.tell(Step(what, done, total, best, within=_WITHIN.get(), share=part))
+        listener.tell(ProgressStep(what, done, total, best, within=_WITHIN.get(), share=part))
 
 
 def evaluated() -> None:
@@ -218,7 +218,7 @@ def within(name: str, first: float = 0.0, last: float = 1.0) -> Iterator[None]:
         yield
         listener = _LISTENER.get()
         if listener is not None and not outer:
-            listener.tell(Step("done", within=(name,), share=1.0, over=True))
+            listener.tell(ProgressStep("done", within=(name,), share=1.0, over=True))
     finally:
         _WITHIN.reset(names)
         _SHARES.reset(shares)
@@ -241,7 +241,7 @@ def told_if_long(text: str) -> Iterator[None]:
         if listener is not None and not done.wait(0.5 * _LONG):
             told.set()
             with suppress(BaseException):  # which the listener raises to the work
-                listener.tell(Step(text))
+                listener.tell(ProgressStep(text))
         wait = _LONG
         while listener is None and not done.wait(wait if wait == _LONG else 0.5 * wait):
             LOGGER.warning("inerter: %s, %.0f s so far; this happens once.", text, wait)

@@ -34,7 +34,7 @@ class Pace:
     took: dict[Kind, list[float]] = field(default_factory=dict)  # seconds, and of how many designs
     parts: dict[str, tuple[ProgressStep, float]] = field(
         default_factory=dict
-    )  # designs under way, and when they were begun
+    )  # under way, and since when
     begun: float | None = None
     last: float = 0.0
 

@@ -1,8 +1,9 @@
-"""Does `identify` know a wrong model or sensor? Random rigs with one trouble each, and sound ones, by a simulator of
-their own (tests/troubled_rig.py), which shares no code with the package.
+"""Does `identify` know a wrong model or sensor? Random rigs with one trouble each, sound ones, and sound ones on which
+the friction never slips, by a simulator of their own (tests/troubled_rig.py), which shares no code with the package.
 
     python benchmarks/identification_troubles.py troubled [RECORDS] [PROCESSES]
     python benchmarks/identification_troubles.py sound [RECORDS] [PROCESSES]
+    python benchmarks/identification_troubles.py sticking [RECORDS] [PROCESSES]
 
 Results go line by line to identification-troubles-<kind>.jsonl in the current folder; a record that is in there is not
 fitted again, so that an interrupted campaign goes on. Then it counts: of the intervals that are given without a warning
@@ -23,13 +24,13 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from troubled_records import Case, clean, fits_fault, model_of, record_of, troubled
+from troubled_records import Case, clean, fits_fault, model_of, record_of, sticking, troubled
 
 import inerter as it
 
 
 def case_of(kind: str, number: int) -> Case:
-    return clean(number)[0] if kind == "sound" else troubled(number)
+    return {"sound": lambda n: clean(n)[0], "sticking": sticking, "troubled": troubled}[kind](number)
 
 
 def fitted(task: tuple[str, int]) -> dict[str, object]:
@@ -40,7 +41,13 @@ def fitted(task: tuple[str, int]) -> dict[str, object]:
     fit = it.identify(record_of(case, number), model_of(case), seed=0)
     seconds = time.perf_counter() - begun
     parameters = {
-        name: {"identified": bool(fit.identifiable[name]), "best": p.best, "interval": p.interval}
+        name: {
+            "identified": bool(fit.identifiable[name]),
+            "verdict": fit.identifiable[name].verdict,
+            "best": p.best,
+            "interval": p.interval,
+            "error": p.standard_error,
+        }
         for name, p in fit.parameters.items()
     }
     return {
@@ -93,7 +100,7 @@ def report(kind: str, rows: list[dict[str, object]]) -> None:
                 print(
                     f"    {row['number']} {row['layout']}, {row['fault']}: {', '.join(names)}; misfit {row['misfit']}"
                 )
-    if kind == "sound":
+    if kind != "troubled":
         for row in warned:
             print(f"  warned: {row['number']} {row['layout']}: {row['status']}")
         return

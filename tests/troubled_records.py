@@ -56,6 +56,20 @@ def troubled(number: int, stream: int = 12) -> Case:
     return replace(FAULTS[name](case, random), fault=name)
 
 
+def sticking(number: int, stream: int = 13) -> Case:
+    """A rig without a fault, on which the friction holds the inertance all the time."""
+    random = np.random.default_rng([stream, number])
+    b, ks, cs = _between(random, 15.0, 250.0), _between(random, 1e4, 1e6), _between(random, 50.0, 2e3)
+    frequencies = np.sort(np.exp(random.uniform(np.log(0.5), np.log(12.0), size=random.integers(1, 6))))
+    amplitudes = np.minimum(
+        random.uniform(0.3, 1.0, frequencies.size) * 20.0 / np.abs(ks + 2j * np.pi * frequencies * cs), 0.02
+    )
+    motion = Tones(tuple(amplitudes.tolist()), tuple(frequencies.tolist()), tuple((0.0 * frequencies).tolist()))
+    moved, speed, _ = motion.at(np.arange(0.0, 5.0, 1e-3))
+    held = float(np.abs(ks * moved + cs * speed).max())
+    return Case(Device(b, held * random.uniform(1.01, 2.5), ks, cs), motion, Sensors(), "elastic")
+
+
 def _between(random: np.random.Generator, lower: float, upper: float) -> float:
     return math.exp(random.uniform(math.log(lower), math.log(upper)))
 

@@ -18,6 +18,7 @@ from inerter.files.common.folder import REPORT, Intent, claimed
 from inerter.files.identification.loading import IdentificationRequest, RecordRequest, load_identification
 from inerter.files.identification.running import FIT, read, run_identification
 from inerter.files.identification.shape import channel_units, gap_treatment
+from inerter.records.uncertain import Uncertain, parse_uncertain
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import identification_text
@@ -33,8 +34,8 @@ _QUANTITIES = {
     "force_bandwidth": "Hz",
     "force_noise": "N",
     "displacement_noise": "m",
-    "fixture_mass": "kg",
 }
+_SCALES = ("force_scale", "displacement_scale")
 
 
 def identify(
@@ -43,7 +44,7 @@ def identify(
     config: Path | None,
     output: Path | None,
     options: Mapping[str, Any],
-    settings: Mapping[str, int | None],
+    settings: Mapping[str, int | str | None],
     cluster: Cluster,
     *,
     force: bool,
@@ -89,7 +90,7 @@ def _request(
     model: str | None,
     config: Path | None,
     options: Mapping[str, Any],
-    settings: Mapping[str, int | None],
+    settings: Mapping[str, int | str | None],
 ) -> IdentificationRequest:
     """The configuration with what the command line says in place of what the file says."""
     if not paths:
@@ -97,7 +98,11 @@ def _request(
     request = IdentificationRequest() if config is None else load_identification(config)
     if model is not None and request.layout is not None:
         raise StudyError(f"Got --model {model} and a layout in [model] of {config}: give one of them.")
-    given = {name: value for name, value in settings.items() if value is not None}
+    given: dict[str, Any] = {
+        name: _uncertain(name, value) if name in _SCALES else value
+        for name, value in settings.items()
+        if value is not None
+    }
     if given.get("seed", 0) < 0:
         raise StudyError(f"--seed must be a whole number from 0 on, got {given['seed']}.")
     request = replace(
@@ -123,6 +128,8 @@ def _record(asked: RecordRequest, options: Mapping[str, Any]) -> RecordRequest:
     for name, unit in _QUANTITIES.items():
         if name in given:
             changes[name] = _positive(name, given[name], unit)
+    if "fixture_mass" in given:
+        changes["fixture_mass"] = _uncertain("fixture_mass", given["fixture_mass"], "kg")
     if "trim" in given:
         changes["start"], changes["stop"] = _times(given["trim"])
     if "gaps" in given:
@@ -144,6 +151,13 @@ def _units(pairs: Sequence[str]) -> dict[str, str]:
         return channel_units(units)
     except ValueError as error:
         raise StudyError(f"--unit: {error}") from None
+
+
+def _uncertain(name: str, text: object, unit: str = "") -> Uncertain:
+    try:
+        return parse_uncertain(text, unit)
+    except UnitError as error:
+        raise StudyError(f"--{name.replace('_', '-')}: {error}") from None
 
 
 def _positive(name: str, text: str, unit: str) -> float:

@@ -41,7 +41,7 @@ class ReadingOptions:
         str | None, Parameter(help='Of the displacement, r.m.s.: "1 um"; else as it stands out of its motion.')
     ] = None
     fixture_mass: Annotated[
-        str | None, Parameter(help='What moves with the table between load cell and device: "2 kg".')
+        str | None, Parameter(help='What moves with the table between load cell and device: "2 kg +- 10 g".')
     ] = None
 
 
@@ -50,10 +50,14 @@ AS_THEY_ARE = ReadingOptions()
 
 @dataclass(frozen=True)
 class SearchOptions:
-    """What is said of the search; None where nothing is."""
+    """What is said of the search and of the scales of the sensors; None where nothing is."""
 
     seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None
     starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None
+    force_scale: Annotated[
+        str | None, Parameter(help='True force over the reading, with standard uncertainty (k = 1): "1 +- 1 %".')
+    ] = None
+    displacement_scale: Annotated[str | None, Parameter(help='The same of the displacement: "1 +- 0.1 %".')] = None
 
 
 AS_USUAL = SearchOptions()

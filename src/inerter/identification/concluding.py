@@ -14,12 +14,13 @@ from inerter.identification.experiment import saturated
 from inerter.identification.explaining import explanations
 from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
-from inerter.identification.intervals import BestFit, CostProfile
+from inerter.identification.intervals import BestFit
 from inerter.identification.kinds import FitFinding
 from inerter.identification.models import unmounted
+from inerter.identification.options import FitOptions
 from inerter.identification.problem import FitProblem
 from inerter.identification.solving import SolvedFit
-from inerter.identification.space import Space
+from inerter.identification.sticking import silent
 from inerter.identification.verdicts import identifiability, suggestions
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import Guard, Linear
@@ -41,30 +42,32 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
     space = problem.space
     comparisons = _comparisons(solution)
     values = space.named(optimum.point)
-    slopes = space.slopes(optimum.point)
+    covariance = _covariance(solution)
     likely = explanations(problem, optimum, solution.judge, solution.misfit) if explain else []
     findings = (*solution.findings, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
+    findings = (*findings, _of_scales(solution))
     draft = Fit(
-        parameters={}, identifiable={}, correlation=_correlation(optimum.covariance),
-        covariance=optimum.covariance * np.outer(slopes, slopes),
+        parameters={}, identifiable={}, correlation=_correlation(covariance), covariance=covariance,
         device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
         criterion=_criterion(problem, optimum), costs=solution.costs,
         simulations=sum(e.tally.total for e in problem.experiments), predicted=solution.predicted,
-        misfit=solution.misfit, explanations=tuple(likely), findings=findings, settings={"seed": solution.seed},
+        misfit=solution.misfit, explanations=tuple(likely), findings=findings, settings=_settings(solution.options),
     )  # fmt: skip
     doubt = doubt_of(draft)
     parameters, identifiable = {}, {}
     for i, name in enumerate(space.names):
-        p = _parameter(space, i, optimum, found[i], values[name])
-        p, verdict = _restated(p, identifiability(p, found[i], space, i, comparisons), draft)
-        parameters[name], identifiable[name] = (p if verdict else replace(p, value=float("nan"))), verdict
+        p = _parameter(solution, i, values[name])
+        held = solution.adhesion.of(i) if found[i].points and not found[i].upper.known else None
+        verdict = replace(identifiability(p, found[i], space, i, comparisons), held=held)
+        p, verdict = (p, verdict) if doubt is None else _withheld(p, verdict, draft)
+        parameters[name], identifiable[name] = (p if verdict else replace(p, value=math.nan)), verdict
     return replace(
         draft,
         parameters=parameters,
         identifiable=identifiable,
         doubt=doubt,
         status=OK if doubt is None else Status(StatusKind.INACCURATE, doubt.sentence),
-        suggestions=tuple(suggestions(space, parameters, identifiable, comparisons)),
+        suggestions=() if doubt else tuple(suggestions(space, parameters, identifiable, comparisons)),
     )
 
 
@@ -117,43 +120,77 @@ def _of_masses(problem: FitProblem) -> Iterator[Finding]:
         yield Finding(FitFinding.MOVING_MASS, "info", ", ".join(free))
 
 
-def _restated(p: Parameter, verdict: Identifiability, fit: Fit) -> tuple[Parameter, Identifiability]:
-    """An interval is one of a right model: else it is widened to what the likely explanations say, or withheld."""
-    if fit.predicted < ENOUGH:
-        return _without_interval(p), replace(verdict, verdict=Verdict.UNPREDICTABLE)
-    if not fit.explanations and fit.misfit.sound:
-        return p, verdict
+def _withheld(p: Parameter, verdict: Identifiability, fit: Fit) -> tuple[Parameter, Identifiability]:
+    """A parameter of a fit that is not to be relied on: no value, and at most a range that explanations give it.
+
+    An interval is one of a right model. Where hypotheses explain all of a misfit, the range holds the values under each
+    of them, and the profile's; it is no confidence interval.
+    """
     right = [e for e in fit.explanations if e.misfit.excess <= _FAIRLY]
-    if not right or any(p.name not in e.estimates for e in right):
-        return _without_interval(p), replace(verdict, verdict=Verdict.WITHHELD)
+    none = replace(p, standard_error=math.nan, profile=())
+    if fit.predicted < ENOUGH or not right or any(p.name not in e.estimates for e in right):
+        kind = Verdict.UNPREDICTABLE if fit.predicted < ENOUGH else Verdict.WITHHELD
+        return replace(none, interval=(math.nan, math.nan)), replace(verdict, verdict=kind)
     ends = [end for e in right for end in _ends(*e.estimates[p.name])]
     interval = min(p.interval[0], *ends), max(p.interval[1], *ends)
-    return replace(p, interval=interval), replace(verdict, widened=True)
-
-
-def _without_interval(p: Parameter) -> Parameter:
-    return replace(p, interval=(math.nan, math.nan))
+    return replace(none, interval=interval), replace(verdict, verdict=Verdict.CONDITIONAL, interval=interval)
 
 
 def _ends(value: float, error: float) -> tuple[float, float]:
     return value - _ERRORS * error, value + _ERRORS * error
 
 
-def _parameter(space: Space, i: int, optimum: BestFit, profile: CostProfile, best: float) -> Parameter:
+def _parameter(solution: SolvedFit, i: int, best: float) -> Parameter:
+    """A parameter with its interval and its standard error, both with the errors of scale that are stated."""
+    optimum, space, profile = solution.optimum, solution.problem.space, solution.profiles[i]
+
     def value(coordinate: float) -> float:
         point = optimum.point.copy()
         point[i] = coordinate
         return float(space.to_values(point)[i])
 
+    interval = value(profile.lower.end), value(profile.upper.end)
+    error = float(optimum.errors[i] * space.slopes(optimum.point)[i])
+    if solution.scales is not None:
+        known = profile.lower.known, profile.upper.known
+        interval = solution.scales.widened(i, interval, best, known)
+        error = math.hypot(error, float(solution.scales.errors[i]))
     return Parameter(
         name=space.names[i],
         unit=space.units[i],
         value=best,
-        interval=(value(profile.lower.end), value(profile.upper.end)),
+        interval=interval,
         best=best,
-        standard_error=float(optimum.errors[i] * space.slopes(optimum.point)[i]),
+        standard_error=math.nan if solution.adhesion and silent(optimum)[i] else error,
         profile=tuple((value(x), rise) for x, rise in profile.points),
     )
+
+
+def _settings(options: FitOptions) -> dict[str, object]:
+    """The seed, and the scales where they are given."""
+    scales = {name: getattr(options, name) for name in ("force_scale", "displacement_scale")}
+    return {"seed": options.seed, **{name: str(scale) for name, scale in scales.items() if scale is not None}}
+
+
+def _covariance(solution: SolvedFit) -> Matrix:
+    """The covariance of the values; nan where the records do not depend on a value at all."""
+    optimum, space = solution.optimum, solution.problem.space
+    slopes = space.slopes(optimum.point)
+    covariance = optimum.covariance * np.outer(slopes, slopes)
+    if solution.scales is not None:
+        covariance = covariance + solution.scales.covariance
+    if solution.adhesion:
+        unseen = silent(optimum)
+        covariance = np.where(unseen[:, None] | unseen[None, :], np.nan, covariance)
+    return np.asarray(covariance)
+
+
+def _of_scales(solution: SolvedFit) -> Finding:
+    """What the values include that no record shows, and by how much it is known."""
+    options = solution.options
+    scales = {n: getattr(options, n) for n in ("force_scale", "displacement_scale")}
+    masses = [m for e in solution.problem.experiments if (m := e.record.fixture_mass_error) is not None]
+    return Finding(FitFinding.INCLUDED, "info", "", {**scales, "fixture_mass_error": max(masses, default=None)})
 
 
 def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:

@@ -20,7 +20,8 @@ class Verdict(StrEnum):
     ANY = "any value"  # between the bounds of the search
     BELOW = "below"  # the upper end alone is known
     ABOVE = "above"  # the lower end alone is known
-    WITHHELD = "withheld"  # the model leaves more than the errors of the sensors
+    WITHHELD = "withheld"  # the fit is not to be relied on
+    CONDITIONAL = "conditional"  # the same, but a hypothesis explains why, and gives a range
     UNPREDICTABLE = "unpredictable"  # nobody can predict the force of the device
 
 
@@ -35,7 +36,7 @@ class Identifiability:
     least: float = 0.0  # where it was sought from
     role: Linear | None = None  # of its element; None for one of the sensors
     openings: int = 0  # of its gap in the best fit
-    widened: bool = False  # whether the interval was widened to what explanations of a misfit say
+    held: float | None = None  # [N] the largest force that a friction held without slipping, by which it is stuck
 
     def __bool__(self) -> bool:
         return self.identified
@@ -53,8 +54,7 @@ class Identifiability:
     @property
     def sentence(self) -> str:
         """For a reader."""
-        wider = " Its interval holds what the explanations make of it too." if self.widened else ""
-        return f"{self.name}: {_SENTENCES[self.verdict](self)}{wider}"
+        return f"{self.name}: {_SENTENCES[self.verdict](self)}"
 
     @property
     def told(self) -> bool:
@@ -74,6 +74,9 @@ _CAUSES = {
 def _cause(i: Identifiability) -> str:
     if i.role is None:
         return "The records say too little of the sensor."
+    if i.held is not None:
+        what = "It never slipped" if i.role is Linear.OPEN else "The friction beside it never slipped"
+        return f"{what}, under forces of up to {_shown(i.held, 'N')}; move it further or faster, so that it does."
     if i.role is not Linear.CLOSED:
         return _CAUSES[i.role]
     if i.openings == 0:
@@ -105,6 +108,10 @@ _SENTENCES: Mapping[Verdict, Callable[[Identifiability], str]] = {
         f"not identifiable; at least {_shown(i.interval[0], i.unit)}, and larger values explain the records as well. "
         f"{_cause(i)}"
     ),
-    Verdict.WITHHELD: lambda i: "withheld, for the model leaves more than the errors of the sensors.",
+    Verdict.WITHHELD: lambda i: "withheld, for the fit is not to be relied on.",
+    Verdict.CONDITIONAL: lambda i: (
+        f"withheld, for the fit is not to be relied on; {_shown(i.interval[0], i.unit)} to "
+        f"{_shown(i.interval[1], i.unit)} if what explains the misfit is so."
+    ),
     Verdict.UNPREDICTABLE: lambda i: "not identifiable: nobody can predict the force of this device.",
 }

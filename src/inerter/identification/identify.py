@@ -15,6 +15,7 @@ from inerter.identification.fit import Fit
 from inerter.identification.given import checked_records, model_of
 from inerter.identification.models import mounted
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
+from inerter.identification.scales import scaled
 from inerter.identification.solving import SolvedFit, part, solve
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Network
@@ -72,6 +73,7 @@ def solution_of(
 ) -> SolvedFit:
     """What `identify` finds, before anything is said of it."""
     given, rig = _checked(records, model)
+    given = [scaled(record, asked) for record in given]
     sought = any(r.force_bandwidth is None for r in given) if asked.delay is None else asked.delay
     longest = hypotheses.LONGEST_DELAY if sought is True else float(sought)
     if not is_number(longest) or not 0.0 <= longest < 0.5 * min(r.duration for r in given):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -106,13 +107,14 @@ class CostProfile:
         return CostProfile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
 
-def profiles(problem: FitProblem, optimum: BestFit) -> list[CostProfile]:
-    """The profile of every coordinate."""
-    tasks = [(problem, (i, sign)) for i in range(optimum.point.size) for sign in (-1, 1)]
+def profiles(problem: FitProblem, optimum: BestFit, among: Sequence[int] | None = None) -> list[CostProfile]:
+    """The profile of every coordinate, or of those `among` them."""
+    coordinates = list(range(optimum.point.size)) if among is None else among
+    tasks = [(problem, (i, sign)) for i in coordinates for sign in (-1, 1)]
     found = apart(partial(_walk, optimum), tasks, over_threads)
     result = []
-    for i in range(optimum.point.size):
-        (below, points, better), (above, more, other) = found[2 * i], found[2 * i + 1]
+    for n, i in enumerate(coordinates):
+        (below, points, better), (above, more, other) = found[2 * n], found[2 * n + 1]
         best = min((b for b in (better, other) if b is not None), key=lambda b: b[0], default=None)
         result.append(CostProfile(below, above, tuple(sorted([*points, (float(optimum.point[i]), 0.0), *more])), best))
     return result
@@ -134,7 +136,7 @@ def _walk(
     reach = float(np.sqrt(2.0 * threshold / max(_stiffness(optimum, i), 1e-300)))
     away = min(max(reach, 1e-9), room)
     for _ in range(_SEARCHING):
-        cost, point = _follow(problem, optimum, i, start + sign * away)
+        cost, point = follow(problem, optimum, i, start + sign * away)
         root = float(np.sign(cost - optimum.cost) * np.sqrt(abs(cost - optimum.cost) / threshold))
         points.append((start + sign * away, max(root, 0.0) ** 2))
         if root < -0.3:
@@ -161,7 +163,7 @@ def _stiffness(optimum: BestFit, i: int) -> float:
     return float(optimum.variance / max(optimum.covariance[i, i], 1e-300))
 
 
-def _follow(problem: FitProblem, optimum: BestFit, i: int, value: float) -> tuple[float, Matrix]:
+def follow(problem: FitProblem, optimum: BestFit, i: int, value: float) -> tuple[float, Matrix]:
     """The least cost with coordinate i at `value`, by Gauss-Newton steps with the derivatives of the optimum."""
     lower, upper = problem.space.bounds
     others = np.array([j for j in range(optimum.point.size) if j != i], dtype=int)

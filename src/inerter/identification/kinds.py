@@ -22,6 +22,7 @@ class FitFinding(StrEnum):
     FORCE_REVERSED = "force-reversed"
     OFFSET = "offset"
     MOVING_MASS = "moving-mass"
+    INCLUDED = "included"
     # the next experiment
     FASTER_REVERSALS = "faster-reversals"
     SLOW_COSINE = "slow-cosine"
@@ -89,6 +90,30 @@ def _moving_mass(f: Finding) -> Text:
         f"from an inertance; weigh it, and give it as ",
         *(Remedy(Action.FIXTURE_MASS), "."),
     )
+
+
+_SCALES = {  # what 1 % more of it makes of the values
+    "force_scale": ("force", "1 % more force makes stiffness, damping, inertance and friction 1 % larger"),
+    "displacement_scale": (
+        "displacement",
+        "1 % more displacement makes stiffness, damping and inertance 1 % smaller and a gap 1 % larger",
+    ),
+}
+_SCALE_REMEDIES = {"force_scale": Action.FORCE_SCALE, "displacement_scale": Action.DISPLACEMENT_SCALE}
+
+
+def _included(f: Finding) -> Text:
+    known = [f"a scale of the {what} of {f.numbers[n]}" for n, (what, _) in _SCALES.items() if f.numbers[n]]
+    mass = f.numbers["fixture_mass_error"]
+    known += [] if mass is None else [f"a fixture mass known to {format_quantity(mass, 'kg', 3)}"]
+    text = f"Intervals include {' and '.join(known)} (standard uncertainty, k = 1). " if known else ""
+    text += "All values include all compliance between encoder and device, which no record shows"
+    unknown = [n for n in _SCALES if not f.numbers[n]]
+    if not unknown:
+        return (f"{text}.",)
+    sensors = " and the ".join(_SCALES[n][0] for n in unknown)
+    text += f", and errors in the scale of the {sensors}: {_SCALES[unknown[0]][1]}. State a known uncertainty as "
+    return (text, Remedy(_SCALE_REMEDIES[unknown[0]], "1 +- 1 %"), ".")
 
 
 def _room(f: Finding) -> str:
@@ -197,6 +222,7 @@ _TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
     FitFinding.FORCE_REVERSED: _reversed,
     FitFinding.OFFSET: _offset,
     FitFinding.MOVING_MASS: _moving_mass,
+    FitFinding.INCLUDED: _included,
     FitFinding.FASTER_REVERSALS: _faster,
     FitFinding.SLOW_COSINE: _slow,
     FitFinding.LARGER_ACCELERATIONS: _larger,

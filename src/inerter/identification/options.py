@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TypedDict
 
 from inerter.checks import is_number
-from inerter.errors import IdentificationError
+from inerter.errors import IdentificationError, UnitError
+from inerter.records.uncertain import Uncertain, parse_uncertain
 
 POINTS = 128  # that a search starts from
 
@@ -22,10 +23,15 @@ class FitOptions:
     smoothed below `bandwidth` [Hz], by default as far as it stands out of its noise. `starts` points are drawn from a
     Sobol sequence with `seed`.
 
-    Raises `IdentificationError` for a `check` that is no fraction from 0 to 0.6, or fewer than 8 starts.
+    `force_scale` and `displacement_scale` are true values over readings, the same in all records, with their standard
+    uncertainties (k = 1), such as "1 +- 1 %": readings are multiplied by them, and intervals include the uncertainty.
 
-    >>> FitOptions(seed=1).changed(gain=True)
-    FitOptions(seed=1, offset=True, gain=True, delay=None, check=0.2, bandwidth=None, lead=None, starts=128)
+    Raises `IdentificationError` for a `check` that is no fraction from 0 to 0.6, fewer than 8 starts, or a scale that
+    is no positive number with an uncertainty below half of it.
+
+    >>> options = FitOptions(seed=1).changed(gain=True)
+    >>> options.seed, options.gain, options.check
+    (1, True, 0.2)
     """
 
     seed: int = 0
@@ -36,12 +42,22 @@ class FitOptions:
     bandwidth: float | None = None  # [Hz]
     lead: float | None = None  # [s]
     starts: int = POINTS
+    force_scale: Uncertain | None = None  # or a text such as "1 +- 1 %"
+    displacement_scale: Uncertain | None = None
 
     def __post_init__(self) -> None:
         if not is_number(self.check) or not 0.0 <= self.check <= 0.6:
             raise IdentificationError(f"The part kept for the check is a fraction from 0 to 0.6, got {self.check!r}.")
         if isinstance(self.starts, bool) or not isinstance(self.starts, int) or self.starts < 8:
             raise IdentificationError(f"The number of starts is a whole number from 8 on, got {self.starts!r}.")
+        for name in ("force_scale", "displacement_scale"):
+            given = getattr(self, name)
+            if given is not None:
+                object.__setattr__(self, name, _scale(name, given))
+        if self.gain and self.force_scale is not None:
+            raise IdentificationError(
+                "A gain of the load cell is fitted or its scale is known: leave out gain or force_scale."
+            )
 
     def changed(self, **changes: object) -> FitOptions:
         """The same with some of them changed.
@@ -53,6 +69,13 @@ class FitOptions:
             known = ", ".join(OptionChanges.__annotations__)
             raise IdentificationError(f"There is no option {unknown[0]!r} of a fit (there are: {known}).")
         return replace(self, **changes)  # type: ignore[arg-type]
+
+
+def _scale(name: str, given: object) -> Uncertain:
+    try:
+        return parse_uncertain(given)
+    except UnitError as error:
+        raise IdentificationError(f"{name}: {error}") from None
 
 
 DEFAULTS = FitOptions()
@@ -69,3 +92,5 @@ class OptionChanges(TypedDict, total=False):
     bandwidth: float | None
     lead: float | None
     starts: int
+    force_scale: Uncertain | str | float | None
+    displacement_scale: Uncertain | str | float | None

@@ -20,9 +20,11 @@ from inerter.identification.judging import Judge, check_parts, judge_of
 from inerter.identification.noise import plain, whitening_of, yardstick
 from inerter.identification.options import FitOptions
 from inerter.identification.problem import FitProblem
+from inerter.identification.scales import ScaleEffects, scale_effects
 from inerter.identification.search import QUICK, THOROUGH, basin_hopping, search, soft
 from inerter.identification.sensors import sound, unavoidable
 from inerter.identification.space import space_of
+from inerter.identification.sticking import Adhesion, adhering, profiles_at_rest
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
@@ -50,7 +52,9 @@ class SolvedFit:
     predicted: float
     judge: Judge
     misfit: Misfit
-    seed: int
+    options: FitOptions
+    adhesion: Adhesion
+    scales: ScaleEffects | None
 
 
 def solve(
@@ -73,10 +77,11 @@ def solve(
     guess = {} if chain is None else guess_of(chain, list(problem.experiments))
     point, costs = _searched(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
     problem.experiments, leads = _leads(problem, point, asked.lead)
-    drawn = bootstrap(problem, _refined(problem, point, asked.seed), asked.seed)
+    optimum, adhesion = adhering(problem, _refined(problem, point, asked.seed))
+    drawn = bootstrap(problem, optimum, asked.seed)
     if progress is not None:
         progress(0.7)
-    optimum, found = _profiled(problem, drawn.optimum)
+    optimum, found = _profiled(problem, drawn.optimum, adhesion)
     optimum, found = _unbiased(problem, optimum, found, drawn.bias)
     checked = tuple(check_parts(problem.experiments, whole, leads))
     judge = judge_of(problem, optimum.point, checked, asked.seed)
@@ -86,7 +91,8 @@ def solve(
         progress(1.0)
     return SolvedFit(
         problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(findings),
-        drawn.predicted, judge, judge.misfit(problem, optimum.point), asked.seed,
+        drawn.predicted, judge, judge.misfit(problem, optimum.point),
+        asked, adhesion, scale_effects(problem, optimum, asked),
     )  # fmt: skip
 
 
@@ -167,8 +173,10 @@ def _refined(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
     return optimum
 
 
-def _profiled(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, list[CostProfile]]:
+def _profiled(problem: FitProblem, optimum: BestFit, adhesion: Adhesion) -> tuple[BestFit, list[CostProfile]]:
     """Profiles of all parameters; a better fit met on the way becomes the optimum, and all are walked once more."""
+    if adhesion:
+        return optimum, profiles_at_rest(problem, optimum, adhesion)
     found = profiles(problem, optimum)
     for _ in range(2):
         better = min((p.better for p in found if p.better is not None), key=lambda b: b[0], default=None)

@@ -41,6 +41,7 @@ class Record:
     force_noise: float | None = None  # [N] r.m.s. of one sample, with what its steps add, where it is known
     displacement_noise: float | None = None  # [m] the same of the displacement
     fixture_mass: float | None = None  # [kg] that moves with the table between load cell and device
+    fixture_mass_error: float | None = None  # [kg] its standard uncertainty (k = 1), where it is known
     period: float | None = None  # [s] of the excitation, where it is known to repeat
     meta: dict[str, Any] = field(default_factory=dict)  # what else the file said, such as its units
 
@@ -76,7 +77,15 @@ class Record:
                 f"Where a file rounds or repeats its times, read it with ",
                 *(Remedy(Action.INTERVAL), " instead."),
             )
-        for name in ("force_range", "force_bandwidth", "force_noise", "displacement_noise", "fixture_mass", "period"):
+        for name in (
+            "force_range",
+            "force_bandwidth",
+            "force_noise",
+            "displacement_noise",
+            "fixture_mass",
+            "fixture_mass_error",
+            "period",
+        ):
             value = getattr(self, name)
             if value is not None and (not is_number(value) or value <= 0.0):
                 raise RecordError(f"The {name} of a record must be a positive number, got {value!r}.")

@@ -26,6 +26,8 @@ class Action(StrEnum):
     SHIFT_FORCE = "shift-force"  # [s]
     FORCE_BANDWIDTH = "force-bandwidth"
     FIXTURE_MASS = "fixture-mass"
+    FORCE_SCALE = "force-scale"  # such as "1 +- 1 %"
+    DISPLACEMENT_SCALE = "displacement-scale"
     FIT_DELAY = "fit-delay"
     FIT_OFFSET = "fit-offset"
 
@@ -69,6 +71,8 @@ _IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
     Action.SHIFT_FORCE: lambda value: f"shift_force(record, {value:.3g})",
     Action.FORCE_BANDWIDTH: lambda value: "force_bandwidth=",
     Action.FIXTURE_MASS: lambda value: "fixture_mass=",
+    Action.FORCE_SCALE: lambda value: f"force_scale={value!r}",
+    Action.DISPLACEMENT_SCALE: lambda value: f"displacement_scale={value!r}",
     Action.FIT_DELAY: lambda value: "delay=True",
     Action.FIT_OFFSET: lambda value: "offset=True",
 }

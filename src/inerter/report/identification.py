@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 
 from inerter.figures.identification import draw
@@ -185,7 +186,9 @@ def _computation(found: Identified) -> str:
 
 
 def _signed(value: float) -> str:
-    """A correlation; one that rounds to nothing has no sign."""
+    """A correlation; one that rounds to nothing has no sign, and where there is none nothing is shown."""
+    if isnan(value):
+        return ""
     text = f"{value:+.2f}"
     return "0.00" if float(text) == 0.0 else text.replace("-", "−")
 

@@ -11,6 +11,7 @@ from inerter.files.identification.running import Identified, Reading, Responses
 from inerter.identification.fit import RecordFit
 from inerter.networks.parser import written
 from inerter.records.result import Response
+from inerter.records.uncertain import Uncertain
 from inerter.report.identified_values import elements_block
 from inerter.report.json_data import json_data
 from inerter.work.origin import versions
@@ -58,7 +59,9 @@ def identification_data(found: Identified) -> dict[str, Any]:
         ],
         "candidates": [{**vars(c), "status": str(c.status)} for c in found.candidates],
         "choice": [finding.sentence for finding in found.choice],
-        "settings": {**found.settings, **fit.settings},
+        "settings": {
+            n: str(v) if isinstance(v, Uncertain) else v for n, v in {**found.settings, **fit.settings}.items()
+        },
         "elements": elements_block(found),
         "versions": versions(),
     }

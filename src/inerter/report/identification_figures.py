@@ -46,7 +46,8 @@ def figures(found: Identified, answered: Responses) -> Iterator[Drawn]:
     names = found.fit.parameters if found.explains else ()
     curves = [c for name in names if (c := _profile(found, name)) is not None]
     if curves:
-        yield Drawn("profiles", "profiles", profile_figure(curves), _PROFILES)
+        scaled = any(found.fit.settings.get(name) for name in ("force_scale", "displacement_scale"))
+        yield Drawn("profiles", "profiles", profile_figure(curves), _PROFILES + (_SCALED if scaled else ""))
     for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
         end = f"-{number + 1}" if len(found.readings) > 1 else ""
         source = comparison.record.source
@@ -127,15 +128,14 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
     ends = (points[0, 0], points[-1, 0])
     size, unit = handy_unit(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
     value, _ = value_and_interval(found, name)
-    what = known(found, name)
-    low, high = (parameter.best,) * 2 if what is Known.NOTHING else parameter.interval
+    low, high = parameter.interval
     return ProfileCurve(
         label=name,
         values=points[:, 0] / size,
         rises=points[:, 1],
         interval=(low / size, high / size),
         unit=unit,
-        remark="" if what is Known.VALUE else value,
+        remark="" if known(found, name) is Known.VALUE else value,
     )
 
 
@@ -151,3 +151,4 @@ _PROFILES = (
     " over what an interval of 95 % allows. Dots were computed. A curve that stays below the line on one side has no "
     "end there."
 )
+_SCALED = " Intervals are wider than the curves by the uncertainty of the scales, which no record shows."

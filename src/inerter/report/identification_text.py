@@ -133,7 +133,7 @@ def behind(candidate: Candidate) -> str:
 def _estimates(found: Identified) -> Iterator[str]:
     rows = [(name, *value_and_interval(found, name)) for name in found.fit.parameters]
     names, values = (max(len(row[i]) for row in [("estimat", "value"), *rows]) for i in (0, 1))
-    yield f"{'estimates':<{names + 2}}  {'value':<{values}}  interval of 95 %"
+    yield f"{'estimates':<{names + 2}}  {'value':<{values}}  {'interval of 95 %' if found.explains else ''}".rstrip()
     for name, value, interval in rows:
         yield f"  {name:<{names}}  {value:<{values}}  {interval}".rstrip()
     for c in found.fit.comparisons:
@@ -147,8 +147,6 @@ def _estimates(found: Identified) -> Iterator[str]:
 
 def remarks(found: Identified) -> Iterator[str]:
     """What has to be known about the estimates."""
-    if found.fit.explanations and any(verdict.plain for verdict in found.fit.identifiable.values()):
-        yield "Intervals hold what the explanations make of the values too."
     yield from (as_options(finding.text) for finding in found.fit.findings)
 
 

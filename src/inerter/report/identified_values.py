@@ -19,7 +19,7 @@ class Known(Enum):
 
     VALUE = auto()
     BOUNDS = auto()  # at most: it is not identifiable
-    NOTHING = auto()  # its interval is withheld
+    NOTHING = auto()  # the fit is not to be relied on: its values are withheld
 
 
 _WORDS = {Known.BOUNDS: "not identifiable", Known.NOTHING: "withheld"}
@@ -27,10 +27,9 @@ _WORDS = {Known.BOUNDS: "not identifiable", Known.NOTHING: "withheld"}
 
 def known(found: Identified, name: str) -> Known:
     """Whether there is a value to show."""
-    parameter = found.fit.parameters[name]
-    if isnan(parameter.interval[0]):
+    if not found.explains:
         return Known.NOTHING
-    return Known.VALUE if found.explains and not isnan(parameter.value) else Known.BOUNDS
+    return Known.BOUNDS if isnan(found.fit.parameters[name].value) else Known.VALUE
 
 
 def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
@@ -38,8 +37,12 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
     low, high = parameter.interval
     what = known(found, name)
-    if what is Known.NOTHING or not found.explains:
-        return _WORDS[what], ""
+    if what is Known.NOTHING:
+        if isnan(low):
+            return _WORDS[what], ""
+        return _WORDS[
+            what
+        ], f"{format_handy(low, parameter.unit)} to {format_handy(high, parameter.unit)} if explained so"
     if what is Known.VALUE:
         return format_with_interval(parameter.best, low, high, parameter.unit)
     below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
@@ -54,14 +57,18 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
 def elements_block(found: Identified) -> str:
     """The identified device as sections of a study or simulation file: elements with their best values, one layout.
 
-    What is not identifiable has its best value too, so that the layout can be computed, and says so.
+    What is not identifiable has its best value too, so that the layout can be computed, and says so. Of a fit that is
+    not to be relied on there is a comment only.
     """
+    if not found.explains:
+        return (
+            f"# {found.name}, fitted to {_sources(found)}\n"
+            f"# not to be relied on ({found.fit.status.kind}): its values are withheld"
+        )
     rows, expression = _rows(found)
     keys = max(len(name) for name in rows)
     values = max(len(value) for value, _ in rows.values())
     lines = [f"# {found.name}, identified from {_sources(found)}"]
-    if not found.fit.status.ok:
-        lines.append(f"# not to be relied on: {found.fit.status.kind}")
     lines.append("[elements]")
     lines += [f"{name:<{keys}} = {value:<{values}}  # {remark}" for name, (value, remark) in rows.items()]
     return "\n".join([*lines, "", "[layouts]", f'device = "{expression}"'])

@@ -50,6 +50,8 @@ _OPTIONS: Mapping[Action, Callable[[Any], str]] = {
     Action.SHIFT_FORCE: lambda value: f"delay = true in [fit] {_CONFIG}",
     Action.FORCE_BANDWIDTH: lambda value: "--force-bandwidth",
     Action.FIXTURE_MASS: lambda value: "--fixture-mass",
+    Action.FORCE_SCALE: lambda value: f'--force-scale "{value}"',
+    Action.DISPLACEMENT_SCALE: lambda value: f'--displacement-scale "{value}"',
     Action.FIT_DELAY: lambda value: f"delay = true in [fit] {_CONFIG}",
     Action.FIT_OFFSET: lambda value: f"offset = true in [fit] {_CONFIG}",
 }

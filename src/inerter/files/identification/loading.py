@@ -18,6 +18,7 @@ from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.parser import names, network
 from inerter.networks.transform import map_elements
+from inerter.records.uncertain import Uncertain
 from inerter.units import shown
 from inerter.vehicle.rig import Rig
 
@@ -36,7 +37,7 @@ class RecordRequest:
     force_bandwidth: float | None = None  # [Hz]
     force_noise: float | None = None  # [N] r.m.s.
     displacement_noise: float | None = None  # [m] r.m.s.
-    fixture_mass: float | None = None  # [kg]
+    fixture_mass: Uncertain | None = None  # [kg]
     period: float | None = None  # [s]
     start: float | None = None  # [s]
     stop: float | None = None  # [s]

@@ -34,7 +34,7 @@ from inerter.work.running import running_on
 Progress = Callable[[float], None]
 FIT, RESIDUALS = "fit.json", "residuals.csv"
 _LINEAR_POINTS = 300
-_OF_SENSORS = ("force_bandwidth", "force_noise", "displacement_noise", "fixture_mass")
+_OF_SENSORS = ("force_bandwidth", "force_noise", "displacement_noise")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +77,8 @@ class Identified:
 
     @property
     def explains(self) -> bool:
-        """Whether the model explains the records, so that its parameters mean anything."""
-        return self.fit.status.ok or any(self.fit.identifiable.values())
+        """Whether the fit is to be relied on; else values are withheld in every output."""
+        return self.fit.status.ok
 
 
 def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> Reading:
@@ -98,6 +98,9 @@ def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> 
         progress=progress,
     )
     received = received.noted(**{name: getattr(asked, name) for name in _OF_SENSORS})
+    if asked.fixture_mass is not None:
+        mass = asked.fixture_mass
+        received = received.noted(fixture_mass=mass.value, fixture_mass_error=mass.uncertainty or None)
     used = received
     if asked.start is not None or asked.stop is not None:
         used = used.trim(asked.start, asked.stop)

@@ -13,6 +13,7 @@ from inerter.files.common.suggest import nearest
 from inerter.files.common.tables import Shape
 from inerter.identification.models import MODELS
 from inerter.records.record import CHANNELS
+from inerter.records.uncertain import Uncertain, parse_uncertain
 from inerter.units import parse_quantity, shown
 
 CHOOSE = "choose"  # between all models
@@ -87,7 +88,7 @@ class RecordShape(Shape):
     force_bandwidth: Annotated[float | None, positive("Hz")] = None
     force_noise: Annotated[float | None, positive("N")] = None
     displacement_noise: Annotated[float | None, positive("m")] = None
-    fixture_mass: Annotated[float | None, positive("kg")] = None
+    fixture_mass: Annotated[Uncertain | None, PlainValidator(lambda value: parse_uncertain(value, "kg"))] = None
     period: Annotated[float | None, positive("s")] = None
     start: Annotated[float | None, PlainValidator(lambda value: parse_quantity(value, "s"))] = None
     stop: Annotated[float | None, PlainValidator(lambda value: parse_quantity(value, "s"))] = None
@@ -113,6 +114,8 @@ class FitShape(Shape):
     check: Annotated[float, PlainValidator(check_part)] = 0.2
     bandwidth: Annotated[float | None, positive("Hz")] = None
     lead: Annotated[float | None, not_negative("s")] = None
+    force_scale: Annotated[Uncertain | None, PlainValidator(parse_uncertain)] = None
+    displacement_scale: Annotated[Uncertain | None, PlainValidator(parse_uncertain)] = None
 
 
 class IdentificationFile(Shape):

@@ -1,0 +1,140 @@
+"""What no record shows of its own sensors, their scales and the mass of the fixture, in the intervals of a fit.
+
+A load cell that reads 1 % too much makes every stiffness, damping, inertance and friction 1 % larger, and the model
+explains the record as well as before. Such an error has the same sign in all samples, so that a longer record is of no
+help: its standard uncertainty is added to that of the estimates in squares (JCGM 100:2008, 5.1.2).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import norm
+
+from inerter.identification.experiment import Experiment
+from inerter.identification.intervals import LEVEL, ROBUST, BestFit, steps_of
+from inerter.identification.options import FitOptions
+from inerter.identification.problem import FitProblem
+from inerter.identification.search import improve
+from inerter.networks.elements import Free
+from inerter.networks.elements.roles import Linear
+from inerter.records.record import Record
+
+Matrix = NDArray[np.float64]
+_EVALUATIONS = 8
+_QUANTILE = float(norm.ppf(0.5 + 0.5 * LEVEL))
+_POWERS = {  # of the force's and of the displacement's scale in the value of an element: true over read
+    Linear.STIFFNESS: (1.0, -1.0),
+    Linear.DAMPING: (1.0, -1.0),
+    Linear.MASS: (1.0, -1.0),
+    Linear.OPEN: (1.0, 0.0),
+    Linear.CLOSED: (0.0, 1.0),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class ScaleEffects:
+    """Changes of every estimate [its unit] with one standard uncertainty of each thing that the records do not show."""
+
+    changes: Matrix  # (things, parameters)
+    relative: Matrix  # (parameters,) the same of the end of an interval that has one end, over that end
+
+    @property
+    def covariance(self) -> Matrix:
+        """What they add to the covariance of the estimates."""
+        return np.asarray(self.changes.T @ self.changes)
+
+    @property
+    def errors(self) -> Matrix:
+        """The standard uncertainty that they add to each estimate."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def widened(
+        self, i: int, interval: tuple[float, float], best: float, known: tuple[bool, bool]
+    ) -> tuple[float, float]:
+        """The 95 % interval of a parameter with its scale errors.
+
+        Two known ends go outward as the squares of both errors add up. A single end, which is no distance from an
+        estimate, is moved by all of the scale's.
+        """
+        error = _QUANTILE * float(self.errors[i])
+        alone = _QUANTILE * float(self.relative[i])
+        both, (low, high) = all(known), interval
+        if known[0]:
+            low = best - math.hypot(max(best - low, 0.0), error) if both else low * (1.0 - alone)
+        if known[1]:
+            high = best + math.hypot(max(high - best, 0.0), error) if both else high * (1.0 + alone)
+        return max(low, 0.0) if interval[0] >= 0.0 else low, high
+
+
+def scaled(record: Record, options: FitOptions) -> Record:
+    """A record in true units: its readings times the scales that are given."""
+    force, moved = options.force_scale, options.displacement_scale
+    if force is not None and force.value != 1.0:
+        changes = {
+            n: v * force.value for n in ("force", "force_range", "force_noise") if (v := getattr(record, n)) is not None
+        }
+        record = record.noted(f"The force was multiplied by {force.value:.6g}, its scale.", **changes)
+    if moved is not None and moved.value != 1.0:
+        names = ("displacement", "velocity", "acceleration", "displacement_noise")
+        changes = {n: v * moved.value for n in names if (v := getattr(record, n)) is not None}
+        record = record.noted(f"The displacement was multiplied by {moved.value:.6g}, its scale.", **changes)
+    return record
+
+
+def scale_effects(problem: FitProblem, optimum: BestFit, options: FitOptions) -> ScaleEffects | None:
+    """The effects of the uncertainties that are stated; None where there are none.
+
+    Where all elements are free, each value follows the scales by a power. Where some are known from elsewhere, the
+    others make up for them: then the records are fitted again with a scale, or a fixture mass, one standard
+    uncertainty larger and smaller.
+    """
+    space = problem.space
+    values = space.to_values(optimum.point)
+    powers = np.array([_POWERS[kind.linear] if kind is not None else (0.0, 0.0) for kind in space.kinds])
+    follows = all(isinstance(e.value, Free) or e.value == 0.0 for e in problem.rig.device.elements())
+    follows = follows and not any(e.record.fixture_mass for e in problem.experiments)
+    rows, relative = [], np.zeros(len(space.names))
+    for column, (uncertainty, apply) in enumerate(_scales(options)):
+        if uncertainty > 0.0:
+            along = uncertainty * powers[:, column]
+            rows.append(values * along if follows else _refitted(problem, optimum, uncertainty, apply))
+            relative = np.hypot(relative, along)
+    if any(e.record.fixture_mass_error for e in problem.experiments):
+        rows.append(_refitted(problem, optimum, 1.0, _heavier))
+    return ScaleEffects(np.array(rows), relative) if rows else None
+
+
+def _scales(options: FitOptions) -> Iterator[tuple[float, Callable[[Experiment, float], Experiment]]]:
+    for scale, apply in ((options.force_scale, _stronger), (options.displacement_scale, _longer)):
+        yield 0.0 if scale is None else scale.relative, apply
+
+
+def _refitted(
+    problem: FitProblem, optimum: BestFit, uncertainty: float, apply: Callable[[Experiment, float], Experiment]
+) -> Matrix:
+    """Half the difference of the values between fits to records with one error and with its opposite."""
+    ends = []
+    for sign in (1.0, -1.0):
+        other = replace(problem, experiments=[apply(e, sign * uncertainty) for e in problem.experiments])
+        point, *_ = improve(other, optimum.point, _EVALUATIONS, steps_of(optimum), ROBUST)
+        ends.append(problem.space.to_values(point))
+    return np.asarray(0.5 * (ends[0] - ends[1]))
+
+
+def _stronger(e: Experiment, by: float) -> Experiment:
+    return replace(e, record=replace(e.record, force=e.record.force * (1.0 + by)))
+
+
+def _longer(e: Experiment, by: float) -> Experiment:
+    moved = replace(e, record=replace(e.record, displacement=e.record.displacement * (1.0 + by)))
+    return moved.moved(e.motion.displacement * (1.0 + by), e.motion.velocity * (1.0 + by))
+
+
+def _heavier(e: Experiment, by: float) -> Experiment:
+    mass = (e.record.fixture_mass or 0.0) + by * (e.record.fixture_mass_error or 0.0)
+    return replace(e, record=replace(e.record, fixture_mass=mass or None))

@@ -1,0 +1,96 @@
+"""Numbers with their standard uncertainty, as a calibration certificate states them.
+
+The uncertainty is a standard one (k = 1) in the sense of JCGM 100:2008 (the GUM), 2.3.1, unless the text names another
+coverage factor: "1 +- 2 % (k = 2)" is "1 +- 1 %". A limit of error +-a without a distribution has a standard
+uncertainty of a / sqrt(3) (4.3.7).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from inerter.checks import is_number
+from inerter.errors import UnitError
+from inerter.units import format_quantity, parse_quantity, shown
+
+_SIGNS = re.compile(r"\+/-|\+-|±")
+_FACTOR = re.compile(r"\(\s*k\s*=\s*([0-9.]+)\s*\)\s*$")
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A positive number and its standard uncertainty, both in `unit` (empty for a ratio)."""
+
+    value: float
+    uncertainty: float = 0.0
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        if not all(map(is_number, (self.value, self.uncertainty))) or self.value <= 0.0 or self.uncertainty < 0.0:
+            raise UnitError(
+                f"An uncertain number needs a positive value and a standard uncertainty of at least 0; got "
+                f"{self.value!r} +- {self.uncertainty!r}."
+            )
+        if self.uncertainty >= 0.5 * self.value:
+            raise UnitError(
+                f"An uncertainty of {self.uncertainty:g} for {self.value:g}: expected less than half of the value."
+            )
+
+    @property
+    def relative(self) -> float:
+        """Standard uncertainty over the value."""
+        return self.uncertainty / self.value
+
+    def __str__(self) -> str:
+        if self.unit:
+            return f"{format_quantity(self.value, self.unit)} +- {format_quantity(self.uncertainty, self.unit, 3)}"
+        return f"{self.value:.6g} +- {100.0 * self.relative:.3g} %"
+
+
+def parse_uncertain(text: object, unit: str = "") -> Uncertain:
+    """The number and the standard uncertainty that a text such as "1 +- 1 %" or "0.3 kg +- 10 g" states.
+
+    Raises `UnitError` for other texts, a value that is not positive, or an uncertainty of half of it or more.
+
+    >>> parse_uncertain("1 +- 2 % (k = 2)"), parse_uncertain("0.3 kg +- 10 g", "kg").uncertainty
+    (Uncertain(value=1.0, uncertainty=0.01, unit=''), 0.01)
+    """
+    example = f"0.3 {unit} +- 3 %" if unit else "1 +- 1 %"
+    if isinstance(text, Uncertain):
+        return text
+    if is_number(text) and not unit:
+        return Uncertain(float(text))
+    if not isinstance(text, str) or not text.strip():
+        raise UnitError(_refusal(text, example))
+    factor = _FACTOR.search(text)
+    coverage = 1.0 if factor is None else _number(factor[1], text, example)
+    parts = _SIGNS.split(text if factor is None else text[: factor.start()])
+    if len(parts) > 2 or not coverage > 0.0 or (factor is not None and len(parts) == 1):
+        raise UnitError(_refusal(text, example))
+    value = _size(parts[0], unit, text, example)
+    if len(parts) == 1:
+        return Uncertain(value, 0.0, unit)
+    spread = parts[1].strip()
+    share = spread.endswith("%")
+    wide = 0.01 * value * _number(spread[:-1], text, example) if share else _size(spread, unit, text, example)
+    return Uncertain(value, wide / coverage, unit)
+
+
+def _size(part: str, unit: str, text: object, example: str) -> float:
+    return parse_quantity(part.strip(), unit) if unit else _number(part, text, example)
+
+
+def _number(part: str, text: object, example: str) -> float:
+    try:
+        number = float(part)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise UnitError(_refusal(text, example))
+    return number
+
+
+def _refusal(text: object, example: str) -> str:
+    return f'Got {shown(text)}; expected a value and its standard uncertainty, such as "{example}".'

@@ -18,6 +18,7 @@ from inerter.identification.intervals import BestFit
 from inerter.identification.kinds import FitFinding
 from inerter.identification.models import unmounted
 from inerter.identification.options import FitOptions
+from inerter.identification.planning import advice
 from inerter.identification.problem import FitProblem
 from inerter.identification.solving import SolvedFit
 from inerter.identification.sticking import silent
@@ -50,7 +51,7 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
         parameters={}, identifiable={}, correlation=_correlation(covariance), covariance=covariance,
         device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
         criterion=_criterion(problem, optimum), costs=solution.costs,
-        simulations=sum(e.tally.total for e in problem.experiments), predicted=solution.predicted,
+        simulations=0, predicted=solution.predicted,
         misfit=solution.misfit, explanations=tuple(likely), findings=findings, settings=_settings(solution.options),
     )  # fmt: skip
     doubt = doubt_of(draft)
@@ -61,13 +62,16 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
         verdict = replace(identifiability(p, found[i], space, i, comparisons), held=held)
         p, verdict = (p, verdict) if doubt is None else _withheld(p, verdict, draft)
         parameters[name], identifiable[name] = (p if verdict else replace(p, value=math.nan)), verdict
+    planned = [] if doubt else list(suggestions(space, parameters, identifiable, comparisons))
+    planned += [] if doubt or not explain else list(advice(solution, parameters))
     return replace(
         draft,
         parameters=parameters,
         identifiable=identifiable,
         doubt=doubt,
         status=OK if doubt is None else Status(StatusKind.INACCURATE, doubt.sentence),
-        suggestions=() if doubt else tuple(suggestions(space, parameters, identifiable, comparisons)),
+        suggestions=tuple(planned),
+        simulations=sum(e.tally.total for e in problem.experiments),
     )
 
 

@@ -28,6 +28,9 @@ class FitFinding(StrEnum):
     SLOW_COSINE = "slow-cosine"
     LARGER_ACCELERATIONS = "larger-accelerations"
     HIGHER_FREQUENCIES = "higher-frequencies"
+    BREAK_AWAY = "break-away"
+    NARROWER = "narrower"
+    CALIBRATE = "calibrate"
     # the choice between models
     BEST = "best"
     FEWEST_UNKNOWNS = "fewest-unknowns"
@@ -147,6 +150,40 @@ def _higher(f: Finding) -> Text:
     )
 
 
+def _break_away(f: Finding) -> Text:
+    held = format_quantity(f.numbers["held"], "N", 3)
+    return (f"{f.about}: a larger or faster motion, whose force exceeds the {held} that the friction held{_room(f)}.",)
+
+
+def _narrower(f: Finding) -> Text:
+    n = f.numbers
+    changes = [
+        f"{n['larger']:g} times the amplitude" if n["larger"] != 1.0 else "",
+        f"{n['faster']:g} times the frequencies" if n["faster"] != 1.0 else "",
+        f"{n['longer']} times as long" if n["longer"] != 1 else "",
+    ]
+    amplitude, duration = format_quantity(n["amplitude"], "m", 3), format_quantity(n["duration"], "s", 3)
+    return (
+        f"{f.about}: the same motion, {', '.join(filter(None, changes))} (amplitude {amplitude}, up to "
+        f"{n['highest']:.3g} Hz, {duration}): interval {_width(n['expected'], f)} wide instead of "
+        f"{_width(n['width'], f)}.",
+    )
+
+
+def _width(width: float, f: Finding) -> str:
+    share = f" ({100.0 * width / abs(f.numbers['value']):.2g} %)" if f.numbers["value"] else ""
+    return f"{format_quantity(width, f.numbers['unit'], 2)}{share}"
+
+
+def _calibrate(f: Finding) -> Text:
+    n = f.numbers
+    fixed, width = (format_quantity(n[name], n["unit"], 2) for name in ("fixed", "width"))
+    return (
+        f"{f.about}: a better calibration of the sensors: their scales alone make {fixed} of the interval, {width} "
+        f"wide, which no other motion makes smaller.",
+    )
+
+
 def _next(f: Finding) -> str:
     """How much the best of those that are not as good leaves."""
     n = f.numbers
@@ -227,6 +264,9 @@ _TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
     FitFinding.SLOW_COSINE: _slow,
     FitFinding.LARGER_ACCELERATIONS: _larger,
     FitFinding.HIGHER_FREQUENCIES: _higher,
+    FitFinding.BREAK_AWAY: _break_away,
+    FitFinding.NARROWER: _narrower,
+    FitFinding.CALIBRATE: _calibrate,
     FitFinding.BEST: _best,
     FitFinding.FEWEST_UNKNOWNS: _fewest,
     FitFinding.NOT_REACHED: _not_reached,

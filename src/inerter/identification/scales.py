@@ -53,6 +53,10 @@ class ScaleEffects:
         """The standard uncertainty that they add to each estimate."""
         return np.sqrt(np.diag(self.covariance))
 
+    def width(self, i: int) -> float:
+        """The width of a 95 % interval that had no other errors."""
+        return 2.0 * _QUANTILE * float(self.errors[i])
+
     def widened(
         self, i: int, interval: tuple[float, float], best: float, known: tuple[bool, bool]
     ) -> tuple[float, float]:

@@ -80,16 +80,21 @@ def shaken(experiment: Experiment, moved: Matrix, force: Matrix, random: np.rand
 
 def _errors(experiment: Experiment, moved: Matrix, random: np.random.Generator) -> Matrix:
     """Errors of the encoder [m] like those of the record: noise, then rounding to a step."""
-    motion, record = experiment.motion, experiment.record
-    step = resolution(record.displacement)
-    taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept])
-    inferred = taken / math.sqrt(1.0 - min(2.0 * motion.bandwidth * record.interval, 0.8))
-    noise = inferred if record.displacement_noise is None else record.displacement_noise
+    step, noise = resolution(experiment.record.displacement), encoder_noise(experiment)
     read = moved + math.sqrt(max(noise**2 - step**2 / 12.0, 0.0)) * random.standard_normal(moved.size)
     if step > 0.0:
         between = _between_steps(experiment, moved, step, random)
         read = step * np.rint((read + between) / step) - between
     return np.asarray(read - moved)
+
+
+def encoder_noise(experiment: Experiment) -> float:
+    """R.m.s. error of a reading of the displacement [m], with that of its steps: as it is known, or as it shows."""
+    motion, record = experiment.motion, experiment.record
+    if record.displacement_noise is not None:
+        return record.displacement_noise
+    taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept])
+    return taken / math.sqrt(1.0 - min(2.0 * motion.bandwidth * record.interval, 0.8))
 
 
 def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: np.random.Generator) -> Matrix:

@@ -57,6 +57,10 @@ def suggestions(
     for name, kind in zip(space.names, space.kinds, strict=True):
         if identifiable[name] or kind is None:
             continue
+        held = identifiable[name].held
+        if held is not None:
+            yield Finding(FitFinding.BREAK_AWAY, "info", name, {**motion, "held": held})
+            continue
         if kind.linear is Linear.CLOSED:
             width = {"width": 2.0 * parameters[name].interval[1]}
             yield Finding(FitFinding.FASTER_REVERSALS, "info", name, {**motion, **width})

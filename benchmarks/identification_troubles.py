@@ -82,7 +82,11 @@ def run(kind: str, count: int, processes: int) -> list[dict[str, object]]:
 def misses(kind: str, row: dict[str, object]) -> tuple[int, list[str]]:
     """How many intervals of parameters are given, and which of them do not hold the truth."""
     truth = case_of(kind, row["number"]).truth
-    given = {name: p for name, p in row["parameters"].items() if p["identified"] and name in truth}
+    given = {
+        name: p
+        for name, p in row["parameters"].items()
+        if (p["identified"] or p["verdict"] == "conditional") and name in truth
+    }
     missed = [n for n, p in given.items() if not p["interval"][0] <= truth[n] <= p["interval"][1]]
     return len(given), missed
 

@@ -168,7 +168,7 @@ def test_a_fit_that_is_not_ok_is_written_and_returns_1(
     assert call(["identify", *arguments]) == 1
     out, err = capsys.readouterr()
     assert "explains 12.0 %" in err
-    assert "not identifiable" in out
+    assert "withheld" in out
     assert "not to be relied on" in out
     assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
     assert "Not to be relied on" in (folder / "report.html").read_text(encoding="utf-8")

@@ -19,6 +19,7 @@ import inerter as it
 from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.explaining import hypotheses
 from inerter.identification.hypotheses import delay
+from inerter.identification.identifiability import Verdict
 from inerter.identification.judging import mean_square
 from inerter.identification.laws import Chained, stepped
 from inerter.identification.problem import FitProblem
@@ -32,8 +33,12 @@ def fitted(case: Case, seed: int, **settings: object) -> it.Fit:
 
 
 def missed(fit: it.Fit, truth: dict[str, float]) -> list[str]:
-    """Parameters whose interval is given and does not hold the truth."""
-    given = [name for name in fit.parameters if fit.identifiable[name] and name in truth]
+    """Parameters whose interval, or range under explanations, is given and does not hold the truth."""
+    given = [
+        name
+        for name, verdict in fit.identifiable.items()
+        if (verdict or verdict.verdict is Verdict.CONDITIONAL) and name in truth
+    ]
     return [n for n in given if not fit.parameters[n].interval[0] <= truth[n] <= fit.parameters[n].interval[1]]
 
 

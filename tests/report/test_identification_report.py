@@ -15,7 +15,7 @@ import pytest
 
 import inerter as it
 from inerter.errors import OK, Status, StatusKind
-from inerter.files.identification.running import Identified, Reading, responses
+from inerter.files.identification.running import Identified, Reading, Responses, responses
 from inerter.identification.choice import Candidate
 from inerter.identification.fit import Explanation, Misfit
 from inerter.identification.guess import chain_of
@@ -31,7 +31,7 @@ from inerter.records.kinds import RecordFinding
 from inerter.records.remedy import Action, Remedy, in_python
 from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
-from inerter.report.identification_figures import window
+from inerter.report.identification_figures import figures, window
 from inerter.report.identification_text import identification_text, share
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
@@ -140,8 +140,39 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: Identified) -> No
     parameters = {name: replace(p, value=math.nan) for name, p in fit.parameters.items()}
     status = Status(StatusKind.INACCURATE, "the model explains 3 % of the force only")
     poor = replace(found, fit=replace(fit, status=status, identifiable=verdicts, parameters=parameters))
-    assert value_and_interval(poor, "b") == ("not identifiable", "")
+    assert value_and_interval(poor, "b") == ("withheld", "113 kg to 113 kg if explained so")
     assert "not to be relied on" in elements_block(poor)
+
+
+@pytest.mark.parametrize("verdict", [Verdict.WITHHELD, Verdict.CONDITIONAL, Verdict.UNPREDICTABLE])
+def test_a_warned_fit_shows_no_value_as_a_result(found: Identified, verdict: Verdict) -> None:
+    """Neither in text, JSON, the block of elements, the page nor a figure, and nothing of confidence."""
+    fit, ends = found.fit, {"b": (101.25, 131.5), "f": (7.125, 12.75)}
+    within = ends if verdict is Verdict.CONDITIONAL else dict.fromkeys(ends, (math.nan, math.nan))
+    parameters = {
+        n: replace(p, value=math.nan, interval=within[n], standard_error=math.nan, profile=())
+        for n, p in fit.parameters.items()
+    }
+    verdicts = {n: Identifiability(n, verdict, p.unit, within[n]) for n, p in fit.parameters.items()}
+    bad = Status(StatusKind.INACCURATE, "the model leaves 5 times what the errors of the sensors leave")
+    warned = replace(found, fit=replace(fit, status=bad, parameters=parameters, identifiable=verdicts, suggestions=()))
+    page = Page(identification_page(warned, {})).text
+    text = " ".join(identification_text(warned).split())
+    data = identification_data(warned)
+    shown = [value_and_interval(found, name) for name in ends]
+    for said in (text, page, elements_block(warned)):
+        assert not any(part in said for value in shown for part in value), said
+        assert "confidence" not in said
+    assert "interval of 95 %" not in text
+    assert "interval of 95 %" not in page
+    assert "withheld" in text
+    assert "withheld" in page
+    assert ("131.5 kg if explained so" in text.replace("132", "131.5")) == (verdict is Verdict.CONDITIONAL)
+    assert next(iter(figures(warned, Responses(None)))).section != "profiles"
+    assert "[elements]" not in data["elements"]
+    assert data["next_experiment"] == []
+    for p in data["parameters"].values():
+        assert (p["value"], p["standard_error"], p["profile"], p["identified"]) == (None, None, [], False)
 
 
 def test_several_models_are_listed_best_first(found: Identified) -> None:

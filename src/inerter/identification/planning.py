@@ -9,7 +9,7 @@ errors that this gives for the other motion and for the present one; twice the l
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -115,7 +115,7 @@ def _planned(solution: SolvedFit) -> Iterator[PlannedMotion]:
                 replace(e, record=replace(e.record, force=f)) for e, f in zip(other.experiments, known, strict=True)
             ]
             left = sound(other, optimum.point, (solution.options.seed, 7), _DRAWS)
-            if left is None or not (present or _predictable(left, known, other.experiments)):
+            if left is None or not (present or _predictable(left, other.experiments)):
                 continue
             other.whitenings = [
                 yardstick(draws, e.noise, e.kept) for draws, e in zip(left, other.experiments, strict=True)
@@ -138,11 +138,11 @@ def _bearable(solution: SolvedFit, forces: list[Matrix | None], largest: float) 
     )
 
 
-def _predictable(left: list[Matrix], forces: list[Matrix], experiments: object) -> bool:
-    """Whether errors of the sensors change little of the forces."""
+def _predictable(left: list[Matrix], experiments: Sequence[Experiment]) -> bool:
+    """Whether errors of the encoder change little of the forces."""
     return all(
-        float(np.mean(draws**2)) <= _UNPREDICTABLE * float(np.var(force))
-        for draws, force in zip(left, forces, strict=True)
+        float(np.mean(draws**2)) - e.noise**2 <= _UNPREDICTABLE * float(np.var(e.record.force))
+        for draws, e in zip(left, experiments, strict=True)
     )
 
 

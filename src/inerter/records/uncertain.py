@@ -30,12 +30,12 @@ class Uncertain:
     def __post_init__(self) -> None:
         if not all(map(is_number, (self.value, self.uncertainty))) or self.value <= 0.0 or self.uncertainty < 0.0:
             raise UnitError(
-                f"An uncertain number needs a positive value and a standard uncertainty of at least 0; got "
-                f"{self.value!r} +- {self.uncertainty!r}."
+                f"Got {self.value!r} +- {self.uncertainty!r}; expected a positive value and a standard uncertainty of "
+                f"at least 0."
             )
         if self.uncertainty >= 0.5 * self.value:
             raise UnitError(
-                f"An uncertainty of {self.uncertainty:g} for {self.value:g}: expected less than half of the value."
+                f"Got {self.value!r} +- {self.uncertainty!r}; expected an uncertainty below half of the value."
             )
 
     @property

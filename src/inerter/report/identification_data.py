@@ -48,6 +48,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "covariance": fit.covariance.tolist(),
         "records": [_record(r, c) for r, c in zip(found.readings, fit.comparisons, strict=True)],
         "next_experiment": fit.next_experiment,
+        "advice": [{"parameter": f.about, "kind": f.kind, **f.numbers} for f in fit.suggestions],
         "notes": fit.notes,
         "criterion": fit.criterion,
         "costs": fit.costs,

@@ -43,27 +43,30 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
     space = problem.space
     comparisons = _comparisons(solution)
     values = space.named(optimum.point)
+    slopes = space.slopes(optimum.point)
     covariance = _covariance(solution)
     likely = explanations(problem, optimum, solution.judge, solution.misfit) if explain else []
     findings = (*solution.findings, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
     findings = (*findings, _of_scales(solution))
     draft = Fit(
-        parameters={}, identifiable={}, correlation=_correlation(covariance), covariance=covariance,
+        parameters={}, identifiable={}, correlation=_correlation(covariance),
+        covariance=covariance * np.outer(slopes, slopes),
         device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
-        criterion=_criterion(problem, optimum), costs=solution.costs,
-        simulations=0, predicted=solution.predicted,
+        criterion=_criterion(problem, optimum), costs=solution.costs, simulations=0, predicted=solution.predicted,
         misfit=solution.misfit, explanations=tuple(likely), findings=findings, settings=_settings(solution.options),
     )  # fmt: skip
     doubt = doubt_of(draft)
+    stuck = silent(optimum) if solution.adhesion else np.zeros(len(space.names), dtype=bool)
     parameters, identifiable = {}, {}
     for i, name in enumerate(space.names):
         p = _parameter(solution, i, values[name])
-        held = solution.adhesion.of(i) if found[i].points and not found[i].upper.known else None
+        held = solution.adhesion.of(i) if stuck[i] else None
         verdict = replace(identifiability(p, found[i], space, i, comparisons), held=held)
         p, verdict = (p, verdict) if doubt is None else _withheld(p, verdict, draft)
         parameters[name], identifiable[name] = (p if verdict else replace(p, value=math.nan)), verdict
-    planned = [] if doubt else list(suggestions(space, parameters, identifiable, comparisons))
-    planned += [] if doubt or not explain else list(advice(solution, parameters))
+    planned = [] if doubt is not None else list(suggestions(space, parameters, identifiable, comparisons))
+    if doubt is None and explain:
+        planned += advice(solution, parameters)
     return replace(
         draft,
         parameters=parameters,
@@ -177,12 +180,12 @@ def _settings(options: FitOptions) -> dict[str, object]:
 
 
 def _covariance(solution: SolvedFit) -> Matrix:
-    """The covariance of the values; nan where the records do not depend on a value at all."""
+    """The covariance of the coordinates, with that of the scales; nan where the records do not depend on one at all."""
     optimum, space = solution.optimum, solution.problem.space
-    slopes = space.slopes(optimum.point)
-    covariance = optimum.covariance * np.outer(slopes, slopes)
+    covariance = optimum.covariance
     if solution.scales is not None:
-        covariance = covariance + solution.scales.covariance
+        slopes = space.slopes(optimum.point)
+        covariance = covariance + solution.scales.covariance / np.outer(slopes, slopes)
     if solution.adhesion:
         unseen = silent(optimum)
         covariance = np.where(unseen[:, None] | unseen[None, :], np.nan, covariance)

@@ -14,7 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from inerter.identification.intervals import BestFit, CostProfile, Side, best_fit_of, follow, profiles, steps_of
+from inerter.identification.intervals import (
+    BestFit,
+    CostProfile,
+    Side,
+    best_fit_of,
+    follow,
+    profiles,
+    robust_cost,
+    steps_of,
+)
 from inerter.identification.problem import FitProblem
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.outputs import force_of
@@ -52,7 +61,8 @@ def adhering(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, Adhesion]:
     for i in _frictions(problem):
         point = optimum.point.copy()
         point[i] = problem.space.bounds[1][i]
-        if _held(problem, point, i) is None:
+        far = robust_cost(problem.residual(point)) > _FAR * optimum.cost
+        if far or _held(problem, point, i) is None:
             continue
         still = best_fit_of(problem, point, steps_of(optimum), _EVALUATIONS, _ACCURACY)
         force = _held(problem, still.point, i)

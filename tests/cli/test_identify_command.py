@@ -15,8 +15,10 @@ from troubled_rig import Device, Sensors, Tones, measured
 import inerter as it
 from inerter.cli.main import call
 from inerter.files.identification import running as identification_run
+from inerter.files.identification.loading import load_identification
 from inerter.identification import explaining
 from inerter.identification.identifiability import Identifiability, Verdict
+from inerter.records.uncertain import Uncertain
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
 CONFIG = """
@@ -347,3 +349,32 @@ def test_what_is_wrong_in_a_configuration_is_said(
     assert words in err
     assert err.startswith("inerter: rig.toml: ")
     assert "Traceback" not in err
+
+
+SCALES = {
+    ("--force-scale", "one"): 'Got "one"; expected a value and its standard uncertainty, such as "1 +- 1 %".',
+    ("--displacement-scale", "1 +- 80 %"): "expected an uncertainty below half of the value.",
+    ("--fixture-mass", "2 kg +- "): "--fixture-mass: ",
+}
+
+
+@pytest.mark.parametrize("option", SCALES, ids=lambda option: option[0])
+def test_scales_that_cannot_be_read_are_refused_in_one_sentence(
+    option: tuple[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(["identify", "bench.csv", "--model", "ideal", *option]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert said[0].startswith(f"inerter: {option[0]}: ")
+    assert SCALES[option] in said[0]
+
+
+def test_a_configuration_states_scales_and_an_uncertain_fixture(tmp_path: Path) -> None:
+    text = (
+        '[record]\nfixture_mass = "2 kg +- 10 g"\n[fit]\nforce_scale = "1 +- 2 % (k = 2)"\ndisplacement_scale = "1"\n'
+    )
+    (tmp_path / "rig.toml").write_text(text, encoding="utf-8")
+    request = load_identification(tmp_path / "rig.toml")
+    assert request.record.fixture_mass == Uncertain(2.0, 0.01, "kg")
+    assert request.settings["force_scale"] == Uncertain(1.0, 0.01)
+    assert request.settings["displacement_scale"] == Uncertain(1.0, 0.0)

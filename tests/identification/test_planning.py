@@ -34,7 +34,7 @@ def test_an_inertance_is_known_better_by_its_acceleration() -> None:
     assert {(2.0, 1.0), (4.0, 1.0), (1.0, 2.0), (1.0, 0.5)} <= set(motions)
 
 
-@pytest.mark.parametrize("limit", [981.0, 60.0])
+@pytest.mark.parametrize("limit", sampled([981.0, 60.0], [60.0]))
 def test_what_is_advised_is_the_mildest_that_halves_and_that_the_cell_bears(limit: float) -> None:
     """16 N now: with 60 N to read, twice the amplitude is borne, and twice the frequency is not."""
     fit = fit_of(solved(limit))

@@ -93,7 +93,7 @@ def load_identification(path: str | Path) -> IdentificationRequest:
 def identification_of(tables: Mapping[str, Any], path: Path) -> IdentificationRequest:
     """The configuration that tables say; `path`, where they are from, is for messages."""
     shape = shape_of(tables, path, IdentificationFile, SHAPES)
-    record, settings = shape.record.model_dump(), shape.fit.model_dump()
+    record, settings = dict(shape.record), dict(shape.fit)
     roles = ("displacement", "force", "time", "velocity", "acceleration")
     channels = {role: value for role in roles if (value := record.pop(role)) is not None}
     request = IdentificationRequest(

@@ -25,7 +25,9 @@ class Parameter:
     """One identified value with its 95 % interval.
 
     `value` is nan where the records do not identify it: the interval then still holds, and says what is known, such as
-    an upper bound. `best` is the value of the best fit in any case, to go on computing with.
+    an upper bound. Of a fit that is not to be relied on there is no value and no standard error, and the interval is
+    nan or, where hypotheses explain the misfit, the range of values under them. `best` is the value of the best fit in
+    any case, to go on computing with.
     """
 
     name: str
@@ -33,7 +35,7 @@ class Parameter:
     value: float
     interval: tuple[float, float]
     best: float
-    standard_error: float  # from the curvature at the best fit
+    standard_error: float  # from the curvature at the best fit and the scales of the sensors; nan if none is known
     profile: tuple[tuple[float, float], ...] = ()  # (value, rise of the cost over its threshold)
 
 

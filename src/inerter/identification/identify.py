@@ -52,7 +52,8 @@ def identify(
 
     Where more is left than the errors of the sensors (`fit.misfit`; those of the record where they are known, such as
     `Record.force_noise`), on the fitted part or on the check part, the status is not ok, `fit.explanations` names what
-    may be wrong with the model or the sensors, and intervals are withheld, or hold what the explanations say. A mass
+    may be wrong with the model or the sensors, and values are withheld; at most a range under explanations is left.
+    Scales of the sensors are not seen in records: state them with `force_scale` and `displacement_scale`. A mass
     between load cell and device, `Record.fixture_mass`, has to be known: it looks as an inertance does.
     See docs/identification.md.
 

@@ -16,6 +16,7 @@ from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import BestFit
 from inerter.identification.kinds import FitFinding
+from inerter.identification.localising import localisation_of
 from inerter.identification.models import unmounted
 from inerter.identification.options import FitOptions
 from inerter.identification.planning import advice
@@ -45,7 +46,8 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
     values = space.named(optimum.point)
     slopes = space.slopes(optimum.point)
     covariance = _covariance(solution)
-    likely = explanations(problem, optimum, solution.judge, solution.misfit) if explain else []
+    where = () if solution.misfit.sound else tuple(localisation_of(c, solution.options.seed) for c in comparisons)
+    likely = explanations(problem, optimum, solution.judge, solution.misfit, where) if explain else []
     findings = (*solution.findings, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
     findings = (*findings, _of_scales(solution))
     draft = Fit(
@@ -53,7 +55,8 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
         covariance=covariance * np.outer(slopes, slopes),
         device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
         criterion=_criterion(problem, optimum), costs=solution.costs, simulations=0, predicted=solution.predicted,
-        misfit=solution.misfit, explanations=tuple(likely), findings=findings, settings=_settings(solution.options),
+        misfit=solution.misfit, explanations=tuple(likely), localisations=where, findings=findings,
+        settings=_settings(solution.options),
     )  # fmt: skip
     doubt = doubt_of(draft)
     stuck = silent(optimum) if solution.adhesion else np.zeros(len(space.names), dtype=bool)
@@ -104,7 +107,11 @@ def _misfit(fit: Fit, best: Explanation | None) -> Finding:
     """A wrong model or sensor."""
     explained = 100.0 * max(fit.explained, 0.0) if fit.explained < ENOUGH else None
     second = next((e for e in fit.explanations[1:2] if e.misfit.sound), None)
-    numbers = {"times": fit.misfit.worst, "explained": explained, "likeliest": best, "second": second}
+    patterns = [pattern for place in fit.localisations for pattern in place.patterns[:1]]
+    where = max(patterns, key=lambda pattern: float(pattern.numbers["share"]), default=None)
+    numbers = {
+        "times": fit.misfit.worst, "explained": explained, "likeliest": best, "second": second, "where": where,
+    }  # fmt: skip
     return Finding(FitFinding.MISFIT, "warning", numbers=numbers)
 
 

@@ -84,8 +84,10 @@ class Experiment:
         table = replace(self.table, value=value, slope=slope, value_before=value, slope_before=slope)
         return replace(self, motion=motion, table=table, finer={})
 
-    def late(self, delay: float) -> Experiment:
+    def late(self, delay: float | Matrix) -> Experiment:
         """The same record, had the table moved `delay` [s] later: what a force that is late answers to.
+
+        It may be another one at each sample.
 
         Before its first sample and after its last the table is taken to stand still.
         """

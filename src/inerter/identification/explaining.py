@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, experiment_of
-from inerter.identification.fit import Explanation, Misfit
+from inerter.identification.fit import Explanation, Localisation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
 from inerter.identification.intervals import BestFit, best_fit_of, steps_of
 from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
 from inerter.identification.problem import FitProblem
+from inerter.identification.recording_faults import faulty_samples, recording_faults
 from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
 from inerter.records.lost import losses, restored
@@ -29,6 +30,7 @@ Matrix = NDArray[np.float64]
 _EVALUATIONS, _ACCURACY = 25, 1e-5
 _BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
 _LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
+_AS_GOOD = 0.02  # of a misfit: what two explanations may differ by and explain as much
 _STEP = 0.02  # of what a hypothesis would be seen at, for differences
 
 
@@ -41,25 +43,32 @@ class Trial:
     optimum: BestFit
 
 
-def explanations(problem: FitProblem, optimum: BestFit, by: Judge, before: Misfit) -> list[Explanation]:
-    """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway."""
+def explanations(
+    problem: FitProblem, optimum: BestFit, by: Judge, before: Misfit, places: Sequence[Localisation] = ()
+) -> list[Explanation]:
+    """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway.
+
+    `places` is where the misfit is in each record. Of those that explain about as much, that with fewer unknowns is the
+    likelier one.
+    """
     found: dict[Suspect, Explanation] = {}
     lost = lost_samples(problem.experiments)
-    known = [] if lost is None else [lost]
-    for hypothesis in known if before.sound else [*known, *hypotheses(problem)]:
+    known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
+    for hypothesis in known if before.sound else [*known, *hypotheses(problem, places)]:
         e = _explanation(_tried(problem, optimum, hypothesis, by), by, before)
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
-    return sorted(found.values(), key=lambda e: (-e.explained, len(e.values)))
+    return sorted(found.values(), key=lambda e: (-round(e.explained / _AS_GOOD), len(e.values), -e.explained))
 
 
-def hypotheses(problem: FitProblem) -> list[Hypothesis]:
+def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list[Hypothesis]:
     """All that are not assumed already, and that these records could show."""
     chain = chain_of(problem.rig.device)
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
-    found = sensors(problem.offset)
-    found += [] if chain is None else laws(chain, fastest, stroke)
+    peak = max(float(np.abs(e.record.force[e.kept]).max()) for e in problem.experiments)
+    found = [*sensors(problem.offset), *recording_faults(problem, places)]
+    found += [] if chain is None else laws(chain, fastest, stroke, peak)
     taken = {h.name for h in problem.assumed}
     return [h for h in found if h.name not in taken]
 
@@ -101,10 +110,14 @@ def _tried(problem: FitProblem, optimum: BestFit, hypothesis: Hypothesis, by: Ju
     sizes = {u.name: u.size for u in hypothesis.unknowns}
     zero = {u.name: _LITTLE * u.size if u.lower >= 0.0 else 0.0 for u in hypothesis.unknowns}
     trials = []
+    begun = {other: known[name] for name, other in hypothesis.alike.items()}
     for start in hypothesis.starts:
-        point = space.placed({**known, **zero, **start})
+        point = space.placed({**known, **zero, **begun, **start})
         seen = {**sizes, **start}
-        steps = np.array([widths.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)])
+        alike = {other: widths[name] for name, other in hypothesis.alike.items()}
+        steps = np.array(
+            [widths.get(n) or alike.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)]
+        )
         trials.append(Trial(hypothesis, other, best_fit_of(other, point, steps, _EVALUATIONS, _ACCURACY)))
     return min(trials, key=lambda t: t.optimum.cost)
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, Status
 from inerter.identification.experiment import Experiment
 from inerter.identification.identifiability import Identifiability
+from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.identification.suspects import Details, Suspect
 from inerter.networks.elements import Network
 from inerter.records.finding import Finding
@@ -128,6 +129,25 @@ class RecordFit:
         return 1.0 - float(np.mean(self.residual[mask] ** 2)) / max(total, 1e-300)
 
 
+@dataclass(frozen=True)
+class Localisation:
+    """Patterns in the residual of one record, those that explain most of it first."""
+
+    source: str
+    patterns: tuple[Finding, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """The strongest pattern, to go on after a colon."""
+        return self.patterns[0].sentence if self.patterns else "the misfit has no pattern that was looked for"
+
+    @property
+    def changes(self) -> tuple[float, ...]:
+        """Times [s] at which the residual changes."""
+        steps = (MisfitPattern.BEGINS, MisfitPattern.ENDS, MisfitPattern.LEVEL_STEP, MisfitPattern.COEFFICIENT_STEP)
+        return tuple(float(f.numbers["time"]) for f in self.patterns if f.kind in steps)
+
+
 @dataclass(frozen=True, eq=False)
 class Fit:
     """The result of `identify`."""
@@ -144,6 +164,7 @@ class Fit:
     predicted: float  # part of the variance of the force that errors as small as those of the encoder leave as it is
     misfit: Misfit
     explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the likeliest first
+    localisations: tuple[Localisation, ...] = ()  # of the misfit, if there is one, in each record
     status: Status = OK
     doubt: Finding | None = None  # why it is not to be relied on
     findings: tuple[Finding, ...] = ()  # what has to be known about the estimates

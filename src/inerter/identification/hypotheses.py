@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,7 @@ class Hypothesis:
     details: Callable[[Values], Details] = _none  # the numbers of its sentence
     slow: int | None = None  # degree over time of what it leaves open in each part of a record
     starts: tuple[Values, ...] = ({},)  # where to begin, unless it is at the sizes, or at zero if it may be negative
+    alike: Mapping[str, str] = field(default_factory=dict)  # unknowns that begin where those of the model are, by these
 
 
 def gain() -> Hypothesis:

@@ -65,7 +65,8 @@ def _misfit(f: Finding) -> Text:
     times = f"the model leaves {n['times']:.2g} times what the errors of the sensors leave"
     share = "" if n["explained"] is None else f", and explains {n['explained']:.1f} % of the force only"
     if n["likeliest"] is None:
-        return (f"{times}{share}; nothing that was tried explains it",)
+        where = "" if n["where"] is None else f", but {n['where'].sentence}"
+        return (f"{times}{share}; nothing that was tried explains it{where}",)
     second = n["second"]
     other = "" if second is None else f", or {second.sentence}, which explains it too"
     return (f"{times}{share}; likeliest: {n['likeliest'].sentence}{other}",)

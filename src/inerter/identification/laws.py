@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -45,12 +46,26 @@ class Chained:
     tilt: float = 0.0  # [N/m] of the friction over the position
     bend: float = 0.0  # [N/m^2]
     skew: float = 0.0  # part of the friction that it has more when it slides up, less when down
+    reach: float = 0.0  # [m] of travel over which the friction builds up after a reversal (Dahl 1968)
+    square: float = 0.0  # [N s^2/m^2] of a damping beside the inertance that grows with the square of the speed
+    cubic: float = 0.0  # [N/m^3] of the shaft
+    slack: float = 0.0  # [m] deflection of the shaft beyond which ...
+    beyond: float = 0.0  # ... it is stiffer by this [N/m]
+    cosine: float = 0.0  # [N] of the friction along the position ...
+    sine: float = 0.0
+    pitch: float = 1.0  # [m] ... over which it repeats
 
 
-def laws(chain: Chain, fastest: float, stroke: float) -> Iterator[Hypothesis]:
-    """What a chain may do beyond its model, in motions of this largest speed [m/s] and stroke [m]."""
+def laws(chain: Chain, fastest: float, stroke: float, peak: float = 0.0) -> Iterator[Hypothesis]:
+    """What a chain may do beyond its model, in motions of this largest speed [m/s], stroke [m] and force [N]."""
     yield from _parts(chain)
+    yield _quadratic(chain, fastest)
+    if chain.spring is not None and peak > 0.0:
+        yield _stiffening(chain, peak)
+        yield _second_gap(chain, peak)
     if chain.friction is not None:
+        yield _presliding(chain, stroke)
+        yield _ripple(chain, stroke)
         yield _stribeck(chain, fastest)
         yield _place(chain, stroke)
         yield _direction(chain)
@@ -119,6 +134,62 @@ def _direction(chain: Chain) -> Hypothesis:
     return _changed(chain, Suspect.ASYMMETRIC, {"skew": skew}, details, ({},))
 
 
+def _presliding(chain: Chain, stroke: float) -> Hypothesis:
+    reach = Unknown("presliding distance", "m", 0.0, stroke, 0.02 * stroke)
+    starts = tuple({reach.name: share * stroke} for share in (0.01, 0.1))
+    return _changed(
+        chain, Suspect.PRESLIDING, {"reach": reach}, lambda values: {"distance": 2.0 * values[reach.name]}, starts
+    )
+
+
+def _quadratic(chain: Chain, fastest: float) -> Hypothesis:
+    square = Unknown("quadratic damping", "N s^2/m^2", 0.0, 1e3 / fastest**2, 1.0 / fastest**2)
+
+    def details(values: Values) -> Details:
+        return {"most": values[square.name] * fastest**2}
+
+    return _changed(chain, Suspect.QUADRATIC, {"square": square}, details, ({square.name: 3.0 / fastest**2},))
+
+
+def _ripple(chain: Chain, stroke: float) -> Hypothesis:
+    cosine, sine = Unknown("ripple, cosine", "N", -500.0, 500.0, 1.0), Unknown("ripple, sine", "N", -500.0, 500.0, 1.0)
+    pitch = Unknown("pitch of the ripple", "m", 0.05 * stroke, 2.0 * stroke, 0.5 * stroke)
+
+    def details(values: Values) -> Details:
+        return {"size": math.hypot(values[cosine.name], values[sine.name]), "pitch": values[pitch.name]}
+
+    unknowns = {"cosine": cosine, "sine": sine, "pitch": pitch}
+    starts = tuple({pitch.name: share * stroke} for share in (0.3, 0.5, 0.8, 1.3))
+    return _changed(chain, Suspect.RIPPLE, unknowns, details, starts)
+
+
+def _stiffening(chain: Chain, peak: float) -> Hypothesis:
+    """A cubic term, over the stiffness at the deflection under the largest force."""
+    share = Unknown("stiffening", "", -0.25, 20.0, 0.1)
+
+    def changed(plain: Chained, values: Values) -> Chained:
+        return replace(plain, cubic=values[share.name] * plain.ks**3 / peak**2)
+
+    starts = ({share.name: 0.1}, {share.name: 1.0})
+    return _law(chain, Suspect.STIFFENING, (share,), changed, lambda values: {"share": values[share.name]}, starts)
+
+
+def _second_gap(chain: Chain, peak: float) -> Hypothesis:
+    """A spring beside the shaft that is met at a part of the deflection under the largest force."""
+    part, ratio = Unknown("second gap", "", 0.02, 1.0, 0.3), Unknown("stiffness behind it", "", 0.0, 50.0, 0.3)
+
+    def changed(plain: Chained, values: Values) -> Chained:
+        slack, stiffness = values[part.name] * peak / plain.ks, values[ratio.name] * plain.ks
+        return replace(plain, slack=slack, beyond=stiffness)
+
+    def details(values: Values) -> Details:
+        ks = _value(chain.spring, values)
+        return {"slack": values[part.name] * peak / ks, "stiffness": values[ratio.name] * ks}
+
+    starts = tuple({part.name: share, ratio.name: 0.5} for share in (0.15, 0.4))
+    return _law(chain, Suspect.SECOND_GAP, (part, ratio), changed, details, starts)
+
+
 def _changed(
     chain: Chain,
     name: Suspect,
@@ -128,12 +199,28 @@ def _changed(
 ) -> Hypothesis:
     """A hypothesis that changes some of the numbers of a chain."""
 
+    def changed(plain: Chained, values: Values) -> Chained:
+        return replace(plain, **{what: values[unknown.name] for what, unknown in unknowns.items()})
+
+    return _law(chain, name, tuple(unknowns.values()), changed, details, starts)
+
+
+def _law(
+    chain: Chain,
+    name: Suspect,
+    unknowns: tuple[Unknown, ...],
+    changed: Callable[[Chained, Values], Chained],
+    details: Callable[[Values], Details],
+    starts: tuple[Values, ...],
+) -> Hypothesis:
+    """A hypothesis under which a chain is another one."""
+
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         plain = _numbers(chain, values)
-        other = replace(plain, **{what: values[unknown.name] for what, unknown in unknowns.items()})
-        return np.asarray(force + through_cell(stepped(other, e, force.size) - stepped(plain, e, force.size), e))
+        difference = stepped(changed(plain, values), e, force.size) - stepped(plain, e, force.size)
+        return np.asarray(force + through_cell(difference, e))
 
-    return Hypothesis(name, tuple(unknowns.values()), read=read, details=details, starts=starts)
+    return Hypothesis(name, unknowns, read=read, details=details, starts=starts)
 
 
 def _numbers(chain: Chain, values: Values) -> Chained:
@@ -156,8 +243,12 @@ def stepped(chain: Chained, experiment: Experiment, samples: int) -> Matrix:
     z, v = motion.displacement[:samples] - motion.displacement[0], motion.velocity[:samples]
     if math.isinf(chain.ks):
         level = np.maximum(_level(chain, z, v), 0.0)
+        friction = _built_up(z, v, level, chain.reach) if chain.reach > 0.0 else level * np.sign(v)
         return np.asarray(
-            chain.b * motion.acceleration[:samples] + chain.c * v + level * np.sign(v) + chain.skew * chain.f
+            chain.b * motion.acceleration[:samples]
+            + (chain.c + chain.square * np.abs(v)) * v
+            + friction
+            + chain.skew * chain.f
         )
     omega = math.sqrt(chain.ks / chain.b)
     parts = math.ceil(max(interval / _FINEST, _STEPS * omega * interval / (2.0 * math.pi)))
@@ -166,18 +257,39 @@ def stepped(chain: Chained, experiment: Experiment, samples: int) -> Matrix:
 
 
 def _level(chain: Chained, z: Matrix, v: Matrix) -> Matrix:
+    wave = 2.0 * math.pi / chain.pitch * z
     return np.asarray(
-        chain.f + chain.rise * np.exp(-((v / chain.speed) ** 2)) + chain.tilt * z + chain.bend * z**2, dtype=float
+        chain.f
+        + chain.rise * np.exp(-((v / chain.speed) ** 2))
+        + chain.tilt * z
+        + chain.bend * z**2
+        + chain.cosine * np.cos(wave)
+        + chain.sine * np.sin(wave),
+        dtype=float,
     )
+
+
+def _built_up(z: Matrix, v: Matrix, level: Matrix, reach: float) -> Matrix:
+    """Friction that approaches its level exponentially with the travel since each reversal (Dahl 1968)."""
+    turned = [0, *(np.flatnonzero(np.diff(np.sign(v)) != 0.0) + 1), v.size]
+    share, last = np.zeros(v.size), 0.0
+    for start, stop in pairwise(turned):
+        way = float(np.sign(v[start]))
+        travel = np.abs(z[start:stop] - z[max(start - 1, 0)])
+        share[start:stop] = way + (last - way) * np.exp(-travel / reach)
+        last = float(share[stop - 1])
+    return np.asarray(share * level)
 
 
 @kernel("force of a device")
 def _march(z: Any, v: Any, interval: float, parts: int, numbers: Any) -> Any:
-    ks, cs, gap, b, f, c, rise, speed, tilt, bend, skew = numbers
+    ks, cs, gap, b, f, c, rise, speed, tilt, bend, skew, reach, square, cubic, slack, beyond, cosine, sine, pitch = (
+        numbers
+    )
     bias = skew * f
     h = interval / parts
     force = np.zeros(z.size)
-    y, w, shaft, side = 0.0, 0.0, 0.0, 0
+    y, w, shaft, side, bristle = 0.0, 0.0, 0.0, 0, 0.0
     stiff = b / h + 0.25 * ks * h + 0.5 * (cs + c)
     loose = b / h + 0.5 * c
     for n in range(1, z.size):
@@ -190,6 +302,9 @@ def _march(z: Any, v: Any, interval: float, parts: int, numbers: Any) -> Any:
             rate += (1.0 - s) * (1.0 - 3.0 * s) * v[n - 1] + s * (3.0 * s - 2.0) * v[n]
             middle, mean = 0.5 * (before + after), 0.5 * (slope + rate)
             level = f + rise * math.exp(-((w / speed) ** 2)) + tilt * y + bend * y * y
+            if cosine != 0.0 or sine != 0.0:
+                level += cosine * math.cos(2.0 * math.pi * y / pitch) + sine * math.sin(2.0 * math.pi * y / pitch)
+            drag = 0.5 * square * abs(w)
             touching = gap == 0.0 or side != 0
             if not touching and abs(after - y - h * w - shaft) >= gap:
                 side = 1 if after - y - h * w - shaft > 0.0 else -1
@@ -197,14 +312,29 @@ def _march(z: Any, v: Any, interval: float, parts: int, numbers: Any) -> Any:
             before_w = w
             if touching:
                 spring = ks * (middle - side * gap - y - 0.25 * h * w)
-                w = _slid(b * w / h + spring + cs * (mean - 0.5 * w) - 0.5 * c * w - bias, level, stiff)
+                inertia = stiff + drag
+                if cubic != 0.0 or beyond != 0.0:
+                    more, slope_more = _hardened(middle - side * gap - y - 0.5 * h * w, cubic, slack, beyond)
+                    spring += more + 0.25 * h * slope_more * w
+                    inertia += 0.25 * h * slope_more
+                push = b * w / h + spring + cs * (mean - 0.5 * w) - (0.5 * c + drag) * w - bias
+                if reach > 0.0:
+                    w, bristle = _crept(push, max(level, 0.0), inertia, h, reach, w, bristle)
+                else:
+                    w = _slid(push, level, inertia)
                 y += 0.5 * h * (before_w + w)
                 shaft = after - y - side * gap
                 pull = ks * shaft + cs * (rate - w)
+                if cubic != 0.0 or beyond != 0.0:
+                    pull += _hardened(shaft, cubic, slack, beyond)[0]
                 if gap > 0.0 and side * pull < 0.0:
                     side, pull = 0, 0.0
             else:
-                w = _slid(b * w / h - 0.5 * c * w - bias, level, loose)
+                push = b * w / h - (0.5 * c + drag) * w - bias
+                if reach > 0.0:
+                    w, bristle = _crept(push, max(level, 0.0), loose + drag, h, reach, w, bristle)
+                else:
+                    w = _slid(push, level, loose + drag)
                 y += 0.5 * h * (before_w + w)
                 shaft *= math.exp(-h * ks / cs) if cs > 0.0 else 0.0
                 pull = 0.0
@@ -221,3 +351,25 @@ def _slid(push: float, level: float, inertia: float) -> float:
     if push < -level:
         return (push + max(level, 0.0)) / inertia
     return 0.0
+
+
+@part()
+def _crept(
+    push: float, level: float, inertia: float, h: float, reach: float, w: float, bristle: float
+) -> tuple[float, float]:
+    """The velocity against friction after Dahl, and its share of the level: implicit in the velocity."""
+    way = 1.0 if w > 0.0 or (w == 0.0 and push > 0.0) else -1.0
+    rate = max(1.0 - bristle * way, 0.0) / reach
+    w = (push - level * bristle) / (inertia + level * rate * h)
+    rate = max(1.0 - bristle * (1.0 if w > 0.0 else -1.0), 0.0) / reach
+    return w, min(max(bristle + h * rate * w, -1.0), 1.0)
+
+
+@part()
+def _hardened(shaft: float, cubic: float, slack: float, beyond: float) -> tuple[float, float]:
+    """What a shaft pulls beyond its stiffness at rest, and the slope of that."""
+    more, slope = cubic * shaft**3, 3.0 * cubic * shaft**2
+    if beyond > 0.0 and abs(shaft) > slack:
+        more += beyond * (shaft - slack if shaft > 0.0 else shaft + slack)
+        slope += beyond
+    return more, slope

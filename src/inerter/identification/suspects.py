@@ -32,6 +32,20 @@ class Suspect(StrEnum):
     STRIBECK = "Stribeck friction"
     BY_POSITION = "friction by position"
     ASYMMETRIC = "asymmetric friction"
+    RIPPLE = "friction ripple"
+    PRESLIDING = "presliding"
+    QUADRATIC = "quadratic damping"
+    STIFFENING = "stiffening shaft"
+    SECOND_GAP = "second gap"
+    SATURATION = "saturation"
+    CLOCK_DRIFT = "clock drift"
+    CROSS_TALK = "cross-talk"
+    FRAME = "frame resonance"
+    HUM = "hum"
+    CHANGED_DEVICE = "changed device"
+    SPIKES = "spikes"
+    HELD = "held values"
+    JOINED = "joined pieces"
 
     def sentence(self, details: Details) -> str:
         """What it says of the device or its sensors, to go on after a colon."""
@@ -75,6 +89,50 @@ def _asymmetric(d: Details) -> str:
     return f"friction is {up} in one direction and {down} in the other"
 
 
+def _at(d: Details) -> str:
+    times = ", ".join(f"{t:.4g}" for t in d["times"]) + (", ..." if d["count"] > len(d["times"]) else "")
+    return f"{d['count']} {'place' if d['count'] == 1 else 'places'}, at {times} s"
+
+
+def _clock(d: Details) -> str:
+    way = "later" if d["growth"] > 0.0 else "earlier"
+    return (
+        f"the clocks of force and displacement differ by {1e6 * abs(d['rate']):.3g} ppm, so that the force comes "
+        f"{1e3 * abs(d['growth']):.3g} ms {way} at the end than at the start"
+    )
+
+
+def _hum(d: Details) -> str:
+    return (
+        f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at {d['frequency']:.4g} Hz, or at an alias "
+        f"of it such as {d['rate'] - d['frequency']:.4g} Hz"
+    )
+
+
+def _saturation(d: Details) -> str:
+    upper, lower = (format_quantity(d[end], "N", 3) for end in ("upper", "lower"))
+    return f"the force is cut off above {upper} or below -{lower} (saturation of the load cell or its amplifier)"
+
+
+def _changed(d: Details) -> str:
+    values = ", ".join(
+        f"{name} {format_quantity(before, unit, 3)} before and {format_quantity(after, unit, 3)} after"
+        for name, unit, before, after in d["values"]
+    )
+    return f"the device changes at {d['time']:.4g} s" + (f": {values}" if values else "")
+
+
+def _cross_talk(d: Details) -> str:
+    return f"the load cell picks up {format_quantity(d['size'], d['unit'], 3)} of the {d['signal']}"
+
+
+def _second_gap(d: Details) -> str:
+    return (
+        f"a second gap closes in the shaft at a deflection of {format_quantity(d['slack'], 'm', 2)}, beyond which it is "
+        f"stiffer by {format_quantity(d['stiffness'], 'N/m', 2)}"
+    )
+
+
 def _always(said: str) -> Callable[[Details], str]:
     return lambda details: said
 
@@ -100,6 +158,32 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
         f"friction depends on the position, by {format_quantity(d['range'], 'N', 3)} over the stroke"
     ),
     Suspect.ASYMMETRIC: _asymmetric,
+    Suspect.RIPPLE: lambda d: (
+        f"friction varies periodically along the stroke, by {format_quantity(d['size'], 'N', 2)} to either side every "
+        f"{format_quantity(d['pitch'], 'm', 3)}"
+    ),
+    Suspect.PRESLIDING: lambda d: (
+        f"friction builds up over {format_quantity(d['distance'], 'm', 2)} of travel after each reversal (presliding)"
+    ),
+    Suspect.QUADRATIC: lambda d: (
+        f"a damping grows with the square of the speed, {format_quantity(d['most'], 'N', 2)} at the largest"
+    ),
+    Suspect.STIFFENING: lambda d: (
+        f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by {100.0 * abs(d['share']):.2g} % at the "
+        f"largest force"
+    ),
+    Suspect.SECOND_GAP: _second_gap,
+    Suspect.SATURATION: _saturation,
+    Suspect.CLOCK_DRIFT: _clock,
+    Suspect.CROSS_TALK: _cross_talk,
+    Suspect.FRAME: lambda d: (
+        f"the frame of the load cell resonates at {d['frequency']:.3g} Hz (damping ratio {d['ratio']:.2g})"
+    ),
+    Suspect.HUM: _hum,
+    Suspect.CHANGED_DEVICE: _changed,
+    Suspect.SPIKES: lambda d: f"spikes replace samples at {_at(d)}",
+    Suspect.HELD: lambda d: f"the recorder held values at {_at(d)}",
+    Suspect.JOINED: lambda d: f"the record is joined from pieces of different runs at {_at(d)}",
 }
 
 
@@ -138,4 +222,18 @@ _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
     Suspect.STRIBECK: _law,
     Suspect.BY_POSITION: _law,
     Suspect.ASYMMETRIC: _law,
+    Suspect.RIPPLE: _law,
+    Suspect.PRESLIDING: _law,
+    Suspect.QUADRATIC: _law,
+    Suspect.STIFFENING: _law,
+    Suspect.SECOND_GAP: _law,
+    Suspect.SATURATION: _constant("move less, or give the range of the load cell so that such samples are left out"),
+    Suspect.CLOCK_DRIFT: _constant("sample both channels by one clock"),
+    Suspect.CROSS_TALK: _constant("separate the cables of the sensors, and read the load cell without the device"),
+    Suspect.FRAME: _constant("stiffen the frame, or excite well below its resonance"),
+    Suspect.HUM: _constant("check grounding and shielding, and filter against aliasing before sampling"),
+    Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as records of their own, ", Remedy(Action.TRIM)),
+    Suspect.SPIKES: _constant("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),
+    Suspect.HELD: _constant("interpolate those samples, ", Remedy(Action.REPAIR)),
+    Suspect.JOINED: _constant("fit each piece as a record of its own, ", Remedy(Action.TRIM)),
 }

@@ -9,12 +9,16 @@ from numpy.typing import NDArray
 from scipy.signal import welch
 
 from inerter.records import signs
+from inerter.records.clocks import clock_drift, jitter
 from inerter.records.finding import Finding, Severity
 from inerter.records.gaps import runs
+from inerter.records.instants import Instant
 from inerter.records.kinds import COARSE, LARGE, RecordFinding
 from inerter.records.lost import losses
+from inerter.records.repair import faulty_instants
 from inerter.records.record import UNIFORM, Record
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
+from inerter.records.spectral_lines import lonely_line
 
 Vector = NDArray[np.float64]
 FEW = 100  # samples, below which little can be fitted
@@ -26,12 +30,13 @@ PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more oft
 def findings(record: Record) -> list[Finding]:
     """What is worth knowing about a record, the gravest first.
 
-    Looks at the sampling, samples that were lost, the size, noise, steps, limits, offset and drift of the channels,
-    swapped columns, hum of the mains, the sign of the force and its delay.
+    Looks at the sampling and its clock, samples that were lost, held or replaced by spikes, joints between pieces, the
+    size, noise, steps, limits, offset and drift of the channels, swapped columns, hum of the mains and other lines, the
+    sign of the force and its delay.
     """
     found = [*_count(record), *_sampling(record), *_lost(record), *_filled(record), *_constant(record), *_sizes(record)]
     if not any(finding.severity == "error" for finding in found):
-        found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record)]
+        found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record), *_instants(record)]
         if record.uniform:
             found += _of_motion(record, smooth_displacement(record))
     order = ("error", "warning", "info")
@@ -42,7 +47,8 @@ def _of_motion(record: Record, motion: Motion) -> list[Finding]:
     names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [
         *_swapped(record),
-        *_hum(record, motion),
+        *(_hum(record, motion) or _line(record, motion)),
+        *_clock(record, motion),
         *signs.sign(record, motion),
         *signs.delay(record, motion),
         Finding(RecordFinding.BANDWIDTH, "info", numbers={name: getattr(motion, name) for name in names}),
@@ -82,6 +88,32 @@ def _lost(record: Record) -> list[Finding]:
     count, at = sum(loss.count for loss in lost), float(record.time[lost[0].after])
     numbers = {"places": float(len(lost)), "samples": float(count), "first": at}
     return [Finding(RecordFinding.LOST_SAMPLES, "warning", "displacement", numbers)]
+
+
+def _instants(record: Record) -> list[Finding]:
+    """Spikes, held values and joints, each kind with the channel that shows it."""
+    faulty = faulty_instants(record)
+    kinds = {
+        RecordFinding.SPIKES: faulty.spikes,
+        RecordFinding.HELD: faulty.held,
+        RecordFinding.JOINED: {"displacement": faulty.joints},
+    }
+    return [
+        Finding(kind, "warning", role, _where(record, instants))
+        for kind, by_role in kinds.items()
+        for role, instants in by_role.items()
+        if instants
+    ]
+
+
+def _where(record: Record, instants: list[Instant]) -> dict[str, float]:
+    return {
+        "places": float(len(instants)),
+        "samples": float(sum(i.stop - i.start for i in instants)),
+        "longest": float(max(i.stop - i.start for i in instants)),
+        "first": float(record.time[instants[0].start]),
+        "largest": max((i.size for i in instants), key=abs),
+    }
 
 
 def _filled(record: Record) -> list[Finding]:
@@ -229,3 +261,25 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
             numbers = {"frequency": mains, "amplitude": amplitude}
             return [Finding(RecordFinding.HUM, "warning", "force", numbers)]
     return []
+
+
+def _line(record: Record, motion: Motion) -> list[Finding]:
+    """A line at any other frequency that stands alone."""
+    line = lonely_line(record, motion)
+    if line is None:
+        return []
+    numbers = {"frequency": line.frequency, "amplitude": line.amplitude, "rate": 1.0 / record.interval}
+    return [Finding(RecordFinding.LINE, "warning", "force", numbers)]
+
+
+def _clock(record: Record, motion: Motion) -> list[Finding]:
+    result = []
+    scatter = jitter(record, motion)
+    if scatter is not None:
+        numbers = {"jitter": scatter, "interval": record.interval}
+        result.append(Finding(RecordFinding.HIDDEN_JITTER, "warning", "displacement", numbers))
+    drift = clock_drift(record, motion)
+    if drift is not None:
+        numbers = {"growth": drift.growth, "standard_error": drift.error, "rate": drift.rate}
+        result.append(Finding(RecordFinding.CLOCK_DRIFT, "warning", numbers=numbers))
+    return result

@@ -40,7 +40,13 @@ class RecordFinding(StrEnum):
     DISPLACEMENT_DRIFT = "displacement-drift"
     FORCE_DRIFT = "force-drift"
     SWAPPED = "swapped"
+    SPIKES = "spikes"
+    HELD = "held"
+    JOINED = "joined"
+    HIDDEN_JITTER = "hidden-jitter"
+    CLOCK_DRIFT = "clock-drift"
     HUM = "hum"
+    LINE = "line"
     SIGN = "sign"
     FORCE_REVERSED = "force-reversed"
     DELAY = "delay"
@@ -90,6 +96,66 @@ def _lost(f: Finding) -> Text:
         f"The displacement leaps along itself at {n['places']:.0f} places, the first at {n['first']:.4g} s: about "
         f"{n['samples']:.0f} samples are lost while the clock goes on. Read the file with ",
         *(Remedy(Action.GAPS, "fill"), ", which puts them in."),
+    )
+
+
+def _spikes(f: Finding) -> Text:
+    n, unit = f.numbers, CHANNELS[f.about]
+    return (
+        f"The {f.about} has {_many(n['places'], 'spike')} of up to {n['largest']:.4g} {unit} in {n['samples']:.0f} "
+        f"samples, the first at {n['first']:.4g} s. Check cables and connectors, or use ",
+        *(Remedy(Action.REPAIR), "."),
+    )
+
+
+def _held(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The {f.about} repeats one value at {_many(n['places'], 'place')}, for up to {n['longest']:.0f} samples, the "
+        f"first at {n['first']:.4g} s: the recorder missed samples and held the last one. Use ",
+        *(Remedy(Action.REPAIR), ", or ", Remedy(Action.TRIM), " those stretches away."),
+    )
+
+
+def _joined(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The displacement jumps at {_many(n['places'], 'place')}, by up to {n['largest']:.4g} m within one interval, "
+        f"the first at {n['first']:.4g} s: the pieces before and after belong to different runs. Use ",
+        *(Remedy(Action.TRIM), " and fit each piece as a record of its own."),
+    )
+
+
+def _many(count: float, noun: str) -> str:
+    return f"one {noun}" if count == 1.0 else f"{count:.0f} {noun}s"
+
+
+def _hidden_jitter(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The displacement scatters in proportion to its speed, as sampling instants that jitter by "
+        f"{1e3 * n['jitter']:.3g} ms (r.m.s., {100.0 * n['jitter'] / n['interval']:.0f} % of an interval) would make it, "
+        f"although the times are even. Sample both channels by one hardware clock, or record the true times.",
+    )
+
+
+def _clock_drift(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The phase between force and displacement moves steadily, as if the force came {1e3 * abs(n['growth']):.3g} ms "
+        f"{'later' if n['growth'] > 0.0 else 'earlier'} at the end than at the start (standard error "
+        f"{1e3 * n['standard_error']:.2g} ms): the clocks of the channels differ by {1e6 * abs(n['rate']):.3g} ppm, or "
+        f"the losses of the device change. Sample both channels by one clock.",
+    )
+
+
+def _line(f: Finding) -> Text:
+    n = f.numbers
+    alias = f" or an alias of it, such as {n['rate'] - n['frequency']:.4g} Hz"
+    return (
+        f"The force has a line of {n['amplitude']:.3g} N at {n['frequency']:.4g} Hz that stands alone in its spectrum "
+        f"and is no multiple of the motion: pickup at that frequency{alias}. Check grounding and shielding, and filter "
+        f"against aliasing before sampling.",
     )
 
 
@@ -241,7 +307,13 @@ _TEXTS: Mapping[RecordFinding, Callable[[Finding], Text]] = {
     RecordFinding.DISPLACEMENT_DRIFT: _drift,
     RecordFinding.FORCE_DRIFT: _drift,
     RecordFinding.SWAPPED: _swapped,
+    RecordFinding.SPIKES: _spikes,
+    RecordFinding.HELD: _held,
+    RecordFinding.JOINED: _joined,
+    RecordFinding.HIDDEN_JITTER: _hidden_jitter,
+    RecordFinding.CLOCK_DRIFT: _clock_drift,
     RecordFinding.HUM: _hum,
+    RecordFinding.LINE: _line,
     RecordFinding.SIGN: _sign,
     RecordFinding.FORCE_REVERSED: _reversed,
     RecordFinding.DELAY: _delay,

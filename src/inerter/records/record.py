@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -44,6 +45,7 @@ class Record:
     fixture_mass_error: float | None = None  # [kg] its standard uncertainty (k = 1), where it is known
     period: float | None = None  # [s] of the excitation, where it is known to repeat
     meta: dict[str, Any] = field(default_factory=dict)  # what else the file said, such as its units
+    further: Mapping[str, Matrix] = field(default_factory=dict)  # (n,) each: other channels by name, as a temperature
 
     def __post_init__(self) -> None:
         size = None
@@ -68,6 +70,12 @@ class Record:
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+        for name, values in self.further.items():
+            if np.shape(values) != self.time.shape or not np.all(np.isfinite(values)):
+                raise RecordError(
+                    f"The further channel {name!r} must have {self.time.size} finite samples, as the time has; got "
+                    f"shape {np.shape(values)}."
+                )
         if self.time.size < 4:
             raise RecordError(f"A record needs at least 4 samples, {self.source!r} has {self.time.size}.")
         if not np.all(np.diff(self.time) > 0.0):
@@ -111,7 +119,12 @@ class Record:
         return bool(np.max(np.abs(self.time - even)) <= UNIFORM * self.interval)
 
     def noted(self, *sentences: str, **changes: Any) -> Record:
-        """The same record with changed fields, and sentences about what was done."""
+        """The same record with changed fields, and sentences about what was done.
+
+        Further channels are interpolated to times that change.
+        """
+        if self.further and "time" in changes and "further" not in changes:
+            changes["further"] = {n: np.interp(changes["time"], self.time, v) for n, v in self.further.items()}
         return replace(self, notes=(*self.notes, *sentences), **changes)
 
     def samples(self, chosen: slice, *sentences: str) -> Record:

@@ -20,6 +20,7 @@ class Action(StrEnum):
     TRIM = "trim"
     RESAMPLE = "resample"
     FILL_GAPS = "fill-gaps"
+    REPAIR = "repair"
     DETREND = "detrend"
     REMOVE_OFFSET = "remove-offset"
     REVERSE_FORCE = "reverse-force"  # a whole sentence with a space before it: a fit does it by itself
@@ -65,6 +66,7 @@ _IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
     Action.TRIM: lambda value: "trim",
     Action.RESAMPLE: lambda value: "resample(record)",
     Action.FILL_GAPS: lambda value: "fill_gaps(record, longest)",
+    Action.REPAIR: lambda value: "repair(record)",
     Action.DETREND: lambda value: "detrend(record)",
     Action.REMOVE_OFFSET: lambda value: "remove_offset(record)",
     Action.REVERSE_FORCE: lambda value: " Use reverse_force(record).",

@@ -40,7 +40,7 @@ from inerter.writing import write_text
 RESPONSE = "response.json"
 OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
 _SEVERITIES = {"error": "Errors", "warning": "Warnings", "info": "Good to know"}
-_MOST_FIGURES = 5  # of one record, and two of all
+_MOST_FIGURES = 6  # of one record, and two of all
 
 
 @dataclass(frozen=True)
@@ -112,6 +112,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             misfit=misfit(found),
             remarks=list(remarks(found)),
             explanations=list(explained(found)),
+            places=[(place.source, place.sentence) for place in fit.localisations],
             candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), str(c.status)) for c in found.candidates],
             choice=[as_options(finding.text) for finding in found.choice],
             chosen=found.name,

@@ -58,6 +58,15 @@ def identification_data(found: Identified) -> dict[str, Any]:
         "explanations": [
             {**vars(e), "misfit": vars(e.misfit), "sentence": e.sentence, "remedy": e.remedy} for e in fit.explanations
         ],
+        "localisations": [
+            {
+                "source": place.source,
+                "sentence": place.sentence,
+                "changes": place.changes,
+                "patterns": [{**vars(pattern), "sentence": pattern.sentence} for pattern in place.patterns],
+            }
+            for place in fit.localisations
+        ],
         "candidates": [{**vars(c), "status": str(c.status)} for c in found.candidates],
         "choice": [finding.sentence for finding in found.choice],
         "settings": {

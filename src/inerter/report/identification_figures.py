@@ -19,8 +19,10 @@ from inerter.figures.identification import (
     response_figure,
     time_figure,
 )
+from inerter.figures.misfit import ResidualSamples, misfit_figure
 from inerter.files.identification.running import Identified, Responses
-from inerter.identification.fit import RecordFit
+from inerter.identification.fit import Localisation, RecordFit
+from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.report.identified_values import Known, known, value_and_interval
 from inerter.units import handy_unit
 
@@ -53,6 +55,10 @@ def figures(found: Identified, answered: Responses) -> Iterator[Drawn]:
         source = comparison.record.source
         received = record_figure(reading.received, comparison.record)
         yield Drawn(f"record{end}", f"record{number}", received, f"{source}, as received and as used.")
+        if found.fit.localisations:
+            place = found.fit.localisations[number]
+            caption = f"{source}: residual force; {place.sentence}. {_MISFIT}"
+            yield Drawn(f"misfit{end}", f"misfit{number}", _misfit(comparison, place), caption)
         for name, figure, caption in _of_fit(comparison):
             yield Drawn(f"{name}{end}", f"fit{number}", figure, f"{source}: {caption}")
     if answered.measured is not None:
@@ -69,6 +75,17 @@ def window(comparison: RecordFit) -> tuple[int, int]:
     turns = max(int(np.count_nonzero(above[1:] != above[:-1])), 1)
     length = max(int(_PERIODS * 2.0 * (last - first) / turns), _FEWEST)
     return max(first, last - length), last
+
+
+def _misfit(c: RecordFit, place: Localisation) -> Figure:
+    used = c.fitted | c.checked
+    motion = c.experiment.motion
+    lines = [float(f.numbers["frequency"]) for f in place.patterns if f.kind is MisfitPattern.LINE]
+    samples = ResidualSamples(
+        c.record.time[used], c.residual[used], motion.displacement[used], motion.velocity[used],
+        (c.model - c.offset)[used], c.draws[:, used], c.record.interval, place.changes[:2], lines,
+    )  # fmt: skip
+    return misfit_figure(samples)
 
 
 def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
@@ -152,3 +169,7 @@ _PROFILES = (
     "end there."
 )
 _SCALED = " Intervals are wider than the curves by the uncertainty of the scales, which no record shows."
+_MISFIT = (
+    "(a) over time, with the times at which it changes; (b) amplitude spectrum; (c) to (e) over displacement, velocity "
+    "and model force, with means of bins; (f) mean over displacement and velocity (restoring-force surface)."
+)

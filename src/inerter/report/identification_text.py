@@ -44,6 +44,9 @@ def _warning(found: Identified) -> Iterator[str]:
     if found.fit.status.ok:
         return
     yield from wrap(f"Not to be relied on: {found.fit.status.message}.", WIDTH)
+    for place in found.fit.localisations:
+        of = f" of {place.source}" if len(found.fit.localisations) > 1 else ""
+        yield from wrap(f"Where{of}: {place.sentence}.", WIDTH)
     said = list(explained(found))
     if said:
         yield ""

@@ -44,6 +44,7 @@ _OPTIONS: Mapping[Action, Callable[[Any], str]] = {
     Action.TRIM: lambda value: "--trim",
     Action.RESAMPLE: lambda value: '--resample, such as --resample "1 ms"',
     Action.FILL_GAPS: lambda value: "--resample",
+    Action.REPAIR: lambda value: f"repair = true in [record] {_CONFIG}",
     Action.DETREND: lambda value: f"detrend = true in [record] {_CONFIG}",
     Action.REMOVE_OFFSET: lambda value: f"detrend = true in [record] {_CONFIG}",
     Action.REVERSE_FORCE: lambda value: "",

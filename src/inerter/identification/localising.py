@@ -1,0 +1,380 @@
+"""Where in a record a fit leaves more than the sensors would: when, at which position, speed, force or frequency.
+
+Every pattern is measured in one currency, the share of the squared residual that a law of that pattern would explain
+(of a Gaussian likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time of
+a period or so: residuals are autocorrelated within them, and hardly between them. Signs of whole blocks are flipped for
+a dependence on the motion, and blocks permuted for one on time; p-values are multiplied by the number of tests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import label
+from scipy.signal import get_window
+
+from inerter.identification.fit import Localisation, RecordFit
+from inerter.identification.misfit_patterns import MisfitPattern
+from inerter.records.finding import Finding
+
+Matrix = NDArray[np.float64]
+SURE = 0.01  # p-value, of all tests together, below which a pattern is no chance
+NOTICED = 0.15  # share that a pattern explains, at least
+_DRAWS = 1999
+_FEWEST_BLOCKS, _MOST_BLOCKS = 20, 60
+_BINS, _PLACES = 8, 24
+_TESTS = 30  # that are made, about
+_CLIP = 8.0  # r.m.s. residuals (of most samples) beyond which one counts no more in a dependence
+_RARE = 0.01  # of the samples: those that may be single instants
+_AS_GOOD = 0.9  # of the best share: quantities that cannot be told apart
+_EDGE = 0.05  # of a record, within which nothing begins
+_NONE = 1.5  # times the noise of the sensors: a part without misfit
+_CLEAR_LINE = 8.0  # amplitude over the median within an octave
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """The samples that are looked at: residual in N and over what sensors leave, and the motion there."""
+
+    time: Matrix
+    residual: Matrix  # [N]
+    level: Matrix  # [N] r.m.s. that sound sensors leave
+    motion: Mapping[str, Matrix]
+    block: NDArray[np.int64]
+    further: Mapping[str, Matrix] = field(default_factory=dict)
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks of time."""
+        return int(self.block[-1]) + 1
+
+
+def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
+    """Patterns in the residual of one record, those that explain most of it first; empty where there is none."""
+    random = np.random.default_rng([seed, 7])
+    s = _samples(c)
+    bounded = replace(s, residual=_winsorised(s.residual))
+    found = [
+        *_instants(s),
+        *_over_time(bounded, random),
+        *_coefficients(bounded, random),
+        *_means(bounded, random),
+        *_spreads(bounded, random),
+        *_channels(bounded, random),
+        *_spectral(s, c),
+    ]
+    chosen = [f for f in found if f.numbers["p"] * _TESTS < SURE and f.numbers["share"] > NOTICED]
+    chosen.sort(key=lambda f: -f.numbers["share"])
+    return Localisation(c.record.source, tuple(replace(f, numbers=_corrected(f)) for f in chosen))
+
+
+def _corrected(f: Finding) -> dict[str, object]:
+    return {**f.numbers, "p": min(f.numbers["p"] * _TESTS, 1.0)}
+
+
+def _samples(c: RecordFit) -> Samples:
+    used = c.fitted | c.checked
+    motion, force = c.experiment.motion, c.model - c.offset
+    velocity, interval = motion.velocity, c.record.interval
+    turned = np.flatnonzero(np.diff(np.sign(velocity)) != 0.0) + 1
+    since = np.zeros(velocity.size)
+    for start, stop in zip([0, *turned], [*turned, velocity.size], strict=True):
+        since[start:stop] = np.abs(motion.displacement[start:stop] - motion.displacement[start])
+    signals = {
+        "displacement": motion.displacement,
+        "velocity": velocity,
+        "acceleration": motion.acceleration,
+        "force": force,
+        "force rate": np.gradient(force, interval),
+        "travel since the last reversal": since,
+    }
+    count = int(used.sum())
+    blocks = int(np.clip(turned.size // 2, _FEWEST_BLOCKS, _MOST_BLOCKS))
+    level = np.sqrt(np.mean(c.draws**2, axis=0))
+    level = np.sqrt(np.convolve(level**2, np.ones(5) / 5.0, "same")) + 1e-12
+    return Samples(
+        c.record.time[used],
+        c.residual[used],
+        np.maximum(level, 0.3 * float(np.median(level)))[used],
+        {name: values[used] for name, values in signals.items()},
+        np.arange(count) * blocks // count,
+        {name: values[used] for name, values in c.record.further.items()},
+    )
+
+
+def _winsorised(residual: Matrix) -> Matrix:
+    limit = _CLIP * float(np.sqrt(np.quantile(residual**2, 0.9) / 2.7)) + 1e-300
+    return np.clip(residual, -limit, limit)
+
+
+def _share(before: float, after: float) -> float:
+    """Part of a mean square that is gone."""
+    return 1.0 - after / max(before, 1e-300)
+
+
+def _instants(s: Samples) -> Iterator[Finding]:
+    """A hundredth of the samples that holds most of the squared residual."""
+    square = (s.residual / s.level) ** 2
+    most = np.sort(square)[-max(int(_RARE * square.size), 1) :]
+    rest = (float(square.sum()) - float(most.sum())) / (square.size - most.size)
+    inside = float(most.mean())
+    share = _share(float(square.mean()), math.exp((1.0 - _RARE) * math.log(rest) + _RARE * math.log(inside)))
+    share *= float(most.sum()) / float(square.sum())
+    if most.sum() < 0.5 * square.sum() or inside < 30.0 * rest:
+        return
+    marked = square > max(0.05 * float(square.max()), 25.0 * rest)
+    near = np.convolve(marked, np.ones(7), "same") > 0.0
+    number, count = label(near)
+    peaks = [int(np.argmax(np.where(number == i, square, 0.0))) for i in range(1, min(count, 200) + 1)]
+    numbers = {
+        "count": count, "times": tuple(float(s.time[p]) for p in peaks[:6]),
+        "largest": float(np.abs(s.residual[peaks]).max()), "share": share, "p": 0.0,
+    }  # fmt: skip
+    yield Finding(MisfitPattern.INSTANTS, "info", numbers=numbers)
+
+
+def _over_time(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+    """A level of the residual that steps or grows."""
+    square = (s.residual / s.level) ** 2
+    sizes = np.bincount(s.block)
+    mean = np.bincount(s.block, square) / sizes
+    log = np.log(np.maximum(mean, 1e-12))
+    order = np.argsort(random.random((_DRAWS, s.blocks)), axis=1)
+    step, trend = _cusum(log), _slope(log)
+    p_step = _p(step, _cusum(log[order]))
+    p_trend = _p(trend, _slope(log[order]))
+    at = _split(square)
+    before, after = float(square[:at].mean()), float(square[at:].mean())
+    w = at / square.size
+    of_step = _share(float(square.mean()), math.exp(w * math.log(before) + (1.0 - w) * math.log(after)))
+    place = np.arange(s.blocks) - 0.5 * (s.blocks - 1)
+    slope = float(place @ (log - log.mean())) / float(place @ place)
+    line = slope * place
+    line += math.log(max(float(np.mean(mean * np.exp(-line))), 1e-300))
+    of_trend = _share(float(mean.mean()), math.exp(float(line.mean())))
+    time = float(s.time[at])
+    numbers = {"before": math.sqrt(before), "after": math.sqrt(after), "time": time}
+    if of_step > 1.1 * of_trend:
+        begins, ends = math.sqrt(before) < _NONE, math.sqrt(after) < _NONE
+        kind = MisfitPattern.BEGINS if begins else MisfitPattern.ENDS if ends else MisfitPattern.LEVEL_STEP
+        yield Finding(kind, "info", numbers={**numbers, "share": of_step, "p": p_step})
+    else:
+        ends_of = {"before": math.exp(0.5 * float(line[0])), "after": math.exp(0.5 * float(line[-1]))}
+        yield Finding(MisfitPattern.GROWS, "info", numbers={**ends_of, "share": of_trend, "p": p_trend})
+
+
+def _split(square: Matrix) -> int:
+    """The sample at which the level of squares steps, by the likelihood of two levels."""
+    n = square.size
+    edge = max(int(_EDGE * n), 8)
+    total = np.cumsum(square)
+    k = np.arange(edge, n - edge)
+    before, after = total[k - 1] / k, (total[-1] - total[k - 1]) / (n - k)
+    cost = k * np.log(np.maximum(before, 1e-300)) + (n - k) * np.log(np.maximum(after, 1e-300))
+    return int(k[np.argmin(cost)])
+
+
+def _cusum(rows: Matrix) -> Matrix:
+    """Largest excursion of the cumulative sum of each row about its mean."""
+    return np.asarray(np.abs(np.cumsum(rows - rows.mean(axis=-1, keepdims=True), axis=-1)).max(axis=-1))
+
+
+def _slope(rows: Matrix) -> Matrix:
+    place = np.arange(rows.shape[-1]) - 0.5 * (rows.shape[-1] - 1)
+    return np.asarray(np.abs((rows - rows.mean(axis=-1, keepdims=True)) @ place))
+
+
+def _p(found: Matrix, drawn: Matrix) -> float:
+    return (1.0 + float(np.sum(drawn >= found * (1.0 - 1e-12)))) / (1.0 + drawn.size)
+
+
+def _coefficients(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+    """Coefficients of the residual on a signal that step or go steadily over time."""
+    signals = {"constant": np.ones(s.time.size), "direction": np.sign(s.motion["velocity"])}
+    signals |= {name: s.motion[name] for name in ("displacement", "velocity", "acceleration", "force", "force rate")}
+    order = np.argsort(random.random((_DRAWS, s.blocks)), axis=1)
+    square = float(s.residual @ s.residual)
+    for name, q in signals.items():
+        both, own = s.residual * q, q * q
+        product, power = np.bincount(s.block, both), np.maximum(np.bincount(s.block, own), 1e-300)
+        mean = float(product.sum() / power.sum())
+        score = product - mean * power  # of each block; it sums to zero where the coefficient is constant
+        constant = square - float(product.sum()) ** 2 / float(power.sum())
+        place = np.arange(s.blocks) - 0.5 * (s.blocks - 1)
+        columns = np.stack([power, power * place, power * place**2]).sum(axis=1)
+        inverse = np.linalg.inv(np.array([[columns[0], columns[1]], [columns[1], columns[2]]]))
+        linear = inverse @ np.array([product.sum(), place @ product])
+        of_trend = square - float(linear @ np.array([product.sum(), place @ product]))
+        at, of_step, change = _coefficient_split(both, own, square)
+        if min(of_trend, of_step) > (1.0 - NOTICED) * constant:
+            continue
+        shares = {"share": _share(square, of_step), "time": float(s.time[at]), "change": change}
+        if _share(constant, of_step) > 1.1 * _share(constant, of_trend):
+            p = _p(_cusum(score), _cusum(score[order]))
+            yield Finding(MisfitPattern.COEFFICIENT_STEP, "info", name, {**shares, "p": p})
+        else:
+            p = _p(_slope(score), _slope(score[order]))
+            size = {"share": _share(square, of_trend), "change": float(linear[1]) * (s.blocks - 1)}
+            yield Finding(MisfitPattern.COEFFICIENT_TREND, "info", name, {**size, "p": p})
+
+
+def _coefficient_split(both: Matrix, own: Matrix, square: float) -> tuple[int, float, float]:
+    """The sample at which a coefficient steps, the squares that two leave, and by how much it changes."""
+    n = both.size
+    edge = max(int(_EDGE * n), 8)
+    a, b = np.cumsum(both), np.maximum(np.cumsum(own), 1e-300)
+    k = np.arange(edge, n - edge)
+    later = np.maximum(b[-1] - b[k - 1], 1e-300)
+    left = square - a[k - 1] ** 2 / b[k - 1] - (a[-1] - a[k - 1]) ** 2 / later
+    best = int(np.argmin(left))
+    at = int(k[best])
+    return at, float(left[best]), float((a[-1] - a[at - 1]) / later[best] - a[at - 1] / b[at - 1])
+
+
+def _means(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+    """The quantity of which the mean residual is a function, with those that do as well."""
+    found = []
+    signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
+    direction = np.sign(s.motion["velocity"])
+    for name, q in s.motion.items():
+        residual = s.residual * direction if name.startswith("travel") else s.residual
+        bins, centre = _bins(q, _BINS)
+        means, share, p = _flipped(residual, bins, s.block, signs)
+        low, high = int(np.argmin(means)), int(np.argmax(means))
+        numbers = {
+            "share": share, "p": p, "least": float(means[low]), "most": float(means[high]),
+            "at_least": float(centre[low]), "at_most": float(centre[high]),
+            "centres": tuple(centre.tolist()), "means": tuple(means.tolist()),
+        }  # fmt: skip
+        found.append(Finding(MisfitPattern.MEAN, "info", name, numbers))
+    found.sort(key=lambda f: -f.numbers["share"])
+    best = found[0]
+    others = tuple(f.about for f in found[1:] if f.numbers["share"] > _AS_GOOD * best.numbers["share"])
+    yield replace(best, numbers={**best.numbers, "others": others})
+
+
+def _flipped(
+    values: Matrix, bins: NDArray[np.int64], block: NDArray[np.int64], signs: Matrix
+) -> tuple[Matrix, float, float]:
+    """Means in each bin, the share of the squares that they explain beyond chance, and its p-value."""
+    count, blocks = int(bins.max()) + 1, int(block[-1]) + 1
+    sums = np.bincount(block * count + bins, values, blocks * count).reshape(blocks, count)
+    size = np.maximum(np.bincount(bins, minlength=count), 1)
+    square = float(values @ values)
+    found = float(np.sum(sums.sum(axis=0) ** 2 / size)) / max(square, 1e-300)
+    drawn = np.sum((signs @ sums) ** 2 / size, axis=1) / max(square, 1e-300)
+    chance = float(drawn.mean())
+    return sums.sum(axis=0) / size, max((found - chance) / max(1.0 - chance, 1e-9), 0.0), _p(np.array(found), drawn)
+
+
+def _bins(q: Matrix, count: int) -> tuple[NDArray[np.int64], Matrix]:
+    """The bin of each sample, all with as many samples, and the medians in each."""
+    edges = np.unique(np.quantile(q, np.arange(1, count) / count))
+    bins = np.searchsorted(edges, q, side="right")
+    return bins, np.array([float(np.median(q[bins == i])) if np.any(bins == i) else 0.0 for i in range(edges.size + 1)])
+
+
+def _spreads(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+    """The quantity with whose size the scatter of the residual grows, and few positions at which it sits."""
+    signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
+    square = s.residual**2
+    sizes = np.bincount(s.block)
+    within = np.abs(s.residual) - (np.bincount(s.block, np.abs(s.residual)) / sizes)[s.block]
+    found = []
+    for name in ("velocity", "acceleration", "force", "force rate"):
+        bins, _ = _bins(np.abs(s.motion[name]), _BINS)
+        _, _, p = _flipped(within, bins, s.block, signs)
+        means = np.array([float(square[bins == i].mean()) for i in range(int(bins.max()) + 1)])
+        share = _log_share(means, np.bincount(bins))
+        numbers = {"share": share, "p": p, "low": math.sqrt(means[0]), "high": math.sqrt(means[-1])}
+        found.append(Finding(MisfitPattern.SPREAD, "info", name, numbers))
+    found.sort(key=lambda f: -f.numbers["share"])
+    others = tuple(f.about for f in found[1:] if f.numbers["share"] > _AS_GOOD * found[0].numbers["share"])
+    yield replace(found[0], numbers={**found[0].numbers, "others": others})
+    yield from _positions(s, square, within, signs)
+
+
+def _log_share(means: Matrix, weights: NDArray[np.int64]) -> float:
+    w = weights / weights.sum()
+    return _share(float(w @ means), math.exp(float(w @ np.log(np.maximum(means, 1e-300)))))
+
+
+def _positions(s: Samples, square: Matrix, within: Matrix, signs: Matrix) -> Iterator[Finding]:
+    """Up to three stretches of the travel, a quarter of it together, that hold most of the misfit."""
+    x = s.motion["displacement"]
+    low, high = np.quantile(x, (0.002, 0.998))
+    if not high > low:
+        return
+    bins = np.clip(((x - low) / (high - low) * _PLACES).astype(np.int64), 0, _PLACES - 1)
+    count = np.bincount(bins, minlength=_PLACES)
+    means = np.bincount(bins, square, _PLACES) / np.maximum(count, 1)
+    share = _log_share(means[count > 0], count[count > 0])
+    _, _, p = _flipped(within, bins, s.block, signs)
+    high_places = means > 0.5 * float(means.max())
+    number, places = label(high_places)
+    held = float(means[high_places] @ count[high_places]) / max(float(square.sum()), 1e-300)
+    if not 1 <= places <= 3 or high_places.mean() > 0.25 or held < 0.5:
+        return
+    centres = low + (np.arange(_PLACES) + 0.5) * (high - low) / _PLACES
+    at = tuple(float(np.average(centres[number == i], weights=means[number == i])) for i in range(1, places + 1))
+    yield Finding(MisfitPattern.POSITIONS, "info", "displacement", {"share": share, "p": p, "places": at, "held": held})
+
+
+def _channels(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+    """Further channels, such as a temperature, with which the level of the residual goes from block to block."""
+    square = (s.residual / s.level) ** 2
+    sizes = np.bincount(s.block)
+    log = np.log(np.maximum(np.bincount(s.block, square) / sizes, 1e-12))
+    rank = np.argsort(np.argsort(log)).astype(float)
+    order = np.argsort(random.random((_DRAWS, s.blocks)), axis=1)
+    for name, values in s.further.items():
+        usual = np.argsort(np.argsort(np.bincount(s.block, values) / sizes)).astype(float)
+        usual -= usual.mean()
+        r = float(usual @ rank) / max(float(np.linalg.norm(usual) * np.linalg.norm(rank - rank.mean())), 1e-300)
+        p = _p(np.array(abs(float(usual @ rank))), np.abs(rank[order] @ usual))
+        columns = np.column_stack([np.ones(usual.size), usual])
+        fitted = columns @ np.linalg.lstsq(columns, log, rcond=None)[0]
+        share = _share(float(np.mean(np.exp(log))), math.exp(float(np.mean(log)))) * r**2
+        del fitted
+        yield Finding(MisfitPattern.CHANNEL, "info", name, {"share": share, "p": p, "correlation": r})
+
+
+def _spectral(s: Samples, c: RecordFit) -> Iterator[Finding]:
+    """A line that stands alone in the spectrum of the residual, or a band that holds most of it."""
+    n = s.residual.size
+    window = get_window("hann", n)
+    scale = 2.0 / float(window.sum())
+    amplitude = scale * np.abs(np.fft.rfft(window * (s.residual - s.residual.mean())))
+    force = scale * np.abs(np.fft.rfft(window * (s.motion["force"] - s.motion["force"].mean())))
+    sound = scale * np.sqrt(np.mean(np.abs(np.fft.rfft(window * c.draws[:, c.fitted | c.checked])) ** 2, axis=0))
+    frequency = np.fft.rfftfreq(n, c.record.interval)
+    excess = np.maximum(amplitude**2 - sound**2, 0.0)
+    excess[:2] = 0.0
+    total = float(np.sum(amplitude[2:] ** 2))
+    at = int(np.argmax(excess))
+    main = slice(max(at - 3, 0), at + 4)
+    beside = np.r_[max(int(at / 1.4), 2) : max(at - 4, 2), at + 5 : min(int(1.4 * at) + 8, amplitude.size)]
+    share = float(np.sum(amplitude[main] ** 2)) / max(total, 1e-300)
+    if beside.size > 8 and amplitude[at] > _CLEAR_LINE * float(np.median(amplitude[beside])):
+        foreign = bool(force[at] < 0.5 * amplitude[at])
+        numbers = {
+            "frequency": float(frequency[at]), "amplitude": float(amplitude[at]), "foreign": foreign,
+            "share": share if foreign else 0.5 * share, "p": 0.0,
+        }  # fmt: skip
+        yield Finding(MisfitPattern.LINE, "info", numbers=numbers)
+    yield from _band(frequency, excess, total, c.experiment.motion.highest)
+
+
+def _band(frequency: Matrix, excess: Matrix, total: float, highest: float) -> Iterator[Finding]:
+    """The middle 80 % of the excess, if it is less than an octave wide and lies above the motion."""
+    part = np.cumsum(excess)
+    if part[-1] < NOTICED * total:
+        return
+    low, high = (float(frequency[int(np.searchsorted(part, q * part[-1]))]) for q in (0.1, 0.9))
+    if 0.8 * highest < low and high < 2.0 * low and high > low:
+        numbers = {"low": low, "high": high, "highest": highest, "share": 0.8 * float(part[-1]) / total, "p": 0.0}
+        yield Finding(MisfitPattern.BAND, "info", numbers=numbers)

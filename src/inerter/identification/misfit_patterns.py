@@ -1,0 +1,152 @@
+"""Patterns in what a fit leaves of the force, and how each is said: when, where, at which speed or frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+
+from inerter.records.finding import Finding
+from inerter.records.remedy import Text
+from inerter.units import format_quantity
+
+UNITS = {  # of what the residual may depend on
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "force": "N",
+    "force rate": "N/s",
+    "travel since the last reversal": "m",
+}
+COEFFICIENTS = {  # of the residual on a signal: what it is like, and its unit
+    "constant": ("an offset of the load cell", "N"),
+    "displacement": ("a stiffness", "N/m"),
+    "velocity": ("a damping", "N s/m"),
+    "acceleration": ("an inertance", "kg"),
+    "direction": ("a friction", "N"),
+    "force": ("a gain of the load cell", ""),
+    "force rate": ("a delay of the force", "s"),
+}
+
+
+class MisfitPattern(StrEnum):
+    """The kinds of patterns in a residual."""
+
+    BEGINS = "begins"
+    ENDS = "ends"
+    LEVEL_STEP = "level-step"
+    GROWS = "grows"
+    COEFFICIENT_STEP = "coefficient-step"
+    COEFFICIENT_TREND = "coefficient-trend"
+    CHANNEL = "channel"
+    MEAN = "mean"
+    SPREAD = "spread"
+    POSITIONS = "positions"
+    LINE = "line"
+    BAND = "band"
+    INSTANTS = "instants"
+
+    def text(self, finding: Finding) -> Text:
+        """The parts of the sentence of such a pattern, to go on after a colon."""
+        return (_TEXTS[self](finding),)
+
+
+def _times(f: Finding) -> str:
+    n = f.numbers
+    return f"{n['before']:.2g} times the sensor noise before, {n['after']:.2g} times after"
+
+
+def _grows(f: Finding) -> str:
+    n = f.numbers
+    way = "grows" if n["after"] > n["before"] else "decreases"
+    return f"the misfit {way} over the record, from {n['before']:.2g} to {n['after']:.2g} times the sensor noise"
+
+
+def _size(f: Finding, key: str) -> str:
+    unit = COEFFICIENTS[f.about][1]
+    size = f.numbers[key]
+    return format_quantity(size, unit, 3) if unit else f"{100.0 * size:.3g} %"
+
+
+def _coefficient_step(f: Finding) -> str:
+    like = COEFFICIENTS[f.about][0]
+    return f"the misfit is like {like} that changes by {_size(f, 'change')} at {f.numbers['time']:.4g} s"
+
+
+def _coefficient_trend(f: Finding) -> str:
+    like = COEFFICIENTS[f.about][0]
+    return f"the misfit is like {like} that changes steadily, by {_size(f, 'change')} over the record"
+
+
+def _channel(f: Finding) -> str:
+    n = f.numbers
+    return f"the misfit {'grows' if n['correlation'] > 0.0 else 'decreases'} with the {f.about} of the run"
+
+
+def _also(f: Finding) -> str:
+    """Quantities with which the residual goes as well, as in a motion of one frequency."""
+    others = f.numbers.get("others", ())
+    return f" or, which this motion does not separate, the {' or the '.join(others)}" if others else ""
+
+
+def _mean(f: Finding) -> str:
+    return f"the misfit depends on the {f.about}{_also(f)}: {_range(f)}"
+
+
+def _range(f: Finding) -> str:
+    n, unit = f.numbers, UNITS[f.about]
+    low, high = (format_quantity(n[which], unit, 2) for which in ("at_least", "at_most"))
+    least, most = (format_quantity(n[which], "N", 2) for which in ("least", "most"))
+    return f"{least} at {low}, {most} at {high}"
+
+
+def _spread(f: Finding) -> str:
+    n = f.numbers
+    how = "grows" if n["high"] > n["low"] else "decreases"
+    return (
+        f"the scatter of the misfit {how} with the size of the {f.about}{_also(f)}, "
+        f"from {format_quantity(n['low'], 'N', 2)} to {format_quantity(n['high'], 'N', 2)}"
+    )
+
+
+def _positions(f: Finding) -> str:
+    at = [format_quantity(place, "m", 3) for place in f.numbers["places"]]
+    where = "one position" if len(at) == 1 else f"{len(at)} positions"
+    return f"the misfit sits at {where}: {', '.join(at)}"
+
+
+def _line(f: Finding) -> str:
+    n = f.numbers
+    foreign = "which the motion does not excite" if n["foreign"] else "which the motion excites"
+    size = format_quantity(n["amplitude"], "N", 3)
+    return f"the misfit is a line of {size} at {n['frequency']:.4g} Hz, {foreign}"
+
+
+def _band(f: Finding) -> str:
+    n = f.numbers
+    where = ", above the motion" if n["low"] > n["highest"] else ""
+    return f"the misfit lies between {n['low']:.3g} and {n['high']:.3g} Hz{where}"
+
+
+def _instants(f: Finding) -> str:
+    n = f.numbers
+    times = ", ".join(f"{t:.4g}" for t in n["times"])
+    more = ", ..." if n["count"] > len(n["times"]) else ""
+    where = "one instant" if n["count"] == 1 else f"{n['count']} instants"
+    return f"the misfit sits at {where}, of up to {format_quantity(n['largest'], 'N', 3)}: at {times}{more} s"
+
+
+_TEXTS: Mapping[MisfitPattern, Callable[[Finding], str]] = {
+    MisfitPattern.BEGINS: lambda f: f"the misfit begins at {f.numbers['time']:.4g} s: {_times(f)}",
+    MisfitPattern.ENDS: lambda f: f"the misfit ends at {f.numbers['time']:.4g} s: {_times(f)}",
+    MisfitPattern.LEVEL_STEP: lambda f: f"the misfit changes at {f.numbers['time']:.4g} s: {_times(f)}",
+    MisfitPattern.GROWS: _grows,
+    MisfitPattern.COEFFICIENT_STEP: _coefficient_step,
+    MisfitPattern.COEFFICIENT_TREND: _coefficient_trend,
+    MisfitPattern.CHANNEL: _channel,
+    MisfitPattern.MEAN: _mean,
+    MisfitPattern.SPREAD: _spread,
+    MisfitPattern.POSITIONS: _positions,
+    MisfitPattern.LINE: _line,
+    MisfitPattern.BAND: _band,
+    MisfitPattern.INSTANTS: _instants,
+}

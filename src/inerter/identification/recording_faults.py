@@ -1,0 +1,246 @@
+"""Further hypotheses on the sensors, the frame and the recorder, some of them prompted by where the misfit is.
+
+A line, a change at an instant and faulty samples are looked for where the residual or the record shows them; the others
+are tried in any record.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import bilinear, lfilter
+
+from inerter.identification.experiment import Experiment, experiment_of, reading_of
+from inerter.identification.fit import Localisation
+from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.identification.misfit_patterns import MisfitPattern
+from inerter.identification.problem import FitProblem
+from inerter.identification.suspects import Details, Suspect
+from inerter.records.instants import Instant
+from inerter.records.record import Record
+from inerter.records.repair import faulty_instants, repair
+
+Matrix = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+_FASTEST_CLOCK = 0.01  # relative difference of two clocks, at most
+_RESONANCES = (15.0, 40.0, 100.0)  # [Hz] where a resonance of the frame is looked for
+_BESIDE = 10  # samples to either side of repaired ones that are not compared
+_SETTLED = 0.3  # [s] after a joint that are not compared, while the device forgets
+_FITTED = 0.75  # of a record, after which a change is hardly fitted
+_INDEX = (MisfitPattern.COEFFICIENT_STEP, MisfitPattern.BEGINS, MisfitPattern.ENDS, MisfitPattern.LEVEL_STEP)
+
+
+def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Iterator[Hypothesis]:
+    """What sensors, frame and recorder may do beyond the usual, in these records and with this misfit."""
+    peak = max(float(np.abs(e.record.force).max()) for e in problem.experiments)
+    stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
+    fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
+    yield _saturation(problem.experiments)
+    yield _clock(any(h.name is Suspect.DELAY for h in problem.assumed), problem.experiments)
+    yield _cross_talk("displacement", "N/m", peak / stroke)
+    yield _cross_talk("velocity", "N s/m", peak / fastest)
+    yield _frame()
+    for e, place in zip(problem.experiments, places, strict=False):
+        lines = (f for f in place.patterns if f.kind is MisfitPattern.LINE and f.numbers["foreign"])
+        for found in lines:
+            yield _hum(e.record, float(found.numbers["frequency"]), float(found.numbers["amplitude"]))
+        changes = [float(f.numbers["time"]) for f in place.patterns if f.kind in _INDEX]
+        begun = float(e.record.time[0])
+        for change in changes[:1]:
+            if change - begun < _FITTED * e.record.duration:
+                yield _changed_device(problem, e.record, change)
+
+
+def _saturation(experiments: Sequence[Experiment]) -> Hypothesis:
+    """A force that is cut off at an upper and a lower limit, which are about the extremes that were read."""
+    upper, lower = Unknown("upper limit", "N", 1e-3, 1e6, 1.0), Unknown("lower limit", "N", 1e-3, 1e6, 1.0)
+    centred = [e.record.force - float(np.median(e.record.force)) for e in experiments]
+    high, low = max(float(f.max()) for f in centred), max(float(-f.min()) for f in centred)
+    start = {upper.name: max(0.97 * high, 2e-3), lower.name: max(0.97 * low, 2e-3)}
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        return np.clip(force, -values[lower.name], values[upper.name])
+
+    def details(values: Values) -> Details:
+        return {"upper": values[upper.name], "lower": values[lower.name]}
+
+    return Hypothesis(Suspect.SATURATION, (upper, lower), read=read, details=details, starts=(start,))
+
+
+def _clock(delay_known: bool, experiments: Sequence[Experiment]) -> Hypothesis:
+    """A delay that grows with time; where it begins is free too, unless a delay is assumed already."""
+    rate, begun = (
+        Unknown("clock rate", "", -_FASTEST_CLOCK, _FASTEST_CLOCK, 2e-4),
+        Unknown("first delay", "s", -0.02, 0.02, 1e-3),
+    )
+    duration = max(e.record.duration for e in experiments)
+
+    def moved(e: Experiment, values: Values) -> Experiment:
+        time = e.motion.time - e.motion.time[0]
+        return e.late(values.get(begun.name, 0.0) + values[rate.name] * time)
+
+    def details(values: Values) -> Details:
+        return {"rate": values[rate.name], "growth": values[rate.name] * duration}
+
+    unknowns = (rate,) if delay_known else (rate, begun)
+    return Hypothesis(Suspect.CLOCK_DRIFT, unknowns, moved=moved, details=details)
+
+
+def _cross_talk(signal: str, unit: str, size: float) -> Hypothesis:
+    """A load cell that reads some of the displacement or velocity too."""
+    unknown = Unknown(f"cross-talk of the {signal}", unit, -10.0 * size, 10.0 * size, 0.05 * size)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        moved = getattr(e.motion, signal)[: force.size]
+        return np.asarray(force + values[unknown.name] * through_cell(moved, e))
+
+    def details(values: Values) -> Details:
+        return {"signal": signal, "unit": unit, "size": values[unknown.name]}
+
+    return Hypothesis(Suspect.CROSS_TALK, (unknown,), read=read, details=details)
+
+
+def _frame() -> Hypothesis:
+    """A load cell on a frame that resonates: it reads the force times the response of a mass on a spring."""
+    frequency, ratio = Unknown("frame frequency", "Hz", 3.0, 1e4, 1.0), Unknown("frame damping", "", 1e-3, 2.0, 0.05)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        rate = 1.0 / e.record.interval
+        if values[frequency.name] >= 0.45 * rate:
+            return force
+        w = 2.0 * rate * math.tan(math.pi * values[frequency.name] / rate)
+        b, a = bilinear([w**2], [1.0, 2.0 * values[ratio.name] * w, w**2], rate)
+        return np.asarray(lfilter(b, a, force - force[0]) + force[0])
+
+    def details(values: Values) -> Details:
+        return {"frequency": values[frequency.name], "ratio": values[ratio.name]}
+
+    starts = tuple({frequency.name: f, ratio.name: 0.05} for f in _RESONANCES)
+    return Hypothesis(Suspect.FRAME, (frequency, ratio), read=read, details=details, starts=starts)
+
+
+def _hum(record: Record, frequency: float, amplitude: float) -> Hypothesis:
+    """A sine in the force of one record, near a line of the residual."""
+    width = 1.0 / record.duration
+    names = ("hum, cosine", "hum, sine", "hum, frequency")
+    unknowns = (
+        Unknown(names[0], "N", -20.0 * amplitude, 20.0 * amplitude, 0.2 * amplitude),
+        Unknown(names[1], "N", -20.0 * amplitude, 20.0 * amplitude, 0.2 * amplitude),
+        Unknown(names[2], "Hz", -2.0 * width, 2.0 * width, 0.2 * width),
+    )
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        if e.record is not record:
+            return force
+        time = record.time[: force.size] - record.time.mean()
+        phase = 2.0 * math.pi * (frequency + values[names[2]]) * time
+        return np.asarray(force + values[names[0]] * np.cos(phase) + values[names[1]] * np.sin(phase))
+
+    def details(values: Values) -> Details:
+        size = math.hypot(values[names[0]], values[names[1]])
+        return {"frequency": frequency + values[names[2]], "amplitude": size, "rate": 1.0 / record.interval}
+
+    starts = tuple({names[i]: s * amplitude} for i in (0, 1) for s in (1.0, -1.0))
+    return Hypothesis(Suspect.HUM, unknowns, read=read, details=details, starts=starts)
+
+
+def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothesis:
+    """A device with other values from one instant of a record on."""
+    space = problem.space
+    later = {
+        name: f"{name} afterwards" for name, kind in zip(space.names, space.kinds, strict=True) if kind is not None
+    }
+    bounds = {n: (float(a), float(b)) for n, a, b in zip(space.names, space.lower, space.upper, strict=True)}
+    units = dict(zip(space.names, space.units, strict=True))
+    unknowns = tuple(Unknown(later[n], units[n], *bounds[n], 0.1 * bounds[n][1]) for n in later)
+    bare = replace(problem, assumed=(), systems={})
+
+    def force_with(e: Experiment, values: Values, size: int) -> Matrix | None:
+        known = {n: values.get(n, bounds[n][0]) for n in space.names}
+        system = bare.system(space.placed(known), e.record)
+        run = None if system is None else e.run(system, size)
+        return None if run is None else run[reading_of(e.record)]
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        if e.record is not record:
+            return force
+        before = force_with(e, values, force.size)
+        after = force_with(e, {**values, **{n: values[other] for n, other in later.items()}}, force.size)
+        if before is None or after is None:
+            return force
+        return np.asarray(force + np.where(e.record.time[: force.size] >= time, after - before, 0.0))
+
+    def details(values: Values) -> Details:
+        pairs = [(n, units[n], values[n], values[other]) for n, other in later.items()]
+        return {"time": time, "values": tuple(p for p in pairs if abs(p[3] - p[2]) > 0.01 * abs(p[2]))}
+
+    return Hypothesis(Suspect.CHANGED_DEVICE, unknowns, read=read, details=details, alike=later)
+
+
+def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
+    """Spikes and held values, interpolated; and joints, closed up and not compared for a while."""
+    found = [(e, faulty_instants(e.record)) for e in experiments]
+    rows: list[Hypothesis] = []
+    kinds = ((Suspect.SPIKES, "spikes"), (Suspect.HELD, "held"))
+    for name, kind in kinds:
+        marked = {id(e.record): [i for role in getattr(f, kind).values() for i in role] for e, f in found}
+        if any(marked.values()):
+            rows.append(_repaired(name, experiments, marked, repair, _BESIDE))
+    joints = {id(e.record): f.joints for e, f in found}
+    if any(joints.values()):
+        rows.append(_repaired(Suspect.JOINED, experiments, joints, lambda r: _closed(r, joints[id(r)]), None))
+    return rows
+
+
+def _repaired(
+    name: Suspect,
+    experiments: Sequence[Experiment],
+    marked: dict[int, list[Instant]],
+    mend: Callable[[Record], Record],
+    beside: int | None,
+) -> Hypothesis:
+    """Records without their faulty samples, near which nothing is compared."""
+    whole: dict[int, Experiment] = {}
+    doubtful: dict[int, Mask] = {}
+    places = []
+    for e in experiments:
+        instants = marked[id(e.record)]
+        if not instants:
+            continue
+        size, after = e.size, round(_SETTLED / e.record.interval) if beside is None else beside
+        mask = np.zeros(size, dtype=bool)
+        for i in instants:
+            mask[max(i.start - (beside or _BESIDE), 0) : i.stop + after] = True
+            places.append(float(e.record.time[i.start]))
+        mended = mend(e.record)
+        whole[id(e.record)] = replace(experiment_of(mended), record=e.record, kept=e.kept, tally=e.tally)
+        doubtful[id(e.record)] = mask
+
+    def moved(e: Experiment, values: Values) -> Experiment:
+        return whole.get(id(e.record), e)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        mask = doubtful.get(id(e.record))
+        return force if mask is None else np.where(mask[: force.size], e.record.force[: force.size], force)
+
+    details = {"times": tuple(places[:6]), "count": len(places)}
+    return Hypothesis(name, moved=moved, read=read, details=lambda values: details)
+
+
+def _closed(record: Record, joints: Sequence[Instant]) -> Record:
+    """The record with the jumps of its displacement taken away."""
+    moved = np.zeros(record.time.size)
+    for joint in joints:
+        jump = record.displacement[joint.start + 1] - record.displacement[joint.start]
+        usual = 0.5 * (
+            record.displacement[joint.start]
+            - record.displacement[joint.start - 1]
+            + record.displacement[joint.start + 2]
+            - record.displacement[joint.start + 1]
+        )
+        moved[joint.start + 1 :] += jump - usual
+    return record.noted(displacement=record.displacement - moved)

@@ -1,0 +1,58 @@
+"""Samples of a record that contradict their neighbours, and the record with them interpolated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.records.gaps import fill
+from inerter.records.instants import Instant, held_values, joints, mask_of, spikes
+from inerter.records.lost import losses
+from inerter.records.record import Record
+
+Mask = NDArray[np.bool_]
+_ROLES = ("displacement", "force")
+_WIDEST = {"displacement": 3, "force": 1}  # samples of a spike: an impact through a load cell is two or three wide
+
+
+@dataclass(frozen=True)
+class FaultyInstants:
+    """Spikes and held values of each channel, and joints between pieces, in the order of time."""
+
+    spikes: dict[str, list[Instant]]
+    held: dict[str, list[Instant]]
+    joints: list[Instant]
+
+    def mask(self, role: str, size: int) -> Mask:
+        """Samples (size,) of a channel that a spike or a held value replaced."""
+        return mask_of([*self.spikes[role], *self.held[role]], size)
+
+
+def faulty_instants(record: Record) -> FaultyInstants:
+    """The samples of displacement and force that contradict those before and after them."""
+    held = {role: held_values(getattr(record, role)) for role in _ROLES}
+    found = {}
+    for role in _ROLES:
+        inside = mask_of(held[role], record.time.size)
+        found[role] = [
+            s for s in spikes(getattr(record, role), _WIDEST[role]) if not inside[s.start - 1 : s.stop + 1].any()
+        ]
+    excused = mask_of([*held["displacement"], *found["displacement"]], record.time.size)
+    for loss in losses(record):
+        excused[loss.after : loss.after + 2] = True
+    return FaultyInstants(found, held, joints(record, excused) if record.uniform else [])
+
+
+def repair(record: Record) -> Record:
+    """The record with spikes and held values interpolated by cubic splines; joints between pieces stay."""
+    faulty = faulty_instants(record)
+    changes, notes = {}, []
+    for role in _ROLES:
+        missing = faulty.mask(role, record.time.size)
+        missing[:2] = missing[-2:] = False
+        if missing.any():
+            changes[role] = fill(record.time, getattr(record, role), missing)
+            notes.append(f"Spikes and held values of the {role}, interpolated: {int(missing.sum())} samples.")
+    return record.noted(*notes, **changes)

@@ -1,0 +1,86 @@
+"""Narrow spectral lines in a force that no motion explains: hum of the mains, its aliases, and other pickup."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import get_window
+
+from inerter.records.periods import period_of
+from inerter.records.record import Record
+from inerter.records.smoothing import Motion
+
+Vector = NDArray[np.float64]
+_ALONE = 3.0  # amplitude over that of any other line within an octave to either side
+_CLEAR = 12.0  # amplitude over the median within that range
+_LEAST = 1e-3  # of the standard deviation of the force
+_WIDTH = 4  # spectral lines of a Hann window's main lobe, to either side
+_TONES = 6  # of the motion, whose multiples are no lines of their own
+_TONE = 0.05  # of the largest: more than the side lobes of a Hann window
+_HIGHEST_MULTIPLE = 60
+_MANY = 1 << 20
+
+
+@dataclass(frozen=True)
+class SpectralLine:
+    """A sine in the force that stands alone in its spectrum: frequency [Hz] and amplitude [N]."""
+
+    frequency: float
+    amplitude: float
+
+
+def lonely_line(record: Record, motion: Motion) -> SpectralLine | None:
+    """The largest line above the motion that no other is near to in size, and that is no multiple of the motion.
+
+    Friction and backlash answer a periodic motion with lines at its multiples, of which each is about as large as the
+    next; a line that stands alone was picked up.
+    """
+    values = record.force[:_MANY] - float(np.mean(record.force[:_MANY]))
+    if values.size < 512 or record.duration < 1.0:
+        return None
+    window = get_window("hann", values.size)
+    amplitude = 2.0 * np.abs(np.fft.rfft(window * values)) / float(window.sum())
+    resolution = 1.0 / (values.size * record.interval)
+    first = math.ceil(1.2 * motion.highest / resolution) + _WIDTH
+    candidates = np.arange(first, amplitude.size - _WIDTH)
+    multiples = _multiples(record, motion, resolution, amplitude.size)
+    for at in candidates[np.argsort(-amplitude[candidates])][:8]:
+        low, high = max(int(at / 2), first - _WIDTH), min(2 * int(at), amplitude.size)
+        beside = np.r_[low : at - _WIDTH, at + _WIDTH + 1 : high]
+        if beside.size < 8 * _WIDTH or multiples[at]:
+            continue
+        size = float(amplitude[at])
+        alone = size > _ALONE * float(amplitude[beside].max()) and size > _CLEAR * float(np.median(amplitude[beside]))
+        if alone and size > _LEAST * float(np.std(values)):
+            return SpectralLine(_frequency(amplitude, int(at)) * resolution, size)
+    return None
+
+
+def _frequency(amplitude: Vector, at: int) -> float:
+    """The place of a peak between spectral lines, by a parabola through logarithms."""
+    a, b, c = np.log(np.maximum(amplitude[at - 1 : at + 2], 1e-300))
+    return at + 0.5 * float((a - c) / (a - 2.0 * b + c)) if a - 2.0 * b + c < 0.0 else float(at)
+
+
+def _multiples(record: Record, motion: Motion, resolution: float, size: int) -> NDArray[np.bool_]:
+    """Spectral lines near a multiple of the motion's period, or of one of its strongest tones."""
+    values = motion.displacement[:_MANY] - float(np.mean(motion.displacement[:_MANY]))
+    spectrum = np.abs(np.fft.rfft(get_window("hann", values.size) * values))
+    peaks = np.flatnonzero((spectrum[1:-1] > spectrum[:-2]) & (spectrum[1:-1] >= spectrum[2:])) + 1
+    strongest = peaks[np.argsort(-spectrum[peaks])][:_TONES]
+    tones = [_frequency(spectrum, int(p)) for p in strongest if spectrum[p] > _TONE * spectrum.max() and p > 2]
+    period = record.period or period_of(record.displacement)
+    if period is not None:
+        samples = period / record.interval if record.period is not None else period
+        base = record.time[:_MANY].size / samples
+        tones += [base] if base > 4.0 * _WIDTH else []
+    result = np.zeros(size, dtype=bool)
+    at = np.arange(size)
+    for tone in tones:
+        order = np.round(at / tone)
+        near = np.abs(at - order * tone) <= 1.5 + 0.02 * order
+        result |= near & (order >= 1) & (order <= _HIGHEST_MULTIPLE) & (tone > 2.0 * _WIDTH)
+    return result

@@ -1,7 +1,7 @@
-"""Rigs with faults that `troubled_rig` has not, stepped by code of their own: laws of devices, and faults of recorders.
+"""Rigs with faults that `troubled_rig` lacks, stepped by code of their own: laws of devices, faults of recorders.
 
-The device is a shaft, a gap and an inertance with friction, stepped explicitly at 10 us (Moreau 1988 for friction). A law
-adds one term: presliding after Dahl, a damping that grows with the square of the speed, a shaft that stiffens, or a
+The device is a shaft, a gap and an inertance with friction, stepped explicitly at 10 us (Moreau 1988 for friction). A
+law adds one term: presliding after Dahl, a damping that grows with the square of the speed, a shaft that stiffens, or a
 second gap, behind which another spring takes part. Faults of recorders are made of the samples.
 """
 
@@ -123,7 +123,7 @@ def sampled(rig: Rig, z: Matrix, force: Matrix, seed: int) -> tuple[Matrix, Matr
 def record_of(rig: Rig, fault: str = "", seed: int = 0) -> it.Record:
     """A record of a rig, with a fault of the recorder or the sensors by its name."""
     random = np.random.default_rng([seed, 3])
-    z, v, a = motion(rig, seed)
+    z, v, _ = motion(rig, seed)
     force = force_of(rig, z, v)
     time, fine = np.arange(z.size) * STEP, STEP
     top = float(np.abs(force).max())

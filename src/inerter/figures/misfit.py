@@ -39,7 +39,7 @@ class ResidualSamples:
 
 
 def misfit_figure(s: ResidualSamples) -> Figure:
-    """The residual over time, spectrum, position, speed and model force, and its mean as a map of position and speed."""
+    """Residual over time, position, speed and model force, its spectrum, and its mean over position and speed."""
     with styled():
         figure, axes = new_figure(6, 2, height=2.0)
         _over_time(axes[0], s)

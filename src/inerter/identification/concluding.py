@@ -35,6 +35,7 @@ _SATURATED = 0.2  # of the samples, from which on a record says little
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
 _FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
 _NOTICED = 0.05  # of the friction: an offset that may be one of the friction
+_OTHERS = 2  # explanations besides the likeliest that are named
 _MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
 
 
@@ -106,11 +107,11 @@ def _likeliest(fit: Fit) -> Explanation | None:
 def _misfit(fit: Fit, best: Explanation | None) -> Finding:
     """A wrong model or sensor."""
     explained = 100.0 * max(fit.explained, 0.0) if fit.explained < ENOUGH else None
-    second = next((e for e in fit.explanations[1:2] if e.misfit.sound), None)
+    as_good = [e for e in fit.explanations[1:] if e.misfit.sound][:_OTHERS]
     patterns = [pattern for place in fit.localisations for pattern in place.patterns[:1]]
     where = max(patterns, key=lambda pattern: float(pattern.numbers["share"]), default=None)
     numbers = {
-        "times": fit.misfit.worst, "explained": explained, "likeliest": best, "second": second, "where": where,
+        "times": fit.misfit.worst, "explained": explained, "likeliest": best, "as_good": as_good, "where": where,
     }  # fmt: skip
     return Finding(FitFinding.MISFIT, "warning", numbers=numbers)
 

@@ -139,7 +139,10 @@ class Localisation:
     @property
     def sentence(self) -> str:
         """The strongest pattern, to go on after a colon."""
-        return self.patterns[0].sentence if self.patterns else "the misfit has no pattern that was looked for"
+        if not self.patterns:
+            return "the misfit has no pattern that was looked for"
+        first = self.patterns[0]
+        return first.sentence if float(first.numbers["p"]) < 1.0 else f"{first.sentence} (which may be chance)"
 
     @property
     def changes(self) -> tuple[float, ...]:

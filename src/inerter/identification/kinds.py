@@ -67,8 +67,9 @@ def _misfit(f: Finding) -> Text:
     if n["likeliest"] is None:
         where = "" if n["where"] is None else f", but {n['where'].sentence}"
         return (f"{times}{share}; nothing that was tried explains it{where}",)
-    second = n["second"]
-    other = "" if second is None else f", or {second.sentence}, which explains it too"
+    others = ", or ".join(e.sentence for e in n["as_good"])
+    verb = "explains" if len(n["as_good"]) == 1 else "explain"
+    other = f", or {others}, which {verb} it as well" if others else ""
     return (f"{times}{share}; likeliest: {n['likeliest'].sentence}{other}",)
 
 

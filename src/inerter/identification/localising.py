@@ -1,7 +1,7 @@
 """Where in a record a fit leaves more than the sensors would: when, at which position, speed, force or frequency.
 
-Every pattern is measured in one currency, the share of the squared residual that a law of that pattern would explain
-(of a Gaussian likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time of
+Every pattern is measured by the share of the squared residual that a law of its kind would explain (of a Gaussian
+likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time of
 a period or so: residuals are autocorrelated within them, and hardly between them. Signs of whole blocks are flipped for
 a dependence on the motion, and blocks permuted for one on time; p-values are multiplied by the number of tests.
 """
@@ -18,13 +18,14 @@ from scipy.ndimage import label
 from scipy.signal import get_window
 
 from inerter.identification.fit import Localisation, RecordFit
-from inerter.identification.misfit_patterns import MisfitPattern
+from inerter.identification.misfit_patterns import FRICTION, TRAVEL, MisfitPattern
 from inerter.records.finding import Finding
 
 Matrix = NDArray[np.float64]
-SURE = 0.01  # p-value, of all tests together, below which a pattern is no chance
-NOTICED = 0.15  # share that a pattern explains, at least
-_DRAWS = 1999
+SURE = 0.02  # p-value, of all tests together, below which a pattern is no chance
+NOTICED = 0.1  # share that a pattern explains, at least
+_MAYBE, _MUCH = 0.1, 0.3  # p-value, of one test, and share of a pattern that is no more than likely
+_DRAWS = 4999
 _FEWEST_BLOCKS, _MOST_BLOCKS = 20, 60
 _BINS, _PLACES = 8, 24
 _TESTS = 30  # that are made, about
@@ -62,12 +63,13 @@ def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
         *_instants(s),
         *_over_time(bounded, random),
         *_coefficients(bounded, random),
-        *_means(bounded, random),
-        *_spreads(bounded, random),
+        *_dependences(bounded, random),
         *_channels(bounded, random),
         *_spectral(s, c),
     ]
     chosen = [f for f in found if f.numbers["p"] * _TESTS < SURE and f.numbers["share"] > NOTICED]
+    if not chosen:  # the largest, said to be uncertain
+        chosen = [f for f in found if f.numbers["p"] < _MAYBE and f.numbers["share"] > _MUCH]
     chosen.sort(key=lambda f: -f.numbers["share"])
     return Localisation(c.record.source, tuple(replace(f, numbers=_corrected(f)) for f in chosen))
 
@@ -90,7 +92,7 @@ def _samples(c: RecordFit) -> Samples:
         "acceleration": motion.acceleration,
         "force": force,
         "force rate": np.gradient(force, interval),
-        "travel since the last reversal": since,
+        TRAVEL: since,
     }
     count = int(used.sum())
     blocks = int(np.clip(turned.size // 2, _FEWEST_BLOCKS, _MOST_BLOCKS))
@@ -235,15 +237,28 @@ def _coefficient_split(both: Matrix, own: Matrix, square: float) -> tuple[int, f
     return at, float(left[best]), float((a[-1] - a[at - 1]) / later[best] - a[at - 1] / b[at - 1])
 
 
-def _means(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
-    """The quantity of which the mean residual is a function, with those that do as well."""
-    found = []
+def _dependences(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+    """The quantity of which the residual is a function, and that with which the scatter of the rest grows."""
+    best, fitted = _mean(s, random)
+    yield best
+    explains = best.numbers["p"] * _TESTS < SURE and best.numbers["share"] > NOTICED
+    rest = replace(s, residual=s.residual - fitted) if explains else s
+    remaining = float(rest.residual @ rest.residual) / max(float(s.residual @ s.residual), 1e-300)
+    for found in _spreads(rest, random):
+        yield replace(found, numbers={**found.numbers, "share": remaining * found.numbers["share"]})
+
+
+def _mean(s: Samples, random: np.random.Generator) -> tuple[Finding, Matrix]:
+    """The quantity of which the mean residual is a function, with those that do as well, and that function [N]."""
+    found, laws = [], {}
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
     direction = np.sign(s.motion["velocity"])
-    for name, q in s.motion.items():
-        residual = s.residual * direction if name.startswith("travel") else s.residual
-        bins, centre = _bins(q, _BINS)
-        means, share, p = _flipped(residual, bins, s.block, signs)
+    quantities = {**s.motion, FRICTION: s.motion["displacement"]}
+    for name, q in quantities.items():
+        way = direction if name in (FRICTION, TRAVEL) else 1.0
+        bins, centre = _bins(q, _PLACES if name == FRICTION else _BINS)
+        means, share, p = _flipped(s.residual * way, bins, s.block, signs)
+        laws[name] = way * means[bins]
         low, high = int(np.argmin(means)), int(np.argmax(means))
         numbers = {
             "share": share, "p": p, "least": float(means[low]), "most": float(means[high]),
@@ -254,7 +269,7 @@ def _means(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
     found.sort(key=lambda f: -f.numbers["share"])
     best = found[0]
     others = tuple(f.about for f in found[1:] if f.numbers["share"] > _AS_GOOD * best.numbers["share"])
-    yield replace(best, numbers={**best.numbers, "others": others})
+    return replace(best, numbers={**best.numbers, "others": others}), np.asarray(laws[best.about])
 
 
 def _flipped(
@@ -281,9 +296,9 @@ def _bins(q: Matrix, count: int) -> tuple[NDArray[np.int64], Matrix]:
 def _spreads(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
     """The quantity with whose size the scatter of the residual grows, and few positions at which it sits."""
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
-    square = s.residual**2
-    sizes = np.bincount(s.block)
-    within = np.abs(s.residual) - (np.bincount(s.block, np.abs(s.residual)) / sizes)[s.block]
+    scaled = np.abs(s.residual) / s.level * float(np.median(s.level))
+    square, sizes = scaled**2, np.bincount(s.block)
+    within = scaled - (np.bincount(s.block, scaled) / sizes)[s.block]
     found = []
     for name in ("velocity", "acceleration", "force", "force rate"):
         bins, _ = _bins(np.abs(s.motion[name]), _BINS)
@@ -336,10 +351,7 @@ def _channels(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
         usual -= usual.mean()
         r = float(usual @ rank) / max(float(np.linalg.norm(usual) * np.linalg.norm(rank - rank.mean())), 1e-300)
         p = _p(np.array(abs(float(usual @ rank))), np.abs(rank[order] @ usual))
-        columns = np.column_stack([np.ones(usual.size), usual])
-        fitted = columns @ np.linalg.lstsq(columns, log, rcond=None)[0]
         share = _share(float(np.mean(np.exp(log))), math.exp(float(np.mean(log)))) * r**2
-        del fitted
         yield Finding(MisfitPattern.CHANNEL, "info", name, {"share": share, "p": p, "correlation": r})
 
 
@@ -349,7 +361,7 @@ def _spectral(s: Samples, c: RecordFit) -> Iterator[Finding]:
     window = get_window("hann", n)
     scale = 2.0 / float(window.sum())
     amplitude = scale * np.abs(np.fft.rfft(window * (s.residual - s.residual.mean())))
-    force = scale * np.abs(np.fft.rfft(window * (s.motion["force"] - s.motion["force"].mean())))
+    moved = np.abs(np.fft.rfft(window * (s.motion["displacement"] - s.motion["displacement"].mean())))
     sound = scale * np.sqrt(np.mean(np.abs(np.fft.rfft(window * c.draws[:, c.fitted | c.checked])) ** 2, axis=0))
     frequency = np.fft.rfftfreq(n, c.record.interval)
     excess = np.maximum(amplitude**2 - sound**2, 0.0)
@@ -360,21 +372,22 @@ def _spectral(s: Samples, c: RecordFit) -> Iterator[Finding]:
     beside = np.r_[max(int(at / 1.4), 2) : max(at - 4, 2), at + 5 : min(int(1.4 * at) + 8, amplitude.size)]
     share = float(np.sum(amplitude[main] ** 2)) / max(total, 1e-300)
     if beside.size > 8 and amplitude[at] > _CLEAR_LINE * float(np.median(amplitude[beside])):
-        foreign = bool(force[at] < 0.5 * amplitude[at])
+        foreign = bool(moved[at] < _CLEAR_LINE * float(np.median(moved[beside])))
+        chance = float(frequency.size) * math.exp(-math.log(2.0) * (_CLEAR_LINE**2))
         numbers = {
             "frequency": float(frequency[at]), "amplitude": float(amplitude[at]), "foreign": foreign,
-            "share": share if foreign else 0.5 * share, "p": 0.0,
+            "share": share if foreign else 0.5 * share, "p": chance,
         }  # fmt: skip
         yield Finding(MisfitPattern.LINE, "info", numbers=numbers)
     yield from _band(frequency, excess, total, c.experiment.motion.highest)
 
 
 def _band(frequency: Matrix, excess: Matrix, total: float, highest: float) -> Iterator[Finding]:
-    """The middle 80 % of the excess, if it is less than an octave wide and lies above the motion."""
+    """The middle 70 % of the excess, if it is little more than an octave wide and lies above the motion."""
     part = np.cumsum(excess)
     if part[-1] < NOTICED * total:
         return
-    low, high = (float(frequency[int(np.searchsorted(part, q * part[-1]))]) for q in (0.1, 0.9))
-    if 0.8 * highest < low and high < 2.0 * low and high > low:
-        numbers = {"low": low, "high": high, "highest": highest, "share": 0.8 * float(part[-1]) / total, "p": 0.0}
+    low, high = (float(frequency[int(np.searchsorted(part, q * part[-1]))]) for q in (0.15, 0.85))
+    if 0.8 * highest < low and high < 2.5 * low and high > low:
+        numbers = {"low": low, "high": high, "highest": highest, "share": 0.7 * float(part[-1]) / total, "p": 0.0}
         yield Finding(MisfitPattern.BAND, "info", numbers=numbers)

@@ -9,13 +9,15 @@ from inerter.records.finding import Finding
 from inerter.records.remedy import Text
 from inerter.units import format_quantity
 
+TRAVEL, FRICTION = "travel since the last reversal", "position, against the motion"
 UNITS = {  # of what the residual may depend on
     "displacement": "m",
     "velocity": "m/s",
     "acceleration": "m/s^2",
     "force": "N",
     "force rate": "N/s",
-    "travel since the last reversal": "m",
+    TRAVEL: "m",
+    FRICTION: "m",
 }
 COEFFICIENTS = {  # of the residual on a signal: what it is like, and its unit
     "constant": ("an offset of the load cell", "N"),
@@ -89,6 +91,8 @@ def _also(f: Finding) -> str:
 
 
 def _mean(f: Finding) -> str:
+    if f.about == FRICTION:
+        return f"the misfit is a friction that depends on the position{_also(f)}: {_range(f)}"
     return f"the misfit depends on the {f.about}{_also(f)}: {_range(f)}"
 
 

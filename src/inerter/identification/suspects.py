@@ -104,14 +104,14 @@ def _clock(d: Details) -> str:
 
 def _hum(d: Details) -> str:
     return (
-        f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at {d['frequency']:.4g} Hz, or at an alias "
-        f"of it such as {d['rate'] - d['frequency']:.4g} Hz"
+        f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at {d['frequency']:.4g} Hz, or at an "
+        f"alias of it such as {d['rate'] - d['frequency']:.4g} Hz"
     )
 
 
 def _saturation(d: Details) -> str:
     upper, lower = (format_quantity(d[end], "N", 3) for end in ("upper", "lower"))
-    return f"the force is cut off above {upper} or below -{lower} (saturation of the load cell or its amplifier)"
+    return f"the force is cut off above {upper} and below -{lower} (load cell or amplifier saturated)"
 
 
 def _changed(d: Details) -> str:
@@ -127,10 +127,8 @@ def _cross_talk(d: Details) -> str:
 
 
 def _second_gap(d: Details) -> str:
-    return (
-        f"a second gap closes in the shaft at a deflection of {format_quantity(d['slack'], 'm', 2)}, beyond which it is "
-        f"stiffer by {format_quantity(d['stiffness'], 'N/m', 2)}"
-    )
+    slack, more = format_quantity(d["slack"], "m", 2), format_quantity(d["stiffness"], "N/m", 2)
+    return f"a second gap closes in the shaft at a deflection of {slack}, beyond which it is stiffer by {more}"
 
 
 def _always(said: str) -> Callable[[Details], str]:
@@ -169,8 +167,8 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
         f"a damping grows with the square of the speed, {format_quantity(d['most'], 'N', 2)} at the largest"
     ),
     Suspect.STIFFENING: lambda d: (
-        f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by {100.0 * abs(d['share']):.2g} % at the "
-        f"largest force"
+        f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by {100.0 * abs(d['share']):.2g} % at "
+        f"the largest force"
     ),
     Suspect.SECOND_GAP: _second_gap,
     Suspect.SATURATION: _saturation,
@@ -232,7 +230,7 @@ _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
     Suspect.CROSS_TALK: _constant("separate the cables of the sensors, and read the load cell without the device"),
     Suspect.FRAME: _constant("stiffen the frame, or excite well below its resonance"),
     Suspect.HUM: _constant("check grounding and shielding, and filter against aliasing before sampling"),
-    Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as records of their own, ", Remedy(Action.TRIM)),
+    Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as separate records, ", Remedy(Action.TRIM)),
     Suspect.SPIKES: _constant("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),
     Suspect.HELD: _constant("interpolate those samples, ", Remedy(Action.REPAIR)),
     Suspect.JOINED: _constant("fit each piece as a record of its own, ", Remedy(Action.TRIM)),

@@ -15,8 +15,8 @@ from inerter.records.gaps import runs
 from inerter.records.instants import Instant
 from inerter.records.kinds import COARSE, LARGE, RecordFinding
 from inerter.records.lost import losses
-from inerter.records.repair import faulty_instants
 from inerter.records.record import UNIFORM, Record
+from inerter.records.repair import faulty_instants
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 from inerter.records.spectral_lines import lonely_line
 

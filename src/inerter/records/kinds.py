@@ -134,18 +134,18 @@ def _hidden_jitter(f: Finding) -> Text:
     n = f.numbers
     return (
         f"The displacement scatters in proportion to its speed, as sampling instants that jitter by "
-        f"{1e3 * n['jitter']:.3g} ms (r.m.s., {100.0 * n['jitter'] / n['interval']:.0f} % of an interval) would make it, "
-        f"although the times are even. Sample both channels by one hardware clock, or record the true times.",
+        f"{1e3 * n['jitter']:.3g} ms (r.m.s., {100.0 * n['jitter'] / n['interval']:.0f} % of an interval) would make "
+        f"it, although the times are even. Sample both channels by one hardware clock, or record the true times.",
     )
 
 
 def _clock_drift(f: Finding) -> Text:
     n = f.numbers
+    growth = f"{1e3 * abs(n['growth']):.3g} ms {'later' if n['growth'] > 0.0 else 'earlier'}"
     return (
-        f"The phase between force and displacement moves steadily, as if the force came {1e3 * abs(n['growth']):.3g} ms "
-        f"{'later' if n['growth'] > 0.0 else 'earlier'} at the end than at the start (standard error "
-        f"{1e3 * n['standard_error']:.2g} ms): the clocks of the channels differ by {1e6 * abs(n['rate']):.3g} ppm, or "
-        f"the losses of the device change. Sample both channels by one clock.",
+        f"The phase between force and displacement moves steadily, as if the force came {growth} at the end than at "
+        f"the start (standard error {1e3 * n['standard_error']:.2g} ms): the clocks of the channels differ by "
+        f"{1e6 * abs(n['rate']):.3g} ppm, or the losses of the device change. Sample both channels by one clock.",
     )
 
 

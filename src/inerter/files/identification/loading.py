@@ -42,6 +42,7 @@ class RecordRequest:
     start: float | None = None  # [s]
     stop: float | None = None  # [s]
     resample: float | None = None  # [s]
+    repair: bool = False
     detrend: bool = False
 
 

@@ -26,6 +26,7 @@ from inerter.records.findings import findings
 from inerter.records.prepare import detrend, resample, shift_force
 from inerter.records.readers import read_record
 from inerter.records.record import Record
+from inerter.records.repair import repair
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
 from inerter.vehicle.rig import Rig
@@ -101,7 +102,7 @@ def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> 
     if asked.fixture_mass is not None:
         mass = asked.fixture_mass
         received = received.noted(fixture_mass=mass.value, fixture_mass_error=mass.uncertainty or None)
-    used = received
+    used = repair(received) if asked.repair else received
     if asked.start is not None or asked.stop is not None:
         used = used.trim(asked.start, asked.stop)
     if asked.resample is not None:

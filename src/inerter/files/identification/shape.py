@@ -93,6 +93,7 @@ class RecordShape(Shape):
     start: Annotated[float | None, PlainValidator(lambda value: parse_quantity(value, "s"))] = None
     stop: Annotated[float | None, PlainValidator(lambda value: parse_quantity(value, "s"))] = None
     resample: Annotated[float | None, positive("s")] = None
+    repair: Annotated[bool, PlainValidator(yes_or_no)] = False
     detrend: Annotated[bool, PlainValidator(yes_or_no)] = False
 
 

@@ -132,7 +132,7 @@ def held_values(values: Vector) -> list[Instant]:
             continue
         away, scatter = _departure(values, a, b)
         moved = away > max(3.0 * step, 5.0 * noise, 5.0 * scatter, 1e-9 * float(np.ptp(values)))
-        if moved or (noise > step and _by_chance(same, inside, a, b) * values.size < _RARE):
+        if moved or (noise > step and _by_chance(same, inside, a, b, step / max(noise, 1e-300)) * values.size < _RARE):
             found.append(Instant(a, b, away))
     return found
 
@@ -143,12 +143,15 @@ def _noise(values: Vector) -> float:
     return _MAD * float(np.median(np.abs(third))) / math.sqrt(20.0)
 
 
-def _by_chance(same: Mask, inside: Mask, a: int, b: int) -> float:
-    """Probability that so many samples in a row are equal, from how often two are nearby."""
+def _by_chance(same: Mask, inside: Mask, a: int, b: int, step: float) -> float:
+    """Probability that so many samples in a row are equal, from how often two are nearby.
+
+    At least that of noise of size one about a mean that does not move, read in these steps.
+    """
     near = slice(max(a - _LOCAL, 0), b + _LOCAL)
     outside = ~inside[:-1][near]
     share = (float(np.sum(same[near] & outside)) + 1.0) / (float(np.sum(outside)) + 2.0)
-    return share ** (b - a - 1)
+    return max(share, step / math.sqrt(4.0 * math.pi)) ** (b - a - 1)
 
 
 def _departure(values: Vector, a: int, b: int) -> tuple[float, float]:

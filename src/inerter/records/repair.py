@@ -15,6 +15,8 @@ from inerter.records.record import Record
 Mask = NDArray[np.bool_]
 _ROLES = ("displacement", "force")
 _WIDEST = {"displacement": 3, "force": 1}  # samples of a spike: an impact through a load cell is two or three wide
+_SLOW = 0.35  # of the sampling rate: bandwidth of a load cell below which an impact takes several samples
+_TALL = 0.6  # of the range of nearly all forces
 
 
 @dataclass(frozen=True)
@@ -35,14 +37,30 @@ def faulty_instants(record: Record) -> FaultyInstants:
     held = {role: held_values(getattr(record, role)) for role in _ROLES}
     found = {}
     for role in _ROLES:
+        values = getattr(record, role)
         inside = mask_of(held[role], record.time.size)
+        least = _least_spike(record) if role == "force" else 0.0
         found[role] = [
-            s for s in spikes(getattr(record, role), _WIDEST[role]) if not inside[s.start - 1 : s.stop + 1].any()
+            spike
+            for spike in spikes(values, _WIDEST[role])
+            if abs(spike.size) > least and not inside[spike.start - 1 : spike.stop + 1].any()
         ]
     excused = mask_of([*held["displacement"], *found["displacement"]], record.time.size)
     for loss in losses(record):
         excused[loss.after : loss.after + 2] = True
     return FaultyInstants(found, held, joints(record, excused) if record.uniform else [])
+
+
+def _least_spike(record: Record) -> float:
+    """Size [N] of a spike that cannot be an impact.
+
+    A load cell that is slow for the sampling spreads an impact over several samples. A fast one may read it in one
+    sample, but then as one of the forces of which there are more.
+    """
+    bandwidth = record.force_bandwidth
+    if bandwidth is not None and bandwidth < _SLOW / record.interval:
+        return 0.0
+    return _TALL * float(np.ptp(np.quantile(record.force, (0.005, 0.995))))
 
 
 def repair(record: Record) -> Record:

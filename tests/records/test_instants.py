@@ -115,7 +115,7 @@ FAULTS = {
 )
 def test_a_fault_of_the_recorder_is_found_by_its_kind(fault: str, seed: int) -> None:
     record = FAULTS[fault](seed)
-    found = [f for f in findings(record) if str(f.kind) == fault.split(" ")[0]]
+    found = [f for f in findings(record) if str(f.kind) == fault.partition(" ")[0]]
     assert found, kinds(record)
     assert all(len(f.sentence) < 400 and f.severity == "warning" for f in found)
 

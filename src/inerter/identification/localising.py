@@ -33,7 +33,7 @@ _CLIP = 8.0  # r.m.s. residuals (of most samples) beyond which one counts no mor
 _RARE = 0.01  # of the samples: those that may be single instants
 _AS_GOOD = 0.9  # of the best share: quantities that cannot be told apart
 _EDGE = 0.05  # of a record, within which nothing begins
-_NONE = 1.5  # times the noise of the sensors: a part without misfit
+_NONE = 2.0  # times the noise of the sensors: a part without misfit
 _CLEAR_LINE = 8.0  # amplitude over the median within an octave
 
 

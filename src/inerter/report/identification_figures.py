@@ -58,7 +58,7 @@ def figures(found: Identified, answered: Responses) -> Iterator[Drawn]:
         if found.fit.localisations:
             place = found.fit.localisations[number]
             caption = f"{source}: residual force; {place.sentence}. {_MISFIT}"
-            yield Drawn(f"misfit{end}", f"misfit{number}", _misfit(comparison, place), caption)
+            yield Drawn(f"misfit{end}", f"misfit{number}", misfit_figure(residual_samples(comparison, place)), caption)
         for name, figure, caption in _of_fit(comparison):
             yield Drawn(f"{name}{end}", f"fit{number}", figure, f"{source}: {caption}")
     if answered.measured is not None:
@@ -77,15 +77,15 @@ def window(comparison: RecordFit) -> tuple[int, int]:
     return max(first, last - length), last
 
 
-def _misfit(c: RecordFit, place: Localisation) -> Figure:
+def residual_samples(c: RecordFit, place: Localisation) -> ResidualSamples:
+    """The samples of a record that were fitted or checked, with the motion and what sensors would leave there."""
     used = c.fitted | c.checked
     motion = c.experiment.motion
     lines = [float(f.numbers["frequency"]) for f in place.patterns if f.kind is MisfitPattern.LINE]
-    samples = ResidualSamples(
+    return ResidualSamples(
         c.record.time[used], c.residual[used], motion.displacement[used], motion.velocity[used],
         (c.model - c.offset)[used], c.draws[:, used], c.record.interval, place.changes[:2], lines,
     )  # fmt: skip
-    return misfit_figure(samples)
 
 
 def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:

@@ -1,0 +1,129 @@
+"""Where a misfit is: faults put into the force of a rigid device are located by their kind, and chance is none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from numpy.typing import NDArray
+from rigid_fits import read, rigid_fit, rigid_record
+from scipy.stats import binom
+
+from inerter.figures.misfit import misfit_figure
+from inerter.identification.fit import Localisation
+from inerter.identification.localising import SURE, localisation_of
+from inerter.identification.misfit_patterns import FRICTION, MisfitPattern
+from inerter.records.record import Record
+from inerter.report.identification_figures import residual_samples
+
+Matrix = NDArray[np.float64]
+Motion = dict[str, Matrix]
+
+
+def _noise(m: Motion, seed: int) -> Matrix:
+    return np.random.default_rng([seed, 5]).standard_normal(m["time"].size)
+
+
+def _temperature(m: Motion) -> Matrix:
+    """Of a run that warms up and cools down again, so that it is no matter of time."""
+    return 20.0 + 15.0 * np.sin(np.pi * m["time"] / m["time"][-1]) ** 2
+
+
+def _spiked(m: Motion, seed: int) -> Matrix:
+    at = np.random.default_rng([seed, 6]).choice(m["time"].size - 100, 20, replace=False) + 50
+    return m["force"] + np.where(np.isin(np.arange(m["time"].size), at), 120.0, 0.0)
+
+
+def _bump(x: Matrix, place: float) -> Matrix:
+    return np.exp(-(((x - place) / 1.5e-4) ** 2))
+
+
+PLACES: dict[str, tuple[Callable[[Motion, int], Matrix], MisfitPattern, str]] = {
+    "other inertance": (
+        lambda m, s: m["force"] - 16.0 * np.where(m["time"] > 1.7, m["a"], 0.0), MisfitPattern.COEFFICIENT_STEP,
+        "acceleration",
+    ),
+    "other friction": (
+        lambda m, s: m["force"] + 8.0 * np.where(m["time"] > 1.7, np.sign(m["v"]), 0.0), MisfitPattern.COEFFICIENT_STEP,
+        "direction",
+    ),
+    "gain": (lambda m, s: m["force"] * (1.0 + 0.04 * m["time"]), MisfitPattern.COEFFICIENT_TREND, "force"),
+    "drift": (lambda m, s: m["force"] + 2.0 * m["time"], MisfitPattern.COEFFICIENT_TREND, "constant"),
+    "loose": (lambda m, s: m["force"] + np.where(m["time"] > 2.3, 2.0 * _noise(m, s), 0.0), MisfitPattern.BEGINS, ""),
+    "warm": (
+        lambda m, s: m["force"] + 0.25 * (_temperature(m) - 20.0) * _noise(m, s), MisfitPattern.CHANNEL, "temperature",
+    ),
+    "viscous": (lambda m, s: m["force"] + 300.0 * m["v"], MisfitPattern.MEAN, "velocity"),
+    "spring": (lambda m, s: m["force"] + 3e9 * m["x"] ** 3, MisfitPattern.MEAN, "displacement"),
+    "bumps": (
+        lambda m, s: m["force"] + 8.0 * np.sign(m["v"]) * (_bump(m["x"], 1e-3) + _bump(m["x"], -1.2e-3)),
+        MisfitPattern.MEAN, FRICTION,
+    ),
+    "noise by speed": (lambda m, s: m["force"] + 60.0 * m["v"] * _noise(m, s), MisfitPattern.SPREAD, "velocity"),
+    "hum": (lambda m, s: m["force"] + 3.0 * np.sin(860.0 * m["time"]), MisfitPattern.LINE, ""),
+    "spikes": (_spiked, MisfitPattern.INSTANTS, ""),
+}  # fmt: skip
+
+
+def located(name: str, seed: int) -> Localisation:
+    _, motion = rigid_record(seed)
+    return localisation_of(
+        rigid_fit(read(motion, PLACES[name][0](motion, seed), seed, temperature=_temperature(motion)))
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "seed"), sampled([(n, s) for n in PLACES for s in range(5)], [(n, 0) for n in PLACES], kept=12)
+)
+def test_a_fault_is_located_by_its_kind(name: str, seed: int) -> None:
+    _, kind, about = PLACES[name]
+    found = located(name, seed)
+    first = found.patterns[0]
+    assert (first.kind, first.about) == (kind, about), [p.sentence for p in found.patterns]
+    assert first.numbers["p"] < SURE
+    assert found.sentence == first.sentence
+    assert len(found.sentence) < 200
+
+
+def test_numbers_of_the_patterns() -> None:
+    (swapped, *_), (loose, *_), (hum, *_) = (located(n, 1).patterns for n in ("other inertance", "loose", "hum"))
+    assert swapped.numbers["time"] == pytest.approx(1.7, abs=0.02)
+    assert swapped.numbers["change"] == pytest.approx(-16.0, rel=0.1)
+    assert loose.numbers["time"] == pytest.approx(2.3, abs=0.05)
+    assert loose.numbers["after"] > 5.0 > loose.numbers["before"]
+    assert hum.numbers["frequency"] == pytest.approx(860.0 / 2.0 / np.pi, abs=0.3)
+    assert hum.numbers["foreign"]
+    bumps = located("bumps", 1).patterns[0]
+    centres, means = (np.array(bumps.numbers[key]) for key in ("centres", "means"))
+    assert set(np.round(centres[np.argsort(means)[-2:]], 3)) <= {1e-3, -1e-3, -1.1e-3, -1.2e-3, -1.3e-3, 1.1e-3, 9e-4}
+
+
+def coloured(seed: int) -> Record:
+    """A record whose load cell has noise that is autocorrelated over 10 ms, which belongs to nothing in it."""
+    _, motion = rigid_record(seed)
+    noise = np.convolve(_noise(motion, seed), np.exp(-np.arange(60) / 10.0), "same")
+    return read(motion, motion["force"] + 0.6 * noise, seed)
+
+
+@pytest.mark.parametrize("count", sampled([12, 60], [12]))
+def test_chance_is_no_pattern_of_the_motion_or_of_time(count: int) -> None:
+    """Dependences and changes are named no more often than their p-value says."""
+    by_chance = 0
+    for seed in range(count):
+        found = localisation_of(rigid_fit(coloured(seed)))
+        by_chance += any(p.numbers["p"] < SURE for p in found.patterns if p.kind is not MisfitPattern.BAND)
+    assert by_chance <= binom.ppf(0.999, count, SURE)
+
+
+def test_the_figure_has_labels_with_units_and_marks_changes() -> None:
+    _, motion = rigid_record(0)
+    comparison = rigid_fit(read(motion, PLACES["other inertance"][0](motion, 0), 0))
+    place = localisation_of(comparison)
+    figure = misfit_figure(residual_samples(comparison, place))
+    panels = [ax for ax in figure.axes if ax.get_title(loc="left")]
+    assert len(panels) == 6
+    assert all("[" in ax.get_xlabel() and "[" in ax.get_ylabel() for ax in panels)
+    at = [line.get_xdata()[0] for line in panels[0].lines if line.get_label() == "change"]
+    assert at[0] == pytest.approx(1.7, abs=0.02)

@@ -1,0 +1,49 @@
+"""Fits from values that are nearly right on, without search, profiles and bootstrap: what explains their misfit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from inerter.identification.concluding import _comparisons
+from inerter.identification.experiment import experiment_of
+from inerter.identification.explaining import explanations
+from inerter.identification.fit import Explanation, Localisation
+from inerter.identification.hypotheses import Hypothesis
+from inerter.identification.intervals import best_fit_of
+from inerter.identification.judging import check_parts, judge_of
+from inerter.identification.localising import localisation_of
+from inerter.identification.noise import plain
+from inerter.identification.problem import FitProblem
+from inerter.identification.solving import SolvedFit, _for_fit
+from inerter.identification.space import space_of
+from inerter.networks.elements import Network
+from inerter.records.record import Record
+from inerter.vehicle.rig import Rig
+
+
+def quick_fit(
+    record: Record, model: Network, values: Mapping[str, float], assumed: tuple[Hypothesis, ...] = ()
+) -> SolvedFit:
+    """The best fit near these values, judged as `identify` judges it."""
+    rig, whole = Rig(model), [experiment_of(record)]
+    space = space_of(rig, assumed)
+    experiments = _for_fit(whole, 0.2)
+    problem = FitProblem(rig, space, experiments, [plain(e.kept, 1.0) for e in experiments], assumed=assumed)
+    optimum = best_fit_of(problem, space.placed(values), evaluations=40)
+    lead = float(experiments[0].record.time[int(experiments[0].kept.argmax())] - record.time[0])
+    checked = tuple(check_parts(experiments, whole, [lead]))
+    judge = judge_of(problem, optimum.point, checked, 0)
+    assert judge is not None
+    problem = replace(problem, whitenings=judge.fitted, systems={})
+    optimum = best_fit_of(problem, optimum.point, evaluations=40)
+    misfit = judge.misfit(problem, optimum.point)
+    return SolvedFit(problem, optimum, (), checked, (lead,), (), (), 1.0, judge, misfit, 0)
+
+
+def explained(solution: SolvedFit) -> tuple[list[Explanation], Localisation]:
+    """What explains the misfit of a fit to one record, and where it is."""
+    (comparison,) = _comparisons(solution)
+    place = localisation_of(comparison)
+    found = explanations(solution.problem, solution.optimum, solution.judge, solution.misfit, [place])
+    return found, place

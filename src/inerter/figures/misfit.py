@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,9 +19,9 @@ Matrix = NDArray[np.float64]
 _BINS, _CELLS = 24, 18  # of a curve, and of the map to either side
 _FEWEST = 3  # samples in a bin
 _MOST_POINTS = 4000
-_POINTS = {"linestyle": "", "marker": ".", "markersize": 1.2, "color": "#9CC8E6", "rasterized": True}
-_MARK = {"color": colour(1), "linewidth": 0.9, "linestyle": "--"}
-_SOUND = {"color": "#7A7A7A", "linewidth": 0.9}
+_POINTS: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 1.2, "color": "#9CC8E6", "rasterized": True}
+_MARK: dict[str, Any] = {"color": colour(1), "linewidth": 0.9, "linestyle": "--"}
+_SOUND: dict[str, Any] = {"color": "#7A7A7A", "linewidth": 0.9}
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +87,10 @@ def _spectrum(ax: Axes, s: ResidualSamples) -> None:
     force = size * np.abs(np.fft.rfft(window * (s.force - s.force.mean())))
     own = scale([ours.max()], "N")
     first = 2
-    curves = ((force, {"color": "#BBBBBB", "linewidth": 0.7}, "model force"), (ours, {"color": colour(0)}, "residual"))
+    curves: tuple[tuple[Matrix, dict[str, Any], str], ...] = (
+        (force, {"color": "#BBBBBB", "linewidth": 0.7}, "model force"),
+        (ours, {"color": colour(0)}, "residual"),
+    )
     for values, style, label in curves:
         ax.plot(frequency[first:], values[first:] * own.factor, **{"linewidth": 0.7, **style}, label=label)
     ax.plot(frequency[first:], _smooth(sound)[first:] * own.factor, **_SOUND, linestyle=":", label="sensor noise")
@@ -110,7 +114,7 @@ def _over(ax: Axes, s: ResidualSamples, along: Matrix, name: str, unit: str) -> 
     own, up = scale([np.abs(along).max()], unit), scale([np.abs(s.residual).max()], "N")
     every = max(s.residual.size // _MOST_POINTS, 1)
     ax.plot(along[::every] * own.factor, s.residual[::every] * up.factor, **_POINTS)
-    edges = np.linspace(*np.quantile(along, (0.002, 0.998)), _BINS + 1)
+    edges = _edges(along, _BINS)
     parts = [(s.velocity > 0.0, "mean, moving +", colour(2), "-"), (s.velocity < 0.0, "mean, moving -", colour(1), "-")]
     if name == "Velocity":
         parts = [(np.ones(along.size, dtype=bool), "mean", "black", "-")]
@@ -120,6 +124,12 @@ def _over(ax: Axes, s: ResidualSamples, along: Matrix, name: str, unit: str) -> 
     ax.set_ylim(*(limit * up.factor for limit in _limits(s)))
     ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     ax.set(xlabel=axis_label(name, own.unit), ylabel=axis_label("Residual force", up.unit))
+
+
+def _edges(values: Matrix, count: int) -> Matrix:
+    """Edges of bins as wide as each other, over all but the rarest values."""
+    low, high = np.quantile(values, (0.002, 0.998))
+    return np.linspace(float(low), float(high), count + 1)
 
 
 def _binned(along: Matrix, values: Matrix, edges: Matrix) -> tuple[Matrix, Matrix]:
@@ -133,7 +143,7 @@ def _binned(along: Matrix, values: Matrix, edges: Matrix) -> tuple[Matrix, Matri
 def _surface(figure: Figure, ax: Axes, s: ResidualSamples) -> None:
     """The mean residual over position and speed: what the restoring force lacks."""
     x, v = scale([np.abs(s.displacement).max()], "m"), scale([np.abs(s.velocity).max()], "m/s")
-    edges = [np.linspace(*np.quantile(q, (0.002, 0.998)), _CELLS + 1) for q in (s.displacement, s.velocity)]
+    edges = [_edges(q, _CELLS) for q in (s.displacement, s.velocity)]
     count, *_ = np.histogram2d(s.displacement, s.velocity, edges)
     total, *_ = np.histogram2d(s.displacement, s.velocity, edges, weights=s.residual)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -24,6 +24,8 @@ from inerter.records.finding import Finding
 Matrix = NDArray[np.float64]
 SURE = 0.02  # p-value, of all tests together, below which a pattern is no chance
 NOTICED = 0.1  # share that a pattern explains, at least
+_COEFFICIENTS = (MisfitPattern.COEFFICIENT_STEP, MisfitPattern.COEFFICIENT_TREND)
+_TELLING = 0.15  # share by which a coefficient that changes goes before a size that does: it says of what
 _MAYBE, _MUCH = 0.1, 0.3  # p-value, of one test, and share of a pattern that is no more than likely
 _DRAWS = 4999
 _FEWEST_BLOCKS, _MOST_BLOCKS = 20, 60
@@ -70,7 +72,7 @@ def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
     chosen = [f for f in found if f.numbers["p"] * _TESTS < SURE and f.numbers["share"] > NOTICED]
     if not chosen:  # the largest, said to be uncertain
         chosen = [f for f in found if f.numbers["p"] < _MAYBE and f.numbers["share"] > _MUCH]
-    chosen.sort(key=lambda f: -f.numbers["share"])
+    chosen.sort(key=lambda f: -f.numbers["share"] - _TELLING * (f.kind in _COEFFICIENTS))
     return Localisation(c.record.source, tuple(replace(f, numbers=_corrected(f)) for f in chosen))
 
 

@@ -102,7 +102,7 @@ def _local_scale(deviation: Vector) -> Vector:
     whole = _MAD * float(np.median(np.abs(deviation)))
     blocks = np.array_split(np.abs(deviation), max(deviation.size // _AROUND, 1))
     level = np.repeat([_MAD * float(np.median(block)) for block in blocks], [block.size for block in blocks])
-    return np.maximum(whole, level)
+    return np.asarray(np.maximum(whole, level))
 
 
 def held_values(values: Vector) -> list[Instant]:

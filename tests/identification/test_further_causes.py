@@ -1,0 +1,70 @@
+"""Laws of devices and faults of recorders that a model lacks are named, by records of a rig that steps by its own code."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from faulty_rig import Rig, force_of, laws, model, motion, record_of
+from quick_fits import explained, quick_fit
+
+import inerter as it
+from inerter.identification.experiment import experiment_of
+from inerter.identification.laws import Chained, stepped
+from inerter.identification.suspects import Suspect
+
+RIG = Rig(duration=2.5, tones=((2e-3, 1.6), (8e-4, 3.1), (3e-4, 5.7)))
+CHANGES = {
+    "presliding": {"reach": RIG.f / laws()["presliding"]["numbers"][0]},
+    "quadratic": {"square": laws()["quadratic"]["numbers"][0]},
+    "second gap": dict(zip(("slack", "beyond"), laws()["second gap"]["numbers"], strict=True)),
+    "stiffening": {"cubic": laws()["stiffening"]["numbers"][0]},
+}
+CAUSES = {
+    "presliding": Suspect.PRESLIDING,
+    "quadratic": Suspect.QUADRATIC,
+    "second gap": Suspect.SECOND_GAP,
+    "stiffening": Suspect.STIFFENING,
+    "cross-talk": Suspect.CROSS_TALK,
+    "frame": Suspect.FRAME,
+    "hum": Suspect.HUM,
+    "saturation": Suspect.SATURATION,
+    "swapped": Suspect.CHANGED_DEVICE,
+    "clock": Suspect.CLOCK_DRIFT,
+    "ripple": Suspect.RIPPLE,
+    "held": Suspect.HELD,
+    "glued": Suspect.JOINED,
+}
+
+
+def rig_under(name: str) -> tuple[Rig, str]:
+    """A rig with a law, or with the name of a fault of its sensors."""
+    return (replace(RIG, **laws()[name]), "") if name in laws() else (RIG, name)
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_laws_are_stepped_as_the_rig_does(name: str) -> None:
+    """Two steppings that share no code; the law changes far more than they differ by."""
+    rig = replace(rig_under(name)[0], duration=1.0)
+    z, v, _ = motion(rig, 0)
+    exact, without = (force_of(r, z, v)[::100] for r in (rig, replace(rig, law="")))
+    experiment = experiment_of(it.Record(np.arange(exact.size) * 1e-3, z[::100], exact))
+    chain = Chained(ks=rig.ks, cs=rig.cs, b=rig.b, f=rig.f, **CHANGES[name])
+    use = slice(50, -50)
+    off = np.std((stepped(chain, experiment, exact.size) - exact)[use])
+    assert off < 5e-3 * np.std(exact[use])
+    assert off < 0.05 * np.std((without - exact)[use])
+
+
+@pytest.mark.marathon
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize(("name", "seed"), sampled([(n, s) for n in CAUSES for s in range(2)], kept=0))
+def test_a_cause_is_named_first_or_explains_as_well_as_the_first(name: str, seed: int) -> None:
+    rig, fault = rig_under(name)
+    values = {"b": rig.b, "f": rig.f, "ks": rig.ks, "cs": rig.cs}
+    solution = quick_fit(record_of(rig, fault, seed), model(rig), values)
+    assert not solution.misfit.sound
+    found, _ = explained(solution)
+    assert CAUSES[name] in [e.name for e in found[:2]], [(e.name, e.explained) for e in found[:4]]

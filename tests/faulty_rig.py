@@ -178,8 +178,8 @@ def laws() -> dict[str, dict[str, Any]]:
     return {
         "presliding": {"law": "presliding", "numbers": (4e4, 0.0)},
         "quadratic": {"law": "quadratic", "numbers": (2e4, 0.0)},
-        "second gap": {"law": "second gap", "numbers": (4e-5, 3e6), "ks": 4e5},
-        "stiffening": {"law": "stiffening", "numbers": (3e14, 0.0), "ks": 4e5},
+        "second gap": {"law": "second gap", "numbers": (6e-5, 8e5), "ks": 4e5},
+        "stiffening": {"law": "stiffening", "numbers": (1e13, 0.0), "ks": 4e5},
     }
 
 

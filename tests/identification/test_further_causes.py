@@ -1,4 +1,4 @@
-"""Laws of devices and faults of recorders that a model lacks are named, by records of a rig that steps by its own code."""
+"""Laws of devices and faults of recorders that a model lacks are named, on a rig that steps by its own code."""
 
 from __future__ import annotations
 

@@ -250,7 +250,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: Identified, sound: 
             assert ("113 kg" in told.partition("estimates")[0].partition("Parameters")[0]) == sound
             assert "the values with it, where there are any," in told
             assert "above" not in told.partition("records")[0]
-    assert len(proposed) == 3
+    assert len(proposed) == 6
 
 
 def test_all_is_found_only_in_a_fit_that_can_be_relied_on(found: Identified) -> None:

@@ -59,7 +59,7 @@ class Chained:
 def laws(chain: Chain, fastest: float, stroke: float, peak: float = 0.0) -> Iterator[Hypothesis]:
     """What a chain may do beyond its model, in motions of this largest speed [m/s], stroke [m] and force [N]."""
     yield from _parts(chain)
-    yield _quadratic(chain, fastest)
+    yield _quadratic(chain, fastest, peak)
     if chain.spring is not None and peak > 0.0:
         yield _stiffening(chain, peak)
         yield _second_gap(chain, peak)
@@ -142,13 +142,14 @@ def _presliding(chain: Chain, stroke: float) -> Hypothesis:
     )
 
 
-def _quadratic(chain: Chain, fastest: float) -> Hypothesis:
-    square = Unknown("quadratic damping", "N s^2/m^2", 0.0, 1e3 / fastest**2, 1.0 / fastest**2)
+def _quadratic(chain: Chain, fastest: float, peak: float) -> Hypothesis:
+    square = Unknown("quadratic damping", "N s^2/m^2", 0.0, max(1e3, 2.0 * peak) / fastest**2, 1.0 / fastest**2)
 
     def details(values: Values) -> Details:
         return {"most": values[square.name] * fastest**2}
 
-    return _changed(chain, Suspect.QUADRATIC, {"square": square}, details, ({square.name: 3.0 / fastest**2},))
+    starts = tuple({square.name: max(share * peak, 1.0) / fastest**2} for share in (0.05, 0.4))
+    return _changed(chain, Suspect.QUADRATIC, {"square": square}, details, starts)
 
 
 def _ripple(chain: Chain, stroke: float) -> Hypothesis:
@@ -186,7 +187,7 @@ def _second_gap(chain: Chain, peak: float) -> Hypothesis:
         ks = _value(chain.spring, values)
         return {"slack": values[part.name] * peak / ks, "stiffness": values[ratio.name] * ks}
 
-    starts = tuple({part.name: share, ratio.name: 0.5} for share in (0.15, 0.4))
+    starts = tuple({part.name: share, ratio.name: more} for share, more in ((0.15, 0.5), (0.4, 0.5), (0.3, 4.0)))
     return _law(chain, Suspect.SECOND_GAP, (part, ratio), changed, details, starts)
 
 

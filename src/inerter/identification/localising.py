@@ -60,7 +60,8 @@ def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
     """Patterns in the residual of one record, those that explain most of it first; empty where there is none."""
     random = np.random.default_rng([seed, 7])
     s = _samples(c)
-    bounded = replace(s, residual=_winsorised(s.residual))
+    bounded = _winsorised(s.residual)
+    bounded = replace(s, residual=bounded - float(bounded.mean()))
     found = [
         *_instants(s),
         *_over_time(bounded, random),

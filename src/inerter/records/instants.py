@@ -28,7 +28,7 @@ _WIDEST = 3  # samples of a spike
 _HELD = 4  # equal samples in a row, at least
 _LOCAL = 100  # samples to either side, which say how often values repeat by chance
 _RARE = 1e-3  # expected number of such repetitions in a record that holds none
-_COMMON = 0.05  # of the samples: repetitions of a channel whose values repeat anyway, as friction without noise
+_COMMON = 0.2  # of the samples: repetitions of a channel whose values repeat anyway, as friction without noise
 _BEFORE, _DEGREE = 6, 2  # samples on either side of a held value, and the degree of the polynomial through them
 _JOINT = 10.0  # standard deviations between the extrapolations from both sides
 _ALONE = 4.0  # ratio of the largest discontinuities to all others
@@ -122,8 +122,6 @@ def held_values(values: Vector) -> list[Instant]:
     inside = np.zeros(values.size, dtype=bool)
     for a, b in candidates:
         inside[a:b] = True
-    if inside.mean() > _COMMON:
-        return []
     step, noise = resolution(values), _noise(values)
     ends = float(values.max()), float(values.min())
     found = []
@@ -134,7 +132,8 @@ def held_values(values: Vector) -> list[Instant]:
         moved = away > max(3.0 * step, 5.0 * noise, 5.0 * scatter, 1e-9 * float(np.ptp(values)))
         if moved or (noise > step and _by_chance(same, inside, a, b, step / max(noise, 1e-300)) * values.size < _RARE):
             found.append(Instant(a, b, away))
-    return found
+    common = sum(i.stop - i.start for i in found) > _COMMON * values.size
+    return [] if common else found
 
 
 def _noise(values: Vector) -> float:

@@ -34,7 +34,7 @@ class FaultyInstants:
 
 def faulty_instants(record: Record) -> FaultyInstants:
     """The samples of displacement and force that contradict those before and after them."""
-    held = {role: held_values(getattr(record, role)) for role in _ROLES}
+    held = _held_together(record)
     found = {}
     for role in _ROLES:
         values = getattr(record, role)
@@ -45,10 +45,22 @@ def faulty_instants(record: Record) -> FaultyInstants:
             for spike in spikes(values, _WIDEST[role])
             if abs(spike.size) > least and not inside[spike.start - 1 : spike.stop + 1].any()
         ]
-    excused = mask_of([*held["displacement"], *found["displacement"]], record.time.size)
+    excused = mask_of([*held["displacement"], *held["force"], *found["displacement"]], record.time.size)
     for loss in losses(record):
         excused[loss.after : loss.after + 2] = True
     return FaultyInstants(found, held, joints(record, excused) if record.uniform else [])
+
+
+def _held_together(record: Record) -> dict[str, list[Instant]]:
+    """Held values of each channel, also where only the other one shows that the recorder missed samples."""
+    held = {role: held_values(getattr(record, role)) for role in _ROLES}
+    result = {}
+    for role, other in zip(_ROLES, reversed(_ROLES), strict=True):
+        values = getattr(record, role)
+        known = mask_of(held[role], record.time.size)
+        same = (i for i in held[other] if not known[i.start : i.stop].any() and np.ptp(values[i.start : i.stop]) == 0.0)
+        result[role] = sorted([*held[role], *(Instant(i.start, i.stop, 0.0) for i in same)], key=lambda i: i.start)
+    return result
 
 
 def _least_spike(record: Record) -> float:

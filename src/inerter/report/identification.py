@@ -40,7 +40,7 @@ from inerter.writing import write_text
 RESPONSE = "response.json"
 OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
 _SEVERITIES = {"error": "Errors", "warning": "Warnings", "info": "Good to know"}
-_MOST_FIGURES = 6  # of one record, and two of all
+_MOST_FIGURES = 5  # of one record, and two of all
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def write_identification(
         (path,) = draw(figure.figure, folder / FIGURES, figure.name, print_too=False)
         svg = inline(path.read_text(encoding="utf-8"), figure.name, figure.caption)
         drawn.setdefault(figure.section, []).append(PageFigure(svg, figure.caption))
-        progress(count / (_MOST_FIGURES * len(found.readings) + 2))
+        progress(count / (_MOST_FIGURES * len(found.readings) + len(found.fit.localisations) + 2))
     write_text(folder / REPORT, identification_page(found, drawn, answered.notes))
 
 

@@ -60,8 +60,8 @@ def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
     """Patterns in the residual of one record, those that explain most of it first; empty where there is none."""
     random = np.random.default_rng([seed, 7])
     s = _samples(c)
-    bounded = _winsorised(s.residual)
-    bounded = replace(s, residual=bounded - float(bounded.mean()))
+    inside = _winsorised(s.residual)
+    bounded = replace(s, residual=inside - float(inside.mean()))
     found = [
         *_instants(s),
         *_over_time(bounded, random),
@@ -366,8 +366,8 @@ def _spectral(s: Samples, c: RecordFit) -> Iterator[Finding]:
     amplitude = scale * np.abs(np.fft.rfft(window * (s.residual - s.residual.mean())))
     moved = np.abs(np.fft.rfft(window * (s.motion["displacement"] - s.motion["displacement"].mean())))
     sound = scale * np.sqrt(np.mean(np.abs(np.fft.rfft(window * c.draws[:, c.fitted | c.checked])) ** 2, axis=0))
-    frequency = np.fft.rfftfreq(n, c.record.interval)
-    excess = np.maximum(amplitude**2 - sound**2, 0.0)
+    frequency = np.asarray(np.fft.rfftfreq(n, c.record.interval), dtype=float)
+    excess = np.asarray(np.maximum(amplitude**2 - sound**2, 0.0), dtype=float)
     excess[:2] = 0.0
     total = float(np.sum(amplitude[2:] ** 2))
     at = int(np.argmax(excess))

@@ -17,12 +17,13 @@ import inerter as it
 from inerter.errors import OK, Status, StatusKind
 from inerter.files.identification.running import Identified, Reading, Responses, responses
 from inerter.identification.choice import Candidate
-from inerter.identification.fit import Explanation, Misfit
+from inerter.identification.fit import Explanation, Localisation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.kinds import FitFinding
 from inerter.identification.laws import laws
+from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.networks.elements.roles import Linear
 from inerter.networks.parser import written
 from inerter.records.choosing import ROLES
@@ -289,3 +290,26 @@ def test_the_library_knows_steps_on_records_as_data_alone() -> None:
     texts = [n for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Constant) and id(n) not in docs]
     assert len(texts) > 100
     assert [n.value for n in texts if isinstance(n.value, str) and re.search(words, n.value)] == []
+
+
+def test_a_misfit_is_shown_where_it_is(found: Identified, tmp_path: Path) -> None:
+    """One sentence in text, page and data, and one figure more."""
+    pattern = Finding(
+        MisfitPattern.BEGINS, "info", "", {"time": 0.5, "before": 1.0, "after": 9.0, "share": 0.8, "p": 0.006}
+    )
+    status = Status(StatusKind.INACCURATE, "the model leaves 3 times what the errors of the sensors would leave")
+    places = tuple(Localisation(c.record.source, (pattern,)) for c in found.fit.comparisons)
+    doubted = replace(found, fit=replace(found.fit, status=status, localisations=places))
+    done: list[float] = []
+    write_fit(doubted, tmp_path)
+    write_identification(doubted, tmp_path, done.append)
+    assert done[-1] == pytest.approx(1.0)
+    assert list((tmp_path / "figures").glob("misfit*.svg"))
+    page = Page((tmp_path / "report.html").read_text(encoding="utf-8"))
+    sentence = "misfit begins at 0.5 s"
+    assert sentence in page.text
+    assert sentence in " ".join(identification_text(doubted).split())
+    told, *_ = json.loads((tmp_path / "fit.json").read_text())["localisations"]
+    assert sentence in told["sentence"]
+    assert told["changes"] == [0.5]
+    assert told["patterns"][0]["kind"] == "begins"

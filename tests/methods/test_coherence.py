@@ -82,11 +82,10 @@ def check_one(seed):
     road = it.Road(5e-7, float(rng.uniform(8.0, 40.0)), coherence=coherence)
     outputs = ["sprung_acceleration", "roll_acceleration", "front_left_travel"]
     expected = by_quadrature(vehicle, road, outputs, formula)
-    rough = 3e-3 if len(coherence.numerator) > 1 else 0.0  # the fit of the isotropic one
     for output, value in zip(outputs, expected, strict=True):
         found = it.evaluate(vehicle, it.RandomResponse({output: 1.0}, road), it.Norm())
         assert found.status.ok
-        assert found.value == pytest.approx(value, rel=2e-5 + rough), output
+        assert found.value == pytest.approx(value, rel=2e-5), output
 
 
 @pytest.mark.parametrize("seed", sampled(range(3), [0]))
@@ -196,10 +195,9 @@ def test_the_spectra_of_both_tracks():
     assert np.abs(np.mean(cross - road.coherence(frequency / 20.0))) < 0.02
 
 
-def test_the_isotropic_one_is_near_its_formula():
+def test_the_isotropic_one_is_its_formula():
     x = np.geomspace(1e-4, 50.0, 20000)
-    deviation = np.abs(it.Coherence.isotropic(1.0)(x / (2 * np.pi)) - x * k1(x))
-    assert deviation.max() < 2.7e-3
+    np.testing.assert_allclose(it.Coherence.isotropic(1.0)(x / (2 * np.pi)), x * k1(x), rtol=1e-12, atol=1e-15)
 
 
 def test_tracks_that_are_alike():

@@ -33,8 +33,9 @@ def compiled(mechanism, index):
 
 
 def whole(question, point):
-    """Norms of the whole mechanism, without rounding."""
-    return h2_exactly(question.problem.system(question._closed(point)), None)[0]
+    """Norms of the whole mechanism: behind filters without rounding, and corrected where these only stand in."""
+    system = question.problem.system(question._closed(point))
+    return question.problem.corrected(system, h2_exactly(system, None)[0])[0]
 
 
 def check(seed):

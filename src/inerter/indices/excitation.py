@@ -79,17 +79,19 @@ class RoadVelocity:
 
     def _on_tracks(self, mechanism: Mechanism, coherence: Coherence) -> Iterator[Arrival]:
         speed = self.road.speed
-        parts = {"tracks in phase": coherence.in_phase(speed), "tracks in anti-phase": coherence.in_anti_phase(speed)}
+        ratios = {"tracks in phase": coherence.in_phase(speed), "tracks in anti-phase": coherence.in_anti_phase(speed)}
+        parts = {source: None if ratio is None else Filter(*ratio) for source, ratio in ratios.items()}
         for road in mechanism.roads:
             if not road.track:
                 raise PerformanceIndexError(
                     f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Say which, "
                     f'track = "left" or "right", or leave the coherence out.'
                 )
-            for (source, ratio), right in zip(parts.items(), (1.0, -1.0), strict=True):
-                if ratio is not None:
+            for (source, shape), right in zip(parts.items(), (1.0, -1.0), strict=True):
+                if shape is not None:
                     lever = right if road.track == "right" else 1.0
-                    yield Arrival(road.name, source, road.distance / speed, lever, Filter(*ratio))
+                    excess = coherence.excess(right, speed)
+                    yield Arrival(road.name, source, road.distance / speed, lever, shape, excess=excess)
 
 
 @dataclass(frozen=True)
@@ -258,11 +260,17 @@ def as_excitation(given: object, what: str) -> Excitation:
 
 def shape_of(excitation: Excitation) -> tuple[RoadShape, float] | None:
     """The measured shape of the road that drives, and the speed on it [m/s]; None where nothing was measured."""
+    of = road_of(excitation)
+    shape = getattr(of, "shape", None)
+    return (shape, of.speed) if isinstance(shape, RoadShape) else None
+
+
+def road_of(excitation: Excitation) -> Any:
+    """The road that drives, perhaps through filters; what drives itself where that is no road."""
     of: Any = excitation
     while isinstance(of, Shaped | RoadVelocity):
         of = of.excitation if isinstance(of, Shaped) else of.road
-    shape = getattr(of, "shape", None)
-    return (shape, of.speed) if isinstance(shape, RoadShape) else None
+    return of
 
 
 def stand_ins_of(excitation: Excitation, mechanism: Mechanism) -> tuple[ErrorSource, ...]:

@@ -32,7 +32,6 @@ from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.hinf import GainPeak
 from inerter.simulation.event_driven import KERNELS
 from inerter.systems.arrivals import Arrival
-from inerter.systems.descriptor import close
 from inerter.systems.graph import full_graph
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
@@ -175,7 +174,7 @@ class ApproximateLinear:
     def _known(self, mechanism: Mechanism, question: Question) -> Estimate:
         """A linear design's norm, as an estimate without scatter."""
         problem = linear_problem(mechanism, question, CONVENTIONS[self.conventions])
-        norm = problem.estimate(close(problem.descriptor, {}))
+        norm = problem.estimate({})
         return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
 
     def _drive(self, mechanism: Mechanism, question: Question) -> Excited:

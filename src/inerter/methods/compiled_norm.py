@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.indices.excitation import road_of
 from inerter.indices.question import Combination, Question
+from inerter.kernels import excess as excess_kernels
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
@@ -23,7 +25,8 @@ from inerter.methods.method import Estimate
 from inerter.networks.elements import middle
 from inerter.norms.delay import pade
 from inerter.norms.exact import h2_exactly
-from inerter.norms.h2 import drift_covariance, h2
+from inerter.norms.h2 import drift_covariance
+from inerter.signals.coherence import Excess
 from inerter.systems.descriptor import Descriptor, close
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
@@ -132,20 +135,24 @@ class CompiledQuestion:
         names = list(self._free)
         return [names.index(name) for name in one._free]
 
+    def _values(self, point: Array) -> dict[str, float]:
+        return dict(zip(self._free, point.tolist(), strict=True))
+
     def _closed(self, point: Array) -> LinearSystem:
-        return close(self.problem.descriptor, dict(zip(self._free, point.tolist(), strict=True)))
+        return close(self.problem.descriptor, self._values(point))
 
     def _exact(self, point: Array) -> Estimate:
-        return self.problem.estimate(self._closed(point))
+        return self.problem.estimate(self._values(point))
 
     def _norms(self, point: Array) -> Array:
-        return h2(self.problem.system(self._closed(point)), self.problem.pade_order).outputs
+        return self.problem.norms(self.problem.system(self._closed(point)), self._values(point))[0].outputs
 
     def _exact_norms(self, point: Array) -> Array:
         if self.apart:
             parts = [one._exact_norms(point[self._columns(one)]) for one in self.apart]
             return np.asarray(np.linalg.norm(parts, axis=0))
-        return h2_exactly(self.problem.system(self._closed(point)), self.problem.pade_order)[0]
+        system = self.problem.system(self._closed(point))
+        return self.problem.corrected(system, h2_exactly(system, self.problem.pade_order)[0])[0]
 
     def values(self, points: Array) -> Array:
         """The index at each row of `points`, for a search: infinite where it is not known.
@@ -204,26 +211,49 @@ class CompiledQuestion:
 
         Of several sources, squares are added up; what does not see one gets nothing of it.
         """
-        if not self.apart and np.all(self.seen):
+        if not self.apart and np.all(self.seen) and self._excess is None:
             norms, gradients, doubts = h2_kernels.norms(points, *self.arguments, weights)
             return np.asarray(norms), np.asarray(gradients), np.asarray(doubts)
         squares, doubts = np.zeros((points.shape[0], self.serves.size)), np.zeros(points.shape[0])
         found = []
         for seen, one in self.sighted:
             own = np.ascontiguousarray(points[:, self._columns(one)])
-            norms, _, of_one = one._with_gradients(own, np.empty(0))
+            norms, behind, of_one = one._of_one_source(own)
             squares[:, seen] += norms**2
-            found.append(norms)
+            found.append((norms, behind))
             doubts = np.maximum(doubts, of_one)
         total = np.sqrt(squares)
         gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
-            for (seen, one), norms in zip(self.sighted, found, strict=True):
+            for (seen, one), (norms, behind) in zip(self.sighted, found, strict=True):
                 shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
                 columns = self._columns(one)
-                own = np.ascontiguousarray(points[row : row + 1, columns])
-                gradients[row, columns] += one._with_gradients(own, shares)[1][0]
+                own = np.ascontiguousarray(points[row, columns])
+                gradients[row, columns] += one._slopes_of_one_source(own, shares, norms[row], behind[row])
         return total, gradients, doubts
+
+    @cached_property
+    def _excess(self) -> Excess | None:
+        """By what part the density of the one source exceeds that behind its filter."""
+        return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
+
+    def _of_one_source(self, points: Array) -> tuple[Array, Array, Array]:
+        """Norms over a source that reaches all outputs, those behind its filter, and how doubtful they are."""
+        found, _, doubts = map(np.asarray, h2_kernels.norms(points, *self.arguments, np.empty(0)))
+        if self._excess is None:
+            return found, found, doubts
+        own = (self.descriptor, self.arrivals, self._excess.table)
+        squares = found**2 + excess_kernels.corrections(points, *own, np.empty(0))[0]
+        norms = np.sqrt(np.maximum(squares, 0.0))
+        return norms, found, np.where(np.any(np.isnan(norms), axis=1), np.inf, doubts)
+
+    def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
+        """Gradient at one point of the sum with `weights` of what `_of_one_source` gives there."""
+        if self._excess is None:
+            return np.asarray(h2_kernels.norms(point[None], *self.arguments, weights)[1][0])
+        shares, own = weights / np.maximum(norms, 1e-150), (self.descriptor, self.arrivals, self._excess.table)
+        slopes = h2_kernels.norms(point[None], *self.arguments, shares * found)[1][0]
+        return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])
 
     def _sure(self, points: Array, norms: Array, doubts: Array) -> NDArray[np.bool_]:
         """Whether norms are right: doubtful ones behind filters beyond first order, whether they stay as they are where
@@ -308,7 +338,9 @@ def kernels_of(question: Question) -> tuple[Any, ...]:
     """The compiled code that values of the question and their gradients call."""
     if question.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
-    return (h2_kernels.norms,)
+    coherence = getattr(road_of(question.drive), "coherence", None)
+    corrected = coherence is not None and coherence.is_isotropic
+    return (h2_kernels.norms, excess_kernels.corrections) if corrected else (h2_kernels.norms,)
 
 
 def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tuple[float, float]]) -> Array:

@@ -84,7 +84,8 @@ class Counterpart:
 
     def unlike(self, speeds: Array, norms: Array) -> float:
         """By what part of a mean square it changes if frictions slip twice as fast; `norms` are those at `speeds`."""
-        other = h2(self.system(2.0 * speeds), self.problem.pade_order).outputs
+        system = self.system(2.0 * speeds)
+        other = self.problem.corrected(system, h2(system, self.problem.pade_order).outputs)[0]
         return relative_change(other**2, norms**2)
 
 

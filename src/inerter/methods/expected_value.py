@@ -172,7 +172,7 @@ class ExpectedValue:
         system = piecewise(question.drive.driven(mechanism))
         if not _is_held(system, question, conventions) and not is_nonlinear(system, question):
             assert linear is not None
-            return replace(linear.estimate(close(linear.descriptor, {})), standard_error=0.0)
+            return replace(linear.estimate({}), standard_error=0.0)
         if question.is_peak:
             return self._peak_gain(vehicle, index, system, question, linear, pool)
         wanted = self.realisations or (_FEWEST if self.relative_error else _DEFAULT)
@@ -200,7 +200,7 @@ class ExpectedValue:
         if linear is not None:
             closed = close(linear.descriptor, {})
             poles = np.linalg.eigvals(closed.A)
-            known = np.array([peak.omega for peak in linear.estimate(closed).peaks if np.isfinite(peak.omega)])
+            known = np.array([peak.omega for peak in linear.estimate({}).peaks if np.isfinite(peak.omega)])
         expected = _expected_peaks(vehicle, index)
         if expected is None:
             expected = np.concatenate([coarse_maxima(forced, poles, pool), known])

@@ -23,7 +23,6 @@ from inerter.methods.error_bounds import checked
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
 from inerter.methods.note import Note
-from inerter.systems.descriptor import close
 from inerter.systems.outputs import velocity_of
 from inerter.vehicle.mechanism import Mechanism, Weighted
 
@@ -344,7 +343,7 @@ class GaussianClosure:
         if np.isnan(dampers.error[0]):
             message = "the r.m.s. velocity across a friction could not be computed: rounding hides it"
             return Estimate(math.nan, self.question.unit, Status(StatusKind.FAILED, message))
-        result = problem.estimate(close(problem.descriptor, dict(zip(parts.dampers, dampers.damping[0], strict=True))))
+        result = problem.estimate(dict(zip(parts.dampers, dampers.damping[0], strict=True)))
         if dampers.error[0] > _SETTLED and result.status.ok:
             message = f"the equivalent dampers are known to {dampers.error[0]:.1e} only"
             result = replace(result, status=Status(StatusKind.INACCURATE, message))

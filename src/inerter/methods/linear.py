@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import ErrorSource, PerformanceIndexError
+from inerter.errors import ErrorSource, PerformanceIndexError, worst_of
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Question
 from inerter.methods.error_bounds import ROUNDING, checked
 from inerter.methods.measured import road_errors
 from inerter.methods.method import Estimate
 from inerter.methods.sides import on_one_side
-from inerter.norms.h2 import h2
+from inerter.norms.excess import excess_squares
+from inerter.norms.h2 import H2, h2
 from inerter.norms.hinf import GainPeak, hinf_norm
-from inerter.systems.arrivals import Column, columns_of, fed, inputs_of
-from inerter.systems.descriptor import Descriptor, describe
+from inerter.signals.coherence import Excess
+from inerter.systems.arrivals import Column, columns_of, excesses_of, fed, inputs_of
+from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.filtered import filtered
 from inerter.systems.filters import Filter, high_pass
 from inerter.systems.linear import LinearSystem
@@ -27,6 +30,8 @@ from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _FEW = 1e-14  # relative error by the roundings of weights, sizes and delays
+DENSITY = "density of the tracks"
+CORRECTED = 1e-6  # relative error of a norm that is ok where it is corrected for densities that no filter has
 PROMISE = 1e-9  # relative error of a norm that is ok, beside those of what stands in for its excitation
 
 
@@ -80,6 +85,7 @@ class LinearProblem:
     unfiltered: Descriptor
     arrivals: tuple[Column, ...]  # the inputs of the descriptor, with their sources and delays in rising order
     pade_order: int | None
+    excesses: Mapping[str, Excess] = field(default_factory=dict)  # of sources whose filters only stand in for a density
 
     @cached_property
     def descriptor(self) -> Descriptor:
@@ -145,15 +151,54 @@ class LinearProblem:
         """The closed descriptor with sources and delays."""
         return replace(closed, sources=self.sources, delays=self.delays)
 
-    def estimate(self, closed: LinearSystem) -> Estimate:
-        """The value of the index."""
-        system = self.system(closed)
+    def closed(self, values: Mapping[str, float]) -> LinearSystem:
+        """The system for these free values; others that have no effect here may be among them."""
+        d = self.descriptor
+        return self.system(close(d, {name: value for name, value in values.items() if name in d.free}))
+
+    def estimate(self, values: Mapping[str, float]) -> Estimate:
+        """The value of the index for these free values."""
+        system = self.closed(values)
         if self.question.is_peak:
             return self._peak_gain(system)
-        norms = h2(system, self.pade_order)
-        value = float(self.question.combined(norms.outputs, self.weights))
+        norms, unsure = self.norms(system, values)
+        outputs = norms.outputs
+        value = float(self.question.combined(outputs, self.weights))
         found = Estimate(value, self.question.unit, norms.status, notes=system.notes)
-        return self._with_errors(found, norms.error, road_errors(self.question, system, self.pade_order, norms.outputs))
+        more = road_errors(self.question, system, self.pade_order, outputs)
+        return self._with_errors(found, norms.error, more, unsure)
+
+    def norms(self, system: LinearSystem, values: Mapping[str, float]) -> tuple[H2, float]:
+        """Norms of the outputs over the sources as they are, and the relative error of any by their densities.
+
+        `system` is the one for these free values. Where norms are corrected, each source is asked of the half of the
+        mechanism that it moves, which needs no states that only drift.
+        """
+        if not self.excesses:
+            return h2(system, self.pade_order), 0.0
+        several = [self.of_source(source) for source in dict.fromkeys(self.sources)]
+        systems = [one.closed(values) for one in several]
+        found = [h2(part, self.pade_order) for part in systems]
+        pairs = zip(several, systems, found, strict=True)
+        corrected = [one.corrected(part, norms.outputs) for one, part, norms in pairs]
+        outputs = np.linalg.norm([norms for norms, _ in corrected], axis=0)
+        status, error = worst_of([one.status for one in found]), max(one.error for one in found)
+        unsure = sum(squares for _, squares in corrected) / np.maximum(outputs**2, 1e-300)
+        return H2(np.asarray(outputs), status, error), float(
+            np.max(0.5 * unsure, where=np.isfinite(outputs), initial=0.0)
+        )
+
+    def corrected(self, system: LinearSystem, norms: Array) -> tuple[Array, Array]:
+        """The norms of the outputs of `system` for the densities that are meant, and what their squares may be off by.
+
+        As they are where the filters before the inputs are exact, where they are zero and where they are infinite.
+        """
+        some = np.isfinite(norms) & (norms > 0.0)
+        if not self.excesses or not np.any(some):
+            return norms, np.zeros(norms.size)
+        added, unsure = excess_squares(system, self.excesses, self.pade_order)
+        squares = np.where(some, norms, 0.0) ** 2 + added
+        return np.where(some, np.sqrt(np.maximum(squares, 0.0)), norms), np.where(some, unsure, 0.0)
 
     def _peak_gain(self, system: LinearSystem) -> Estimate:
         gain = hinf_norm(system)
@@ -162,11 +207,16 @@ class LinearProblem:
         found = Estimate(weight * gain.value, self.question.unit, gain.status, peaks=peaks, notes=system.notes)
         return self._with_errors(found, gain.error)
 
-    def _with_errors(self, found: Estimate, rounding: float, more: tuple[ErrorSource, ...] = ()) -> Estimate:
+    def _with_errors(
+        self, found: Estimate, rounding: float, more: tuple[ErrorSource, ...] = (), integral: float = 0.0
+    ) -> Estimate:
         """The estimate with what rounding, and what stands in for the excitation that is meant, make of it."""
         stand_ins = stand_ins_of(self.question.drive, self.unfiltered.mechanism)
-        own = ErrorSource(ROUNDING, rounding + _FEW)
-        return checked(replace(found, error_sources=(*stand_ins, *more)), (own,), PROMISE)
+        own = (ErrorSource(ROUNDING, rounding + _FEW),)
+        if self.excesses:
+            own = (*own, ErrorSource(DENSITY, integral))
+        promise = CORRECTED if self.excesses else PROMISE
+        return checked(replace(found, error_sources=(*stand_ins, *more)), own, promise)
 
 
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
@@ -178,7 +228,8 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
     asked, driven = under(conventions, mechanism, question), question.drive.driven(mechanism)
     arrivals = question.arrivals(driven)
     descriptor = describe(driven, inputs_of(arrivals), [output.output for output in question.outputs])
-    return LinearProblem(asked, fed(descriptor, arrivals), tuple(columns_of(arrivals)), conventions.pade_order)
+    columns = tuple(columns_of(arrivals))
+    return LinearProblem(asked, fed(descriptor, arrivals), columns, conventions.pade_order, excesses_of(arrivals))
 
 
 def check_peak_gain(question: Question) -> None:

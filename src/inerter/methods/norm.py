@@ -15,7 +15,6 @@ from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, k
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.objective import Differentiable
-from inerter.systems.descriptor import close
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -48,7 +47,7 @@ class Norm:
         """The index of a vehicle without free values."""
         mechanism = vehicle.mechanism()
         problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
-        return problem.estimate(close(problem.descriptor, {}))
+        return problem.estimate({})
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
         """The indices (designs, indices) at many values of the free values, compiled."""

@@ -162,16 +162,17 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     whole = h2(system, pade_order)
     if not whole.status.ok:
         return Rest(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
+    norms, _ = linear.problem.corrected(system, whole.outputs)
     lines = way.signal(0)
     omega = 2.0 * np.pi * lines.frequencies
     gains, sampled = _squared_gains(design, speeds, omega)
     of_lines = 0.5 * (omega * lines.amplitudes) ** 2
     inside, seen = of_lines @ gains, of_lines @ sampled
-    added = (design.question.drive.size * whole.outputs) ** 2 - seen
-    (left, pole), (at_last, _) = (memory(system, whole.outputs, time) for time in (way.period, design.longest))
+    added = (design.question.drive.size * norms) ** 2 - seen
+    (left, pole), (at_last, _) = (memory(system, norms, time) for time in (way.period, design.longest))
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
-    unlike = min(misfit + linear.unlike(speeds, whole.outputs), 1.0)  # once the lines tell more
+    unlike = min(misfit + linear.unlike(speeds, norms), 1.0)  # once the lines tell more
     unseen, within_reach = 2.0 * left, True
     if unseen > _UNSEEN:
         unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
@@ -182,7 +183,7 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
-    measured = road_errors(design.question, system, pade_order, whole.outputs)
+    measured = road_errors(design.question, system, pade_order, norms)
     return Rest(added, unseen, share * unlike, within_reach, status, measured=measured)
 
 
@@ -198,6 +199,9 @@ def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array,
     linear, way = design.linear, design.way
     assert linear is not None
     here = modal_response(linear.system(speeds), omega, linear.problem.pade_order)
+    for i, source in enumerate(dict.fromkeys(linear.problem.sources)):
+        if source in linear.problem.excesses:
+            here[:, :, i] *= linear.problem.excesses[source].factor(omega)[:, None]
     some = omega[np.linspace(0, omega.size - 1, min(omega.size, _SMOOTH)).astype(int)]
     at_once = linear.at_inputs(speeds)
     reached = [(name, linear.is_road(name)) for name in at_once.inputs]

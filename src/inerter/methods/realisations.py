@@ -81,6 +81,8 @@ class Drive:
 def factor_of(arrival: Arrival, omega: Array) -> NDArray[np.complex128]:
     """What an arrival makes of the lines of its source [rad/s]."""
     passed = 1.0 if arrival.filter is None else arrival.filter.response(omega)
+    if arrival.excess is not None:
+        passed = passed * arrival.excess.factor(omega)
     return np.asarray(arrival.lever * passed * np.exp(-1j * omega * arrival.delay))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,13 +31,15 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
     return _response(system, omega, pade_order, resolvent)
 
 
-def modal_response(system: LinearSystem, omega: ArrayLike, pade_order: int | None = None) -> Complex:
-    """As `frequency_response`, to 1e-11 of the largest value, and much quicker for many frequencies.
+def modal_response(
+    system: LinearSystem, omega: ArrayLike, pade_order: int | None = None, within: float = _MODAL
+) -> Complex:
+    """As `frequency_response`, to ten times `within` of the largest value, and much quicker for many frequencies.
 
     A sum over modes; by elimination where eigenvectors are so nearly parallel that it would lose more digits, which is
     looked at where it would show: at both ends, and at the frequencies next to the poles.
     """
-    return _response(system, omega, pade_order, _modal)
+    return _response(system, omega, pade_order, partial(_modal, within=within))
 
 
 def _response(system: LinearSystem, omega: ArrayLike, pade_order: int | None, resolved: Any) -> Complex:
@@ -82,7 +85,7 @@ def resolvent(system: LinearSystem) -> Any:
     return evaluate
 
 
-def _modal(system: LinearSystem) -> Any:
+def _modal(system: LinearSystem, within: float) -> Any:
     """The function of `resolvent`, as a sum over modes where that has enough digits."""
     exact = resolvent(system)
     A, scale = balance(system.A)
@@ -101,7 +104,7 @@ def _modal(system: LinearSystem) -> Any:
         worst = np.unique([0, omega.size - 1, *np.argmin(np.abs(1j * omega[:, None] - poles), axis=0)])
         known = exact(omega[worst])
         with np.errstate(invalid="ignore"):
-            close = np.abs(found[worst] - known).max(axis=0) <= _MODAL * np.abs(known).max(axis=0)
+            close = np.abs(found[worst] - known).max(axis=0) <= within * np.abs(known).max(axis=0)
         return np.asarray(found if np.all(close) else exact(omega))
 
     return evaluate

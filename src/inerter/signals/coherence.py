@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.checks import check_positive, is_number
@@ -14,19 +16,22 @@ from inerter.errors import PerformanceIndexError
 
 Array = NDArray[np.float64]
 Ratio = tuple[tuple[float, ...], tuple[float, ...]]  # of polynomials in s, the highest power first
-# x K1(x) for x from 0 to 14 as a ratio of polynomials in x^2, by the iteration of Sanathanan and Koerner (1963).
+# 1 - x K1(x) within 6 % of itself for x from 1e-3 on, as a ratio of polynomials in x^2 (minimax fit of the ratio).
 _ISOTROPIC = (
-    (1.0, 5.62721154, 1.76735408e-02, -5.76315885e-04),
-    (1.0, 6.89288176, 3.02682174, 8.764452e-02, 9.63102e-03),
+    (2.321311584441453e-06, 0.034459574806466296, 1.4486734273829336),
+    (2.321311584441453e-06, 0.03446783522489262, 1.5149025250469859, 1.0),
 )
+_TERMS = 14  # of the series of K1 below 1, whose last is 1e-24 there
+_STEP, _LOWEST, _HIGHEST = 0.02, -32.0, 16.0  # of ln x in a table, whose cubics deviate by less than 1e-9
 
 
 @dataclass(frozen=True)
 class Coherence:
     """The cross-spectrum of left and right track over the spectrum that both have, a real function of wavenumber n.
 
-    It is numerator / denominator, polynomials in x^2 with the lowest power first, where x = 2 pi n `length`. Make one
-    by `Coherence.constant`, `Coherence.first_order` or `Coherence.isotropic`. The mean of the tracks and half of their
+    It is numerator / denominator, polynomials in x^2 with the lowest power first, where x = 2 pi n `length`; that of an
+    `is_isotropic` surface is x K1(x), for which this ratio only stands in where filters are needed. Make one by
+    `Coherence.constant`, `Coherence.first_order` or `Coherence.isotropic`. The mean of the tracks and half of their
     difference, which are independent, then have (1 + coherence) / 2 and (1 - coherence) / 2 of the spectrum.
 
     Raises `PerformanceIndexError` unless it stays between -1 and 1 at every wavenumber.
@@ -35,6 +40,7 @@ class Coherence:
     numerator: Sequence[float]
     denominator: Sequence[float]
     length: float = 1.0  # [m]
+    is_isotropic: bool = False
 
     def __post_init__(self) -> None:
         check_positive(PerformanceIndexError, "The length of a coherence", self.length, "m")
@@ -43,6 +49,11 @@ class Coherence:
             if not isinstance(given, Sequence) or not given or not all(map(is_number, given)):
                 raise PerformanceIndexError(f"The {name} of a coherence is a list of numbers, got {given!r}.")
             object.__setattr__(self, name, tuple(map(float, given)))
+        if self.is_isotropic and (self.numerator, self.denominator) != _ISOTROPIC:
+            raise PerformanceIndexError(
+                "The coherence of an isotropic surface has polynomials of its own; make it by "
+                "Coherence.isotropic(track=...)."
+            )
         square = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 2401)])
         top, bottom = (np.polyval(p[::-1], square) for p in (self.numerator, self.denominator))
         if np.any(bottom <= 0.0) or np.any(np.abs(top) > bottom * (1.0 + 1e-12)):
@@ -72,18 +83,17 @@ class Coherence:
     def isotropic(cls, track: float) -> Coherence:
         """That of tracks `track` [m] apart on a surface that is as rough in every direction, x K1(x), x = 2 pi n track.
 
-        K1 is a Bessel function. A ratio of polynomials stands for it, which deviates from it by 0.0027 at most. Source:
-        Kamash and Robson (1978), for the waviness 2.
+        K1 is a Bessel function. Source: Kamash and Robson (1978), for the waviness 2.
 
         Raises `PerformanceIndexError` unless `track` is positive.
         """
         check_positive(PerformanceIndexError, "The track of a coherence", track, "m")
-        return cls(*_ISOTROPIC, track)
+        return cls(*_ISOTROPIC, track, is_isotropic=True)
 
     def __call__(self, wavenumber: float | Array) -> Array:
         """The coherence at wavenumbers [cycle/m]."""
-        square = (2.0 * math.pi * self.length * np.asarray(wavenumber, dtype=float)) ** 2
-        return np.asarray(np.polyval(self.numerator[::-1], square) / np.polyval(self.denominator[::-1], square))
+        x = 2.0 * math.pi * self.length * np.abs(np.asarray(wavenumber, dtype=float))
+        return np.asarray(1.0 - _difference(x)) if self.is_isotropic else self._ratio(x)
 
     def in_phase(self, speed: float) -> Ratio | None:
         """What makes the mean of both tracks of white noise at `speed` [m/s], as a stable filter; None for nothing."""
@@ -92,6 +102,15 @@ class Coherence:
     def in_anti_phase(self, speed: float) -> Ratio | None:
         """The same for half of their difference, left less right."""
         return self._factor(-1.0, speed)
+
+    def excess(self, sign: float, speed: float) -> Excess | None:
+        """By what part the density of the mean of the tracks (`sign` 1), or of half of their difference (-1), exceeds
+        that behind the filter; None where the filter is exact.
+        """
+        return Excess(self.length / speed, sign) if self.is_isotropic else None
+
+    def _ratio(self, x: Array) -> Array:
+        return np.asarray(np.polyval(self.numerator[::-1], x**2) / np.polyval(self.denominator[::-1], x**2))
 
     def _factor(self, sign: float, speed: float) -> Ratio | None:
         """The spectral factor of (1 + sign x coherence) / 2."""
@@ -103,6 +122,66 @@ class Coherence:
             return None
         late = self.length / speed
         return _spectral_factor(part, late), _spectral_factor(bottom, late)
+
+
+@dataclass(frozen=True)
+class Excess:
+    """By what part the density of a source exceeds that behind the filter which stands in for it: a function of omega.
+
+    Of one of the two independent parts of tracks on an isotropic surface, `sign` 1 for their mean and -1 for half of
+    their difference, with the time that a vehicle takes to go as far as the tracks are apart. It is no larger than
+    0.06 where omega `time` exceeds 1e-3, grows as the logarithm of longer waves, and is 1.45 / (omega time)^2 in short
+    ones.
+    """
+
+    time: float  # [s]
+    sign: float
+
+    def __call__(self, omega: Array) -> Array:
+        """At frequencies [rad/s], not zero."""
+        return _excess(self.sign, np.abs(np.asarray(omega, dtype=float)) * self.time)
+
+    def factor(self, omega: Array) -> Array:
+        """What the response of the filter is to be multiplied by, for the density that is meant."""
+        return np.sqrt(1.0 + self(omega))
+
+    @property
+    def table(self) -> tuple[float, float, float, Array]:
+        """The time, the first ln(omega time), the step of it, and there the excess and its slope over it (2, n).
+
+        Below the first the excess is linear.
+        """
+        return self.time, _LOWEST, _STEP, _table(self.sign)
+
+
+@lru_cache(maxsize=2)
+def _table(sign: float) -> Array:
+    at, by = np.arange(_LOWEST, _HIGHEST + 0.5 * _STEP, _STEP), 1e-4
+    ahead, behind = (_excess(sign, np.exp(at + step)) for step in (by, -by))
+    found = np.array([_excess(sign, np.exp(at)), (ahead - behind) / (2.0 * by)])
+    found.setflags(write=False)
+    return found
+
+
+def _excess(sign: float, x: Array) -> Array:
+    top, bottom = _ISOTROPIC
+    less = np.array([*bottom[1:]]) - np.array([*top[1:], 0.0])  # the constants are equal: divided by x^2
+    size = np.polyval(bottom[::-1], x**2)
+    of_ratio, of_surface = x**2 * np.polyval(less[::-1], x**2) / size, _difference(x)
+    if sign > 0.0:
+        return np.asarray((of_ratio - of_surface) / (2.0 - of_ratio))
+    return np.asarray((of_surface - of_ratio) / np.maximum(of_ratio, 1e-300))
+
+
+def _difference(x: Array) -> Array:
+    """1 - x K1(x), below 1 by the series of K1, which loses no digits (Abramowitz and Stegun, 9.6.11)."""
+    near = np.clip(x, 1e-150, 1.0)
+    square, term, total = 0.25 * near**2, np.ones_like(near), np.zeros_like(near)
+    for k in range(_TERMS):
+        total += (scipy.special.digamma(k + 1) + scipy.special.digamma(k + 2) - 2.0 * np.log(0.5 * near)) * term
+        term = term * square / ((k + 1) * (k + 2))
+    far = np.maximum(x, 1.0)
+    return np.asarray(np.where(x < 1.0, np.where(x > 0.0, square * total, 0.0), 1.0 - far * scipy.special.k1(far)))
 
 
 def _level(value: object) -> float:

@@ -139,9 +139,11 @@ def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000
     s = 2j * math.pi * own.frequencies
     other = multisine(road, int(np.random.SeedSequence([seed, 1]).generate_state(1, np.uint64)[0]), lowest, highest)
     ratios = (road.coherence.in_phase(road.speed), road.coherence.in_anti_phase(road.speed))
+    excesses = (road.coherence.excess(sign, road.speed) for sign in (1.0, -1.0))
     mean, half = (
-        (0.0 if ratio is None else np.polyval(ratio[0], s) / np.polyval(ratio[1], s)) * part.coefficient
-        for ratio, part in zip(ratios, (own, other), strict=True)
+        (0.0 if ratio is None else np.polyval(ratio[0], s) / np.polyval(ratio[1], s))
+        * (part.coefficient if excess is None else excess.factor(s.imag) * part.coefficient)
+        for ratio, excess, part in zip(ratios, excesses, (own, other), strict=True)
     )
     return {
         track: replace(own, coefficient=np.asarray(total), label=f"{track} track of a {own.label}")

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import LinearSystemError
+from inerter.signals.coherence import Excess
 from inerter.systems.descriptor import Descriptor, Sum
 from inerter.systems.filters import Filter
 from inerter.systems.polynomials import Polynomial
@@ -29,7 +30,8 @@ Chain = tuple[int, Filter]  # the number of a column, and a filter behind it
 class Arrival:
     """A source at an input: `lever` times the source, `delay` seconds late, through `filter`.
 
-    An input that is a road gets its velocity, or with `displacement` its displacement.
+    An input that is a road gets its velocity, or with `displacement` its displacement. Where the filter only stands in
+    for a density, `excess` tells by what part that exceeds it; all arrivals of a source have the same.
     """
 
     input: str
@@ -38,6 +40,7 @@ class Arrival:
     lever: float = 1.0
     filter: Filter | None = None
     displacement: bool = False
+    excess: Excess | None = None
 
     @property
     def plain(self) -> bool:
@@ -58,6 +61,11 @@ class Arrival:
 def inputs_of(arrivals: Sequence[Arrival]) -> tuple[str, ...]:
     """The inputs that are reached, each once."""
     return tuple(dict.fromkeys(arrival.input for arrival in arrivals))
+
+
+def excesses_of(arrivals: Sequence[Arrival]) -> dict[str, Excess]:
+    """By the name of each source whose filter only stands in for a density, by what part that exceeds it."""
+    return {arrival.source: arrival.excess for arrival in arrivals if arrival.excess is not None}
 
 
 def columns_of(arrivals: Sequence[Arrival]) -> list[Column]:

@@ -13,6 +13,8 @@ from fractions import Fraction
 import flint
 
 from inerter import GROUND, Damper, Inerter, Mechanism, Spring
+from inerter.indices.excitation import RoadVelocity
+from inerter.indices.question import Combination
 from inerter.networks.elements import Parallel, Series
 
 _ORDER = {Spring: 0, Damper: 1, Inerter: 2}
@@ -130,6 +132,13 @@ class RationalMechanism:
             masses = {c.name for c in self.mechanism.coordinates if not c.angle}
             if source == "ground_acceleration" and what == "acceleration" and stem in masses:
                 top += self.denominator
+        elif what == "travel":
+            strut = next(strut for strut in self.mechanism.struts if strut.name == stem)
+            ends: dict = {}
+            for end, sign in ((self._end(strut.upper), 1), (self._end(strut.lower), -1)):
+                for name, lever in end.items():
+                    ends[self._number(name)] = ends.get(self._number(name), flint.fmpq(0)) + sign * lever
+            top = moved(ends)
         else:
             assert what in ("force", "load")
             top = flint.fmpq_poly([0])
@@ -223,7 +232,8 @@ def _squared(p):
 def index_value(mechanism: Mechanism, index) -> float | str | None:
     """An index with the exact conventions; INFINITE; or None where a pole is multiple."""
     question = index.question(mechanism)
-    driven = question.drive.driven(mechanism)
+    on_road = isinstance(question.drive, RoadVelocity)  # the whole mechanism, never half of it
+    driven = mechanism if on_road else question.drive.driven(mechanism)
     arrivals, exact = question.arrivals(driven), RationalMechanism(driven)
     if not question.drive.is_random:
         (arrival,) = arrivals
@@ -231,13 +241,14 @@ def index_value(mechanism: Mechanism, index) -> float | str | None:
         over, under = _filter(question.filters[0])
         found = peak_gain(top * over * (S if arrival.displacement else 1), bottom * under)
         return found if found is INFINITE else abs(question.outputs[0].weight) * float(found)
-    total = 0.0
+    sizes = []
     for output, passed in zip(question.outputs, question.filters, strict=True):
         square = _square(exact, arrivals, output.output, passed)
         if square is INFINITE or square is None:
             return square
-        total += abs(output.weight) * float(square.sqrt())
-    return total * question.drive.size
+        sizes.append(abs(output.weight) * float(square.sqrt()))
+    power = 2 if question.combination is Combination.ROOT_OF_SQUARES else 1
+    return sum(size**power for size in sizes) ** (1.0 / power) * question.drive.size
 
 
 def _square(exact: RationalMechanism, arrivals, output: str, passed):

@@ -41,7 +41,7 @@ Array = NDArray[np.float64]
 _ROAD_RMS = math.sqrt(1e-8 / 1e-3)  # [m] noise of 1e-8 m^2/Hz, held for 1 ms
 _FORCE_RMS = math.sqrt(200.0 / 1e-3) / 181.75  # [N/kg] 200 N^2/Hz on the quarter car, twice the size on the half car
 PROMISE = 0.05  # relative error of a value that is ok, sampling apart
-_STEPPED = 1e-5  # relative error of gains by the time step
+_STEPPED = 1e-4  # relative error of gains by the cubics between four points of the shortest wave, jumps apart
 _UNSETTLED = 20.0  # times the change of the state over a period that gains may be off by
 _LOST = 1e-2  # of a mean square that may hide between the harmonics, beyond which nothing is known
 _UNLIKE = "no linear design resembles the motion: gains stand alone, up to the highest frequency excited"
@@ -210,7 +210,10 @@ class ApproximateLinear:
             factor = _factor(question, question.arrivals(runs.system.mechanism)[0], runs)
             estimate = self._from_gains(question, linear, gains * factor, runs)
         settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch)
-        own = ErrorSource("time step", _STEPPED), settled, *estimate.error_sources
+        near = factor * self._near_peak(estimate, runs.drive)
+        jumps = 0.0 if self._raw else runs.missed(places, near)  # of raw gains instants are a part
+        stepped = ErrorSource("time step", _STEPPED + jumps)
+        own = stepped, settled, *estimate.error_sources
         stand_ins = stand_ins_of(question.drive, runs.system.mechanism)
         if shape_of(question.drive) is not None and linear is not None:
             model = linear_model(linear, runs.speeds, runs.drive.excitation.period)
@@ -282,6 +285,13 @@ class ApproximateLinear:
         interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())
         sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *smoothed)
         return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources)
+
+    def _near_peak(self, estimate: Estimate, drive: Excited) -> Array:
+        """One at the harmonics of which the value is made: of a peak gain those that are smoothed together."""
+        if not estimate.peaks:
+            return np.ones(drive.omega.size)
+        reach = max(2.0 * math.pi * self.smoothing, drive.omega[0])
+        return np.asarray(np.abs(drive.omega - max(estimate.peaks[0].omega, drive.omega[0])) <= reach, dtype=float)
 
     def _window(self, omega: Array, times: float) -> Array:
         reach = min(int(2.0 * math.pi * times * self.smoothing / omega[0] * (1.0 + 1e-9)), (omega.size - 1) // 2)

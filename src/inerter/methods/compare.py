@@ -69,17 +69,15 @@ class Comparison:
         return worst_of((self.first.status, self.second.status))
 
     def __str__(self) -> str:
-        if not np.isfinite(self.percent):
-            return (
-                f"{self.first.value:.4g} and {self.second.value:.4g} {self.first.unit}: their difference is no number"
-            )
-        if self.is_tie:
-            return (
-                f"neither is known to be better: they differ by {abs(self.percent):.2g} % ± {self.percent_error:.1g} %"
-            )
-        word = "better" if self.difference.value < 0.0 else "worse"
         doubt = "" if self.status.ok else f"not certain ({self.status}): "
-        return f"{doubt}the first is {abs(self.percent):.2g} % ± {self.percent_error:.1g} % {word} than the second"
+        if not np.isfinite(self.percent):
+            values = f"{self.first.value:.4g} and {self.second.value:.4g} {self.first.unit}"
+            return f"{doubt}{values}: their difference is no number"
+        apart = f"{abs(self.percent):.2g} % ± {self.percent_error:.1g} %"
+        if self.is_tie:
+            return f"{doubt}neither is known to be better: they differ by {apart}"
+        word = "better" if self.difference.value < 0.0 else "worse"
+        return f"{doubt}the first is {apart} {word} than the second"
 
 
 def compare(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, PerformanceIndexError, Status
+from inerter.errors import PerformanceIndexError, Status, worst_of
 from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_index, objective_of
@@ -157,7 +157,7 @@ class OverConditions(OfIndex):
     def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The value for a vehicle without free values; what was left out anywhere is among the notes."""
         found = mapped(partial(_estimated, method), self.cases(vehicle))
-        status = next((one.status for one in found if not one.status.ok), OK)
+        status = worst_of(one.status for one in found)
         notes = tuple(dict.fromkeys(note for one in found for note in one.notes))
         if self.worst:
             values = [one.value for one in found]

@@ -12,12 +12,11 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, Status
-from inerter.methods.steady_squares import steady_squares, unsettled
+from inerter.methods.steady_squares import Squares, steady_squares, unsettled
 from inerter.norms.hinf import GainPeak
 from inerter.signals.harmonics import sine
 from inerter.simulation.inputs import tabulate
 from inerter.simulation.start import initial_state
-from inerter.simulation.trajectory import Repetition
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
@@ -42,8 +41,8 @@ class Forced:
     amplitude: float  # [N], [m] or [m/s]
     filter: Filter | None = None  # that the output passes through
 
-    def __call__(self, omega: float) -> tuple[float, Status, Repetition]:
-        """The ratio at `omega` [rad/s], how far to trust it, and how well the motion repeats."""
+    def __call__(self, omega: float) -> tuple[float, Squares]:
+        """The ratio at `omega` [rad/s], and what it is made of."""
         period = 2.0 * pi / omega
         step = period / max(_POINTS, round(period / _LONGEST))
         mechanism, arrival = self.system.mechanism, self.arrival
@@ -54,10 +53,8 @@ class Forced:
         signals = [signal if name == arrival.input else None for name in names]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, table.value[0], "rest")
-        found, status, steady = steady_squares(
-            self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, repeats=_REPEATS
-        )
-        return sqrt(2.0 * float(found[0])) / self.amplitude, status, steady
+        found = steady_squares(self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, repeats=_REPEATS)
+        return sqrt(2.0 * float(found.power[0])) / self.amplitude, found
 
 
 @dataclass(frozen=True)
@@ -65,15 +62,20 @@ class Summit:
     """A local maximum of the ratio; `missed` is what the search may have left of its height, relative to it."""
 
     peak: GainPeak
-    status: Status
-    steady: Repetition
+    found: Squares
     missed: float
+
+    @property
+    def status(self) -> Status:
+        """How far to trust it."""
+        return self.found.status
 
     @property
     def errors(self) -> tuple[ErrorSource, ...]:
         """What its height may be off by."""
         missed = ErrorSource("search for the peak", self.missed)
-        return ErrorSource("time step", _STEPPED), unsettled([self.steady], sqrt(2.0)), missed
+        stepped = ErrorSource("time step", _STEPPED + float(self.found.jumps[0]))
+        return stepped, unsettled([self.found.steady], sqrt(2.0)), missed
 
 
 def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> list[Summit]:
@@ -88,15 +90,15 @@ def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor)
     found = list(pool.map(lambda ends: _summit(forced, *ends), zip(lower.tolist(), upper.tolist(), strict=True)))
     peaks = [summit for summit in found if summit is not None]
     if near.size < expected.size or not peaks:
-        ratio, status, steady = forced(lowest)
+        ratio, squares = forced(lowest)
         beside = forced(2.0 * lowest)[0]
-        peaks.append(Summit(GainPeak(0.0, ratio), status, steady, abs(beside / ratio - 1.0) if ratio else 0.0))
+        peaks.append(Summit(GainPeak(0.0, ratio), squares, abs(beside / ratio - 1.0) if ratio else 0.0))
     return sorted(peaks, key=lambda summit: -summit.peak.gain)
 
 
 def _summit(forced: Forced, lower: float, upper: float) -> Summit | None:
     """The largest ratio between two frequencies, if it is not at one of them."""
-    visited: dict[float, tuple[float, Status, Repetition]] = {}
+    visited: dict[float, tuple[float, Squares]] = {}
 
     def depth(logarithm: float) -> float:
         visited[logarithm] = forced(float(np.exp(logarithm)))
@@ -107,11 +109,11 @@ def _summit(forced: Forced, lower: float, upper: float) -> Summit | None:
     at = float(found.x)
     if min(at - ends[0], ends[1] - at) < 3.0 * _NEAR:
         return None
-    height, status, steady = visited[at]
-    return Summit(GainPeak(float(np.exp(at)), height), status, steady, _above(visited, at) / max(height, 1e-300))
+    height, squares = visited[at]
+    return Summit(GainPeak(float(np.exp(at)), height), squares, _above(visited, at) / max(height, 1e-300))
 
 
-def _above(visited: Mapping[float, tuple[float, Status, Repetition]], at: float) -> float:
+def _above(visited: Mapping[float, tuple[float, Squares]], at: float) -> float:
     """By how much a parabola through the highest place and its neighbours is higher, twice."""
     places = sorted(visited)
     i = places.index(at)

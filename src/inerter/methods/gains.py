@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, Status, StatusKind
 from inerter.methods.counterpart import Counterpart, memory
 from inerter.methods.excitation import Excited
+from inerter.methods.steady_squares import jump_scatter, share_of
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import GainPeak
 from inerter.norms.response import frequency_response
@@ -75,6 +76,7 @@ class Runs:
     squares: list[Array] = field(default_factory=list)  # (outputs, harmonics)
     inputs: list[Array] = field(default_factory=list)  # (harmonics,)
     powers: list[Array] = field(default_factory=list)  # mean squares of the velocities (frictions,)
+    scatter: list[Array] = field(default_factory=list)  # by jumps of the outputs between samples (outputs,)
     status: Status = OK
     warning: Status = OK
     mismatch: float = 0.0  # the largest change of the state over a period that was recorded, relative to its size
@@ -92,6 +94,20 @@ class Runs:
     def speeds(self) -> Array:
         """R.m.s. velocities across the frictions so far [m/s]."""
         return np.asarray(np.sqrt(np.mean(self.powers, axis=0)))
+
+    def missed(self, places: Sequence[int], factor: Array) -> float:
+        """What samples may miss of r.m.s. values made of squared gains times `factor` (outputs, harmonics).
+
+        That of the worst realisation: what is folded onto low harmonics adds to all of them.
+        """
+        samples, shares = self.drive.excitation.samples, []
+        for squares, power, scatter in zip(self.squares, self.inputs, self.scatter, strict=True):
+            passed = factor / power
+            lines = 2.0 * squares[list(places)] / samples**2
+            with np.errstate(divide="ignore", invalid="ignore"):
+                sizes = (lines * passed).sum(axis=1) / np.sqrt((lines * passed**2).sum(axis=1))
+            shares.append(share_of(scatter[list(places)], sizes))
+        return float(np.max(shares, initial=0.0))
 
     def _add(self, number: int) -> None:
         seed = int(np.random.SeedSequence([self.seed, number]).generate_state(1)[0])
@@ -112,6 +128,7 @@ class Runs:
         trajectory = trajectory_of(run, None, "")
         self.squares.append(np.array([self.drive.power(trajectory[name]) for name in self.outputs]))
         self.inputs.append(power)
+        self.scatter.append(jump_scatter(run, self.outputs))
         self.powers.append(np.array([np.mean(trajectory[name][:-1] ** 2) for name in self.frictions]))
 
 

@@ -36,7 +36,7 @@ from inerter.methods.realisations import (
     realisation_seeds,
     run,
 )
-from inerter.methods.steady_squares import unsettled
+from inerter.methods.steady_squares import together, unsettled
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.piecewise import PiecewiseSystem
@@ -271,13 +271,14 @@ def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
         samples=tuple(samples.tolist()), period=design.way.period,
         error_sources=(*stand_ins_of(question.drive, design.system.mechanism), *lacking.measured),
     )  # fmt: skip
-    return checked(estimate, _errors(lacking, found), PROMISE)
+    return checked(estimate, _errors(lacking, found, len(design.outputs)), PROMISE)
 
 
-def _errors(lacking: Rest, found: Sequence[Ran]) -> list[ErrorSource]:
+def _errors(lacking: Rest, found: Sequence[Ran], outputs: int) -> list[ErrorSource]:
     """What a value on such roads may be off by, sampling apart: half of what its mean squares are."""
+    jumps = together([ran.jumps[:outputs] for ran in found])
     return [
-        ErrorSource("time step", _STEPPED),
+        ErrorSource("time step", _STEPPED + jumps),
         unsettled([ran.steady for ran in found], _PEAKS),
         ErrorSource("lines of the road", 0.5 * lacking.unseen),
         ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * lacking.beyond),

@@ -100,6 +100,7 @@ class Ran:
     power: Array  # mean squares of the filtered outputs and of those without a filter, nan where there are none
     status: Status
     steady: Repetition
+    jumps: Array  # what samples may miss of the r.m.s. values, relative to them
 
 
 def drive(system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None) -> Drive:

@@ -63,6 +63,14 @@ def averages(name: str) -> bool:
     return "realisations" in _settings(_kind(name))
 
 
+def deciding(name: str, message: str) -> str:
+    """Words on the method that can decide what this one does not, to go after the message of its status."""
+    others = [other for other in METHODS if what_is_seen(other) is Sees.BOTH]
+    if what_is_seen(name) is Sees.BOTH or not others or any(other in message for other in others):
+        return ""
+    return f"; {others[0]} simulates it, and can decide"
+
+
 def methods_that(can: Callable[[str], object]) -> tuple[str, ...]:
     """The names of those methods."""
     return tuple(name for name in METHODS if can(name))

@@ -1,21 +1,36 @@
-"""Mean squares of a periodic motion, of outputs that may pass through filters."""
+"""Mean squares of a periodic motion, of outputs that may pass through filters, and what samples of it lack."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, Status
+from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.observe import trajectory_of
 from inerter.simulation.steady import FEW_PERIODS, mean_squares, settle
 from inerter.simulation.trajectory import Repetition
 from inerter.systems.filters import Filter
-from inerter.systems.piecewise import PiecewiseSystem
+from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
 Array = NDArray[np.float64]
+_DEVIATIONS = 4.0  # standard deviations of the error by jumps between samples that a bound of it has
+
+
+class Squares(NamedTuple):
+    """Mean squares of outputs over a period, how far to trust them, and how well the motion repeats.
+
+    `jumps` is what samples may miss of each r.m.s. value, relative to it, where friction turns between them.
+    """
+
+    power: Array
+    status: Status
+    steady: Repetition
+    jumps: Array
 
 
 def unsettled(found: Sequence[Repetition], peaks: float) -> ErrorSource:
@@ -31,26 +46,97 @@ def steady_squares(
     state: Array,
     most: int = FEW_PERIODS,
     **repeats: float,
-) -> tuple[Array, Status, Repetition]:
-    """Mean squares over the period of `table` once the motion repeats, how far to trust them, how well it repeats.
+) -> Squares:
+    """Mean squares over the period of `table` once the motion repeats.
 
     The first outputs pass through `filters`, in the frequency domain: as they do once the filters have settled too.
     """
     if not any(filters):
         found, integration, steady = mean_squares(system, table, outputs, state, most, **repeats)
         if not integration.status.ok:
-            return np.full(len(outputs), np.nan), integration.status, steady
-        return found, integration.warning, steady
+            return _none(len(outputs), integration.status, steady)
+        return Squares(found, integration.warning, steady, missed_by_samples(integration, outputs, np.sqrt(found)))
     integration, steady = settle(system, table, state, energy=False)
     integration.advance(table.time.size - 1)
     trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
-        return np.full(len(outputs), np.nan), integration.status, steady
+        return _none(len(outputs), integration.status, steady)
     count, period = trajectory.time.size - 1, float(table.time[-1] - table.time[0])
     omega = 2.0 * np.pi / period * np.arange(count // 2 + 1)
     lines = np.array([np.abs(np.fft.rfft(trajectory[name][:count])) ** 2 for name in outputs])
-    for line, one in zip(lines, filters, strict=False):
+    passed = np.ones_like(lines)
+    for gain, one in zip(passed, filters, strict=False):
         if one is not None:
-            line *= np.abs(one.response(omega)) ** 2
+            gain[:] = np.abs(one.response(omega)) ** 2
+    lines *= passed
     lines[:, 1 : (count + 1) // 2] *= 2.0
-    return lines.sum(axis=1) / count**2, trajectory.status, steady
+    power = lines.sum(axis=1) / count**2
+    again = np.sqrt((lines * passed).sum(axis=1)) / count
+    with np.errstate(divide="ignore", invalid="ignore"):
+        jumps = missed_by_samples(integration, outputs, power / again)
+    return Squares(power, trajectory.status, steady, jumps)
+
+
+def _none(count: int, status: Status, steady: Repetition) -> Squares:
+    nothing = np.full(count, np.nan)
+    return Squares(nothing, status, steady, nothing)
+
+
+def jump_sizes(integration: Integration, outputs: Sequence[str]) -> Array:
+    """By how much each output jumps at most (elements, outputs) where one of the nonlinear elements turns.
+
+    That is what a friction adds to it one way less what it adds the other way, while all others are as they are. Forces
+    of gaps do not jump but by their dampers, which is left out.
+    """
+    system, count = integration.system, integration.count
+    maps, states = integration.modes.maps[:count], integration.modes.state[:count]
+    rows = np.concatenate([maps[:, integration.seen, -1], maps[:, integration.eta, -1]], axis=1)
+    over = [output_rows(system, system.outputs[name]) for name in outputs]
+    pushed = rows @ np.array([np.concatenate([on_x, on_eta]) for on_x, _, on_eta in over]).T
+    sizes = np.zeros((states.shape[1], len(outputs)))
+    for e, element in enumerate(system.nonlinear_elements):
+        if element.is_damped:
+            alike = np.delete(states, e, axis=1) @ 3 ** np.arange(states.shape[1] - 1)
+            group = np.unique(alike, return_inverse=True)[1]
+            low, high = (np.full((count, len(outputs)), one) for one in (np.inf, -np.inf))
+            np.minimum.at(low, group, pushed)
+            np.maximum.at(high, group, pushed)
+            both = np.zeros((count, 2), dtype=bool)  # groups where it was met both ways; else it goes twice as far
+            both[group[states[:, e] > 0], 0] = both[group[states[:, e] < 0], 1] = True
+            apart = np.where(np.isfinite(low), high - low, 0.0) * np.where(both.all(axis=1), 1.0, 2.0)[:, None]
+            sizes[e] = apart.max(axis=0)
+    return sizes
+
+
+def missed_by_samples(integration: Integration, outputs: Sequence[str], sizes: Array) -> Array:
+    """What samples may miss of r.m.s. values of these `sizes`, relative to them, where outputs jump between them.
+
+    Of an output that passes through a filter, the size is the mean square over the r.m.s. value after a second one.
+    """
+    return share_of(jump_scatter(integration, outputs), sizes)
+
+
+def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
+    """By how much r.m.s. values scatter, in their units, because outputs jump between samples.
+
+    A jump of J anywhere between two samples h apart moves the sum of squares by 2 y J h u with u between -1/2 and 1/2,
+    independently of all others: N of them in a period T change a r.m.s. value by (h / T) sqrt(N / 12) J, as one
+    standard deviation. With a filter y is what has passed through it twice. What begins to slip does not jump.
+    """
+    events = integration.record.events[: integration.events]
+    ends = np.bincount(events["element"][events["before"] != 0], minlength=len(integration.system.nonlinear))
+    steps = max(integration.table.samples - 1, 1)
+    return np.asarray(np.sqrt(ends @ jump_sizes(integration, outputs) ** 2 / 12.0) / steps)
+
+
+def together(shares: Sequence[Array]) -> float:
+    """The bound for means over realisations, whose jumps are independent, from that of each (outputs,)."""
+    several = np.array(shares)
+    return float(np.max(np.sqrt(np.sum(several**2, axis=0)) / len(several), initial=0.0)) if several.size else 0.0
+
+
+def share_of(scatter: Array, sizes: Array) -> Array:
+    """The bound of the error by jumps that scatter so much, relative to r.m.s. values of these sizes."""
+    share: Array = np.zeros_like(sizes)
+    np.divide(_DEVIATIONS * scatter, sizes, out=share, where=(scatter > 0.0) & (sizes > 0.0))
+    return share

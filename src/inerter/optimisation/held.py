@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import Status, StatusKind
+from inerter.errors import Status, StatusKind, worst_of
 from inerter.methods.asking import estimate_of
 from inerter.methods.method import Estimate, Method
 from inerter.optimisation.constrained import KEPT_COSTLY, Limited, sensitivities
@@ -63,6 +63,19 @@ def held_at(problem: Limited, design: Vehicle, method: Method, point: Array, *, 
         active = bound.limit.sense is Sense.EQUAL or held.excess >= -near
         found.append(Held(held.limit, held.estimate, active, slope if active else 0.0))
     return tuple(found)
+
+
+def with_limits(estimate: Estimate, held: Sequence[Held]) -> Estimate:
+    """The estimate of an optimum, whose status is no better than those of the quantities that keep its limits."""
+    unsure = [one for one in held if not one.estimate.status.ok]
+    status = worst_of((estimate.status, *(one.estimate.status for one in unsure)))
+    if status == estimate.status:
+        return estimate
+    first = next(one for one in unsure if one.estimate.status == status)
+    message = (
+        f"the limit {first.label} is kept by {format_quantity(first.value, first.limit.of.unit)}, which is not sure"
+    )
+    return replace(estimate, status=Status(status.kind, f"{message}: {status.message}"))
 
 
 def infeasible(held: Sequence[Held], parameters: Mapping[str, float], units: Mapping[str, str]) -> Status:

@@ -21,7 +21,7 @@ from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.optimisation.constrained import KEPT, KEPT_COSTLY, Limited, searches, trust_region_within
-from inerter.optimisation.held import Held, held_at, infeasible
+from inerter.optimisation.held import Held, held_at, infeasible, with_limits
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
@@ -188,6 +188,7 @@ def _best(
         over_linear = compare(design, best_linear, index, method)
     held = held_at(problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value))
     estimate = over_linear.first if over_linear else _confirmed(estimate_of(design, index, method), best.value)
+    estimate = with_limits(estimate, held)
     if not best.excess <= kept:
         estimate = replace(estimate, status=infeasible(held, parameters, vehicle.mechanism().units()))
     return Optimum(

@@ -19,6 +19,7 @@ from inerter.report.findings import Wording, Writer, best_layouts, headlines
 from inerter.report.fronts import front_sentences
 from inerter.report.plausibility import result_warnings
 from inerter.report.question import spoken
+from inerter.report.speeds import speed_sentences
 from inerter.report.tolerances import tolerance_sentences
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
@@ -33,11 +34,14 @@ def answers(
 ) -> list[str]:
     """Warnings, a sentence for each index, with and without scatter, and for each budget of a layout that is best."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
+    at_speeds = speed_sentences(results, write)
     return [
+        *at_speeds.doubts,
         *result_warnings(one_method(results), study),
         *input_warnings(study),
         *(() if study.line is None else study.line.warnings),
         *headlines(results, Wording(write, static)),
+        *at_speeds.others,
         *tolerance_sentences(results, tolerances, write),
         *front_sentences(results, write),
         *_of_budgets(results, study, budgets, write),

@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 import xarray as xr
 
+from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     NOTICEABLE,
     bound_of,
@@ -22,6 +23,7 @@ from inerter.figures.labels import (
     index_unit,
     indices,
     infeasible,
+    layouts,
     listed,
     methods,
     one_method,
@@ -35,6 +37,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.indices.registry import INDICES
+from inerter.methods.registry import deciding
 from inerter.methods.ties import equally_least
 
 
@@ -46,6 +49,7 @@ class Writer(Protocol):
         ...
 
 
+_UNSURE = StatusKind.INACCURATE.value
 _STATIC = "the static limit, which no damper or inerter lowers"
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
@@ -66,9 +70,27 @@ PLAIN = Wording()
 
 def headlines(results: xr.Dataset, wording: Wording = PLAIN) -> list[str]:
     """One sentence for each index: which layout is best, how good it is, and how much better than the baseline."""
-    if not swept_places(results):
-        return [_of_designs(results, index, wording) for index in indices(results)]
-    return [_of_sweep(results, index, wording) for index in indices(results)]
+    told = _of_sweep if swept_places(results) else _of_designs
+    return [f"{doubt_of(results, index)}{told(results, index, wording)}" for index in indices(results)]
+
+
+def doubt_of(results: xr.Dataset, index: str) -> str:
+    """That values which the answer compares are not certain, why, and what can decide; empty if all are.
+
+    A value that is not there is compared with nothing.
+    """
+    statuses = results["status"].sel(index=index)
+    texts = {name: np.atleast_1d(statuses.sel(layout=name).values).ravel().tolist() for name in layouts(results)}
+    unsure = {
+        name: own for name, several in texts.items() if (own := [t for t in several if Status.parts(t)[0] == _UNSURE])
+    }
+    if not unsure:
+        return ""
+    _, message = Status.parts(next(iter(unsure.values()))[0])
+    many = len(next(iter(texts.values())))
+    of = [f"{name} at {len(own)} of {many} points" if many > 1 else name for name, own in unsure.items()]
+    decided = deciding(methods(results)[0], message) if len(methods(results)) == 1 else ""
+    return f"Not certain ({_UNSURE}: {listed(of)}, {message.rstrip('.')}{decided}). "
 
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
@@ -280,9 +302,9 @@ def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:
     words = next((way(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
     swept, title, baseline = swept_words(results), _called(results, index), results.attrs["baseline"]
-    layouts = compared(results) or results["layout"].values.tolist()
+    names_there = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
-    found = {name: ends for name in layouts if (ends := extremes(rows.sel(layout=name))) is not None}
+    found = {name: ends for name in names_there if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
         return f"Best {title}: {_none(results, index)}."
     if not compared(results):

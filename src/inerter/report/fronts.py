@@ -31,7 +31,7 @@ def front_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[str]
     names, baseline = criteria(results), results.attrs["baseline"]
     if not names:
         return []
-    found = []
+    found, doubts = [], []
     for layout in layouts(results):
         knee = np.flatnonzero(results["front_knee"].sel(layout=layout).values)
         if not knee.size:
@@ -45,9 +45,11 @@ def front_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[str]
         )
         better = _bettered(results, layout, baseline) if baseline and layout != baseline else ""
         status = str(results["front_status"].sel(layout=layout).item())
-        doubt = "" if status == StatusKind.OK else f"not certain ({status}): "
-        found.append(f"{doubt}{layout} {told}{better}")
-    return [f"{trade_off_title(results)}, at the knee: {'; '.join(found)}."] if found else []
+        if status != StatusKind.OK:
+            doubts.append(f"{layout}, {status}")
+        found.append(f"{layout} {told}{better}")
+    doubt = f"Not certain ({'; '.join(doubts)}). " if doubts else ""
+    return [f"{doubt}{trade_off_title(results)}, at the knee: {'; '.join(found)}."] if found else []
 
 
 def front_lines(results: xr.Dataset, width: int) -> Iterator[str]:

@@ -13,6 +13,7 @@ from inerter.figures.labels import decimals_of
 from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult
 from inerter.report.json_data import json_data
+from inerter.report.speeds import at_speeds
 
 _DIGITS = 5  # of a value, at most, without a standard error
 _JSON = {"improvement_error": "improvement_error_percent"}
@@ -57,6 +58,7 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
             "unit": units[names["index"]],
             "improvement_percent": json_data(arrays["improvement"][place].item()),
             **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
+            **({"at_speeds": at_speeds(data, names)} if "speed_value" in data else {}),
             "status": arrays["status"][design],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }

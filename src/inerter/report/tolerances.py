@@ -28,7 +28,8 @@ def tolerance_lines(found: Sequence[ToleranceOutcome], width: int) -> Iterator[s
             f"mean {mean}, standard deviation {deviation}, {100 * SHARE:g} % of cases below {quantile}, worst {worst}; "
             f"due to {_due(one)}"
         )
-        text = f"{one.layout} {one.index}: {told if one.numbers else f'{one.status}: {one.message}'}"
+        doubt = "" if one.ok else f"not certain ({one.status}: {one.message}): "
+        text = f"{one.layout} {one.index}: {doubt + told if one.numbers else f'{one.status}: {one.message}'}"
         yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
 
 

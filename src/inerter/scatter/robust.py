@@ -89,7 +89,9 @@ class Quantile(OfIndex):
         values = scattered(vehicle, self.index, method, self.scatter, self.factors)
         if not np.all(np.isfinite(values)):
             lost = int(np.sum(~np.isfinite(values)))
-            status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value")
+            status = Status(
+                StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value that is sure"
+            )
             return Estimate(np.nan, self.unit, status)
         value = float(np.sort(values) @ rank_weights(values.size, self.share))
         error, interval = quantile_error(values, self.share)

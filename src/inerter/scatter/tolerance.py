@@ -159,7 +159,7 @@ def _found(
     status, known = here.status, bool(np.all(np.isfinite(values)))
     if not known:
         lost = int(np.sum(~np.isfinite(values)))
-        status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value")
+        status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value that is sure")
     names = scatter.names
     main, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
     top = int(np.argmax(extreme)) if known else 0

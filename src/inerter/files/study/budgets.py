@@ -14,6 +14,7 @@ from inerter.errors import StatusKind
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.study import Study, elements_used
+from inerter.methods.registry import deciding
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import Budget, budget
 from inerter.optimisation.threads import one_blas_thread
@@ -113,7 +114,9 @@ def _run(study: Study, outcomes: Mapping[Case, Outcome], case: BudgetCase, threa
             found = budget(design, baseline, index, parameter=case.parameter, method=how, bounds=bounds)
     except FAILURES as error:
         return _outcome(study, case, None, StatusKind.FAILED.value, str(error))
-    return _outcome(study, case, found, found.status.kind.value, found.status.message)
+    said = found.status.message
+    doubt = "" if found.status.kind in _ANSWERS else deciding(budget_method(study), said)
+    return _outcome(study, case, found, found.status.kind.value, said + doubt)
 
 
 def _outcome(study: Study, case: BudgetCase, found: Budget | None, status: str, message: str) -> BudgetOutcome:

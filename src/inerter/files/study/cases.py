@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from inerter.errors import OK, InerterError, Status, StatusKind
+from inerter.errors import InerterError, Status, StatusKind, worst_of
 from inerter.files.study.limits import kept, limits_in
+from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.note import after, parts_of
@@ -115,6 +116,7 @@ class Outcome:
     limits: list[list[float]] = field(default_factory=list)  # of each: value, whether it holds back, its cost
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
+    speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`
 
     @property
     def case(self) -> Case:
@@ -185,7 +187,7 @@ def _prefix(study: Study, method: str) -> str:
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
-    study = study.at(case.swept)
+    is_at_one_speed, study = asks_at_one_speed(study), study.at(case.swept)
     design = study.design(case.layout)
     vehicle = design if study.conditions else design.mechanism()  # whose numbers conditions change
     fields: dict[str, Any] = {
@@ -222,11 +224,12 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     over = found.over_linear if found else None
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
-    worst = next((e.status for e in own.values() if not e.status.ok), found.status if found else OK)
-    bad = next((f"{brief_words_of(method)}: " for method, e in own.items() if not e.status.ok and len(own) > 1), "")
+    worst = worst_of((*(e.status for e in own.values()), *((found.status,) if found else ())))
+    bad = next((f"{brief_words_of(method)}: " for method, e in own.items() if e.status == worst and len(own) > 1), "")
     left_out = design_notes(study, vehicle.mechanism())
     notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
     notes += [parts_of(note) for note in left_out]
+    is_known = bool(np.isfinite(own[study.evaluate[0]].value))
     return Outcome(
         case.layout,
         case.index,
@@ -235,10 +238,11 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         values={m: {i: e.value for i, e in by_index.items()} for m, by_index in estimates.items()},
         standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
         status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
-        message=f"{bad}{worst.message}" if worst.message else "",
+        message=f"{'' if worst.ok else bad}{worst.message}" if worst.message else "",
         notes=list(map(list, dict.fromkeys(notes))),
         realisations={m: e.realisations for m, e in own.items() if e.realisations},
         samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
         over_linear=None if over is None else (-over.percent, over.percent_error),
         error_bounds={m: {i: e.error_bound for i, e in by_index.items()} for m, by_index in estimates.items()},
+        speeds=at_other_speeds(study, vehicle, case.layout, case.index) if is_at_one_speed and is_known else {},
     )

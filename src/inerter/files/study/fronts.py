@@ -15,6 +15,7 @@ from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
 from inerter.files.study.ways import ways
+from inerter.methods.registry import deciding
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
 from inerter.trade_off.pareto import pareto
@@ -47,7 +48,7 @@ class FrontCase:
                 found = pareto(vehicle, indices, method, points=study.points, subject_to=limits, seed=study.seed)
         except FAILURES as error:
             return _without(self.layout, StatusKind.FAILED.value, str(error))
-        return _outcome(self.layout, found)
+        return _outcome(self.layout, found, str(study.optimise))
 
     def lost(self, study: Study) -> FrontOutcome:
         """What is known of a front whose processes have ended, each time that it was tried."""
@@ -99,7 +100,7 @@ def front_cases(study: Study) -> list[FrontCase]:
     return [FrontCase(layout) for layout in study.layouts if study.design(layout).free_values()]
 
 
-def _outcome(layout: str, found: Front) -> FrontOutcome:
+def _outcome(layout: str, found: Front, method: str) -> FrontOutcome:
     if not len(found.values):
         return _without(layout, found.status.kind.value, found.status.message)
     return FrontOutcome(
@@ -110,7 +111,7 @@ def _outcome(layout: str, found: Front) -> FrontOutcome:
         jumps=[before for before, _ in found.jumps],
         knee=found.knee,
         status=found.status.kind.value,
-        message=found.status.message,
+        message=found.status.message + ("" if found.status.ok else deciding(method, found.status.message)),
     )
 
 

@@ -16,6 +16,7 @@ from inerter.errors import StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
 from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
+from inerter.files.study.speeds import BESIDE, asks_at_one_speed
 from inerter.files.study.study import Study
 from inerter.files.study.ways import ways
 from inerter.methods.compare import difference_of
@@ -43,6 +44,7 @@ class Gathered:
         self._notes = Notes()
         self._texts: dict[str, str] = {}  # each once
         self._samples: dict[tuple[int, int], Array] = {}  # by case and method, where there is a standard error
+        self._by: dict[str, None] = {}  # methods of the values at other speeds
         self._uncertain = is_uncertain(study)
         self._parameters = study.free_units
         self._data = _labelled(study, self._parameters)
@@ -69,6 +71,9 @@ class Gathered:
             arrays[name][number] = getattr(outcome, name)
         if self._uncertain:
             self._enter_scatter(number, outcome)
+        for method, values in outcome.speeds.items():
+            arrays["speed_value"][number] = values
+            self._by[method] = None
         for i, found in enumerate(outcome.limits):
             for name, number_told in zip(LIMITED, found, strict=True):
                 arrays[name][number, i] = number_told
@@ -95,6 +100,8 @@ class Gathered:
             widest = 100.0 * abs(data["value"] / base) * (data["error_bound"] + of_base) / (1.0 - of_base)
             data["improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*data["value"].dims).values
             self._enter_errors()
+        if "speed_value" in data:
+            data["speed_value"].attrs["methods"] = " and ".join(self._by)
         if study.sweeps:
             return data
         found = {case: outcome.parameters for case, outcome in self.designs.items() if outcome.values}
@@ -195,10 +202,12 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "other": len(indices),
         "parameter": len(parameters),
         "limit": len(study.limits),
+        "speed": len(BESIDE),
     }
     variables = {}
     uncertain, limited = UNCERTAIN if is_uncertain(study) else {}, LIMITED if study.limits else {}
-    for name, (more, empty, long_name) in {**_VARIABLES, **uncertain, **limited}.items():
+    beside = SPEEDS if asks_at_one_speed(study) else {}
+    for name, (more, empty, long_name) in {**_VARIABLES, **uncertain, **limited, **beside}.items():
         dims = (*design, *more)
         array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
         variables[name] = (dims, array, {"long_name": long_name})
@@ -218,6 +227,8 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         swept_words = {sweep.words for sweep in study.sweeps}
         coords["limit"] = [f"{one.words} (swept)" if one.words in swept_words else one.label for one in study.limits]
         coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
+    if beside and study.road is not None:
+        coords["speed"] = ("speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
     for sweep in study.sweeps:
         attributes = {
             "units": sweep.unit,
@@ -270,6 +281,9 @@ UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "realisations": (("method",), 0, "random roads that were averaged"),
     "over_linear": ((), np.nan, "improvement over the best linear design by the method of the search"),
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
+}
+SPEEDS: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+    "speed_value": (("speed",), np.nan, "index of the same design at other speeds"),
 }
 PERCENT = {"limit_cost", "improvement", "improvement_bound", "improvement_error", "over_linear", "over_linear_error"}
 

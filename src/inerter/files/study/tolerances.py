@@ -18,6 +18,7 @@ from inerter.files.study.conditions import what_of
 from inerter.files.study.places import element_at, place_of
 from inerter.files.study.study import Study, scattering
 from inerter.files.study.sweeps import unknown_place
+from inerter.methods.registry import deciding
 from inerter.networks.elements import Tied
 from inerter.optimisation.threads import one_blas_thread
 from inerter.scatter.tolerance import tolerance
@@ -64,7 +65,7 @@ class ToleranceCase:
             },
             effects={name: [found.main[name], found.total[name]] for name in found.main},
             status=found.status.kind.value,
-            message=found.status.message,
+            message=found.status.message + ("" if found.status.ok else deciding(method, found.status.message)),
         )
 
     def lost(self, study: Study) -> ToleranceOutcome:

@@ -1,0 +1,80 @@
+"""Values of a best design at other speeds than its own: axles that follow each other tune it to their delay."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inerter.errors import InerterError
+from inerter.files.study.places import place_of, with_numbers
+from inerter.methods.asking import Asked
+from inerter.methods.counterpart import has_play
+from inerter.methods.equivalent import has_friction
+from inerter.methods.method import asked_of, evaluate
+from inerter.methods.norm import Norm
+from inerter.methods.registry import averages, is_blind
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.systems.piecewise import piecewise
+from inerter.vehicle.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from inerter.files.study.study import Study
+
+SPEED = "road.speed"
+BESIDE = (0.8, 1.0, 1.2)  # of the speed of the study
+
+
+def asks_at_one_speed(study: Study) -> bool:
+    """Whether it is about one speed on its road: no sweep and no condition has another."""
+    varied = {sweep.label for sweep in study.sweeps}.union(*(condition.numbers for condition in study.conditions))
+    return study.road is not None and SPEED not in varied and study.quantile is None
+
+
+def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> dict[str, list[float]]:
+    """The method, and the values of a design at the speeds `BESIDE` that of the study; empty where there is no need.
+
+    The study is one that `asks_at_one_speed`. At another speed the road is rougher or smoother, and no more, unless
+    several axles meet it or the design has friction. A method that averages random roads is replaced by the quickest
+    that sees as much friction.
+    """
+    if not study.needs_road(index):
+        return {}
+    method = quick_method(study, vehicle)
+    if not (_is_late(vehicle, study.asked(index, layout)) or (method != Norm.name and _rubs(vehicle))):
+        return {}
+    values = []
+    for factor in BESIDE:
+        assert study.road is not None
+        there = with_numbers(study, [(place_of(SPEED), factor * study.road.speed)])
+        try:
+            found = evaluate(vehicle, there.asked(index, layout), there.method(method))
+        except (InerterError, np.linalg.LinAlgError, ArithmeticError):
+            return {}
+        values.append(found.value)
+    return {method: values}
+
+
+def quick_method(study: Study, vehicle: Vehicle) -> str:
+    """The method of the values at other speeds: the first that judges, unless it averages random roads."""
+    first = study.evaluate[0]
+    if not averages(first):
+        return first
+    is_loose = not is_blind(first) and has_play(piecewise(vehicle))
+    return Norm.name if is_loose else StatisticalLinearisation.name
+
+
+def _rubs(vehicle: Vehicle) -> bool:
+    return has_friction(vehicle.mechanism())
+
+
+def _is_late(vehicle: Vehicle, asked: Asked) -> bool:
+    """Whether what is random arrives late somewhere, or through a filter that depends on the speed."""
+    for one, index in asked_of(vehicle, asked):
+        mechanism = one.mechanism()
+        question = index.question(mechanism)
+        arrivals = question.arrivals(question.drive.driven(mechanism)) if question.drive.is_random else ()
+        coherence = getattr(getattr(question.drive, "road", None), "coherence", None)
+        if len({arrival.delay for arrival in arrivals}) > 1 or (arrivals and coherence is not None):
+            return True
+    return False

@@ -1,0 +1,143 @@
+"""What the best designs become at other speeds than that of the study, in sentences and as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from inerter.figures.labels import (
+    NOTICEABLE,
+    index_title,
+    index_unit,
+    indices,
+    one_method,
+    percent,
+    swept_places,
+    with_unit,
+)
+from inerter.methods.registry import brief_words_of
+from inerter.report.findings import Writer, best_layouts, extremes, place_text
+from inerter.report.json_data import json_data
+
+_LOST = 0.5  # of an improvement, or of a value's own size, that is much to lose
+_TUNED = 0.1  # by which a value may exceed what it would be if the speed only made the road rougher
+
+
+@dataclass(frozen=True)
+class SpeedSentences:
+    """Sentences on designs that lose much at another speed, and on the others."""
+
+    doubts: list[str]
+    others: list[str]
+
+
+def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, float | None]]:
+    """One design at each of the other speeds: its value, and its improvement over the baseline's design there [%]."""
+    where = {name: names[name] for name in ("layout", "index", *swept_places(results))}
+    own = results["speed_value"].sel(where)
+    if not np.isfinite(own).all():
+        return []
+    better = _improvements(results, where)
+    return [
+        {"speed": float(speed), "value": json_data(float(value)), "improvement_percent": json_data(float(more))}
+        for speed, value, more in zip(results["speed"].values, own.values, better, strict=True)
+        if speed != results["speed"].values[1]
+    ]
+
+
+def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSentences:
+    """For each index what its best design becomes at other speeds, what is lost there first."""
+    found = SpeedSentences([], [])
+    for index in indices(results) if "speed_value" in results else ():
+        where = _best(results, index)
+        if where is not None and np.isfinite(results["speed_value"].sel(where)).all():
+            lost, sentence = _told(results, where, write)
+            late = np.ptp(_beyond_speed(results, where)) > 1e-6
+            if lost:
+                found.doubts.append(f"Not certain away from {_at(results, 1, write)}: {sentence}")
+            elif late:
+                found.others.append(f"{sentence[0].upper()}{sentence[1:]}")
+    return found
+
+
+def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple[bool, str]:
+    """Whether much is lost, and a sentence."""
+    index, layout, baseline = where["index"], where["layout"], results.attrs["baseline"]
+    values, better = results["speed_value"].sel(where).values, _improvements(results, where)
+    unit, beyond = index_unit(results, index), _beyond_speed(results, where)
+    method = results["speed_value"].attrs["methods"]
+    places = {k: v for k, v in where.items() if k in swept_places(results)}
+    of = f" of {place_text(results, places, write, named=True)}" if places else ""
+    by = f" by {' and '.join(brief_words_of(one) for one in method.split(' and '))}"
+    ends = [
+        f"{write(float(values[i]), unit, np.nan)} at {_at(results, i, write)}{_compared(better[i], baseline, layout)}"
+        for i in (0, 2)
+    ]
+    here = (
+        f"{write(float(values[1]), unit, np.nan)} at {_at(results, 1, write)}{_compared(better[1], baseline, layout)}"
+    )
+    sentence = (
+        f"the best design{of} for {index_title(results, index)}, {layout}, has {here}, but{by} {' and '.join(ends)}"
+    )
+    tuned = bool(max(beyond[0], beyond[2]) > 1.0 + _TUNED)
+    lost = np.isfinite(better[1]) and better[1] >= NOTICEABLE and min(better[0], better[2]) < _LOST * better[1]
+    if tuned:
+        sentence += f", where the speed alone would make it {_alone(results, where, write)}"
+    doubt = bool(lost or tuned)
+    advice = ". Sweep road.speed, or give [[conditions]] of several speeds" if doubt else ""
+    return doubt, f"{sentence if doubt else sentence.replace(', but', ';')}{advice}."
+
+
+def _alone(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
+    value, unit = float(results["speed_value"].sel(where)[1]), index_unit(results, where["index"])
+    speeds = results["speed"].values
+    return " and ".join(write(value * float(np.sqrt(speeds[i] / speeds[1])), unit, np.nan) for i in (0, 2))
+
+
+def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Values over what they would be if the speed only made the road's velocity larger."""
+    values, speeds = results["speed_value"].sel(where).values, results["speed"].values
+    return np.asarray(values / values[1] / np.sqrt(speeds / speeds[1]))
+
+
+def _compared(better: float, baseline: str, layout: str) -> str:
+    if not np.isfinite(better) or not baseline or layout == baseline:
+        return ""
+    if abs(better) < NOTICEABLE:
+        return f" (as good as {baseline})"
+    return f" ({percent(abs(better)).removeprefix('+')} {'better' if better > 0.0 else 'worse'} than {baseline})"
+
+
+def _at(results: xr.Dataset, place: int, write: Writer) -> str:
+    speed = 3.6 * float(results["speed"].values[place])
+    return write(speed, "km/h", np.nan)
+
+
+def _improvements(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """How much better than the baseline's own design at each speed [%]; nan without one."""
+    baseline, own = results.attrs["baseline"], results["speed_value"].sel(where).values
+    if not baseline:
+        return np.full(own.shape, np.nan)
+    return np.asarray(100.0 * (1.0 - own / results["speed_value"].sel({**where, "layout": baseline}).values))
+
+
+def _best(results: xr.Dataset, index: str) -> dict[str, Any] | None:
+    """The layout, and over a sweep the place, that the answer is about."""
+    if not swept_places(results):
+        return next(({"layout": name, "index": index} for name in best_layouts(results, index)), None)
+    one = one_method(results)
+    quantity = "improvement" if results.attrs["baseline"] else "value"
+    found = []
+    for name in results["layout"].values.tolist():
+        ends = extremes(one[quantity].sel(index=index, layout=name))
+        if ends is not None and name != results.attrs["baseline"]:
+            value, place = (ends[1][0], ends[1][1]) if results.attrs["baseline"] else (-ends[0][0], ends[0][1])
+            found.append((value, name, place))
+    if not found:
+        return None
+    _, name, place = max(found, key=lambda one: one[0])
+    return {"layout": name, "index": index, **place}

@@ -1,0 +1,192 @@
+"""What is made of estimates is no better than the worst of them, says so first, and names the method that can decide.
+
+Each of these is made twice: with the exact norms as they are, and with norms that say of themselves, of one of several
+designs or of all, that they are inaccurate.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+
+import pytest
+from study_text import study_text
+
+import inerter as it
+from inerter.errors import Status, StatusKind
+from inerter.files.study.budgets import budget_cases
+from inerter.files.study.cases import cases, run_case
+from inerter.files.study.fronts import front_cases, with_fronts
+from inerter.files.study.loading import load_study
+from inerter.files.study.results import dataset
+from inerter.files.study.running import StudyResult
+from inerter.files.study.tolerances import tolerance_cases
+from inerter.methods.compare import compare
+from inerter.papers.wang_su_2008.judging import ClaimVerdict, Measured, statement, within
+from inerter.report.answers import answers
+from inerter.report.budgets import budget_lines
+from inerter.report.fronts import front_sentences
+from inerter.report.page import report
+from inerter.report.study_data import as_text
+from inerter.report.text import summary_table
+from inerter.report.tolerances import tolerance_lines
+from inerter.scatter.spread import scatter_of
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+J1, J3 = it.RideComfort(ROAD), it.TyreLoad(ROAD)
+K, C, B = it.Spring(60e3, "k"), it.Damper(3e3, "c"), it.Inerter(50.0, "b")
+ELEMENTS = 'k = "60 kN/m"\nc = { from = "500 N s/m", to = "9 kN s/m" }\nb = "50 kg"'
+TEXT = study_text(
+    'indices = ["J1"]\noptimise = "norm"\nbaseline = "S1"\nbudgets = ["b"]\ntrade_off = ["J1", "J3"]\npoints = 3\n'
+    'tolerance = { k = "5 %" }',
+    elements=ELEMENTS,
+)
+LIMITED = study_text(
+    'indices = ["J1"]\noptimise = "norm"\nbaseline = "S1"\nsubject_to = { tyre-load = { at_most = "900 N" } }',
+    elements=ELEMENTS,
+)
+
+
+def car(strut):
+    return it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=strut)
+
+
+def worsen(monkeypatch, which=lambda question, mechanism: True):
+    """Norms of `which` questions say that they are inaccurate, one by one and in bulk."""
+    one, many = it.Norm.estimate, it.Norm.estimate_many
+
+    def estimate(self, vehicle, index):
+        found = one(self, vehicle, index)
+        mechanism = vehicle.mechanism()
+        bad = which(index.question(mechanism), mechanism)
+        return replace(found, status=Status(StatusKind.INACCURATE, "it is so so")) if bad else found
+
+    def estimate_many(self, vehicle, indices, points):
+        found, mechanism = many(self, vehicle, indices, points), vehicle.mechanism()
+        for i, index in enumerate(indices):
+            if which(index.question(mechanism), mechanism):
+                found[:, i] = float("nan")
+        return found
+
+    monkeypatch.setattr(it.Norm, "estimate", estimate)
+    monkeypatch.setattr(it.Norm, "estimate_many", estimate_many)
+
+
+def has_inerter(question, mechanism):
+    return any(isinstance(e, it.Inerter) for mount in mechanism.mounts() for e in mount.network.elements())
+
+
+def is_about_tyres(question, mechanism):
+    return any("tyre" in output.output for output in question.outputs)
+
+
+def is_slow(question, mechanism):
+    return question.drive.size < ROAD.velocity_intensity
+
+
+USE = it.Conditions([it.Condition(0.5, road={"speed": 10.0}), it.Condition(0.5, road={"speed": 25.0})])
+MADE = {  # of what, and which of its estimates is worse
+    "comparison": (lambda: compare(car(K | C | B), car(K | C), J1, it.Norm()), has_inerter),
+    "tie": (lambda: compare(car(K | C | B), car(K | C | B), J1, it.Norm()), has_inerter),
+    "budget": (lambda: it.budget(car(K | C | B), car(K | C), J1, parameter="b", method=it.Norm()), has_inerter),
+    "mean over conditions": (lambda: it.evaluate(car(K | C), USE.mean(J1), it.Norm()), is_slow),
+    "worst of conditions": (lambda: it.evaluate(car(K | C), USE.worst(J1), it.Norm()), is_slow),
+    "quantile": (
+        lambda: it.evaluate(car(K | C), it.Quantile(J1, scatter_of({"k": 0.1}, "uniform"), 0.9, 16), it.Norm()),
+        lambda *_: True,
+    ),
+    "tolerance": (
+        lambda: it.tolerance(car(K | C), J1, it.Norm(), spread={"k": 0.1}, samples=16),
+        lambda *_: True,
+    ),
+    "limit": (
+        lambda: it.optimise(
+            car(K | it.Damper(it.free(500, 9e3, name="c"))), J1, it.Norm(), subject_to=[it.at_most(J3, 900.0)]
+        ),
+        is_about_tyres,
+    ),
+    "front": (
+        lambda: it.pareto(car(K | it.Damper(it.free(500, 9e3, name="c"))), [J1, J3], it.Norm(), points=3),
+        is_about_tyres,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_what_is_made_of_estimates_is_no_better_than_the_worst(name, monkeypatch):
+    make, which = MADE[name]
+    sound = make().status
+    assert sound.kind in ("ok", "unbounded")
+    worsen(monkeypatch, which)
+    found = make()
+    assert found.status.kind in ("inaccurate", "failed")
+    assert "so so" in found.status.message or "sure" in found.status.message
+    if name in ("comparison", "tie"):
+        assert str(found).startswith("not certain (inaccurate")
+
+
+def judged_study(tmp_path, text=TEXT):
+    """All that a study comes to: as text, as data, and as a page."""
+    path = tmp_path / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    study = load_study(path)
+    outcomes = {case: run_case(study, case) for case in cases(study)}
+    budgets, fronts, tolerances = (
+        tuple(case.run(study, outcomes) for case in of(study)) for of in (budget_cases, front_cases, tolerance_cases)
+    )
+    data = with_fronts(study, dataset(study, outcomes), fronts)
+    result = StudyResult(tmp_path, study, data, len(outcomes), budgets, fronts, tolerances, False)
+    answer = re.search(r'<ul class="answer">(.*?)</ul>', report(data, study, tmp_path, budgets, tolerances), re.DOTALL)
+    return {
+        "headline": answers(data, study, budgets)[0],
+        "answer box": answer[1].replace("<li>", "").strip(),
+        "front": (front_sentences(data) or [""])[0],
+        "budget": " ".join(line.strip() for line in list(budget_lines(budgets, study, 200))[2:]).partition("  S2")[2],
+        "tolerance": " ".join(line.strip() for line in list(tolerance_lines(tolerances, 400))[2:]).partition(": ")[2],
+        "table": summary_table(data),
+        "json": json.loads("".join(as_text(result))),
+    }
+
+
+def test_everything_that_a_study_says_begins_with_its_doubt_and_names_who_decides(tmp_path, monkeypatch):
+    sound = judged_study(tmp_path)
+    worsen(monkeypatch)
+    doubtful = judged_study(tmp_path)
+    for name in ("headline", "answer box", "front", "budget"):
+        assert not re.match("not certain", sound[name].strip(), re.IGNORECASE), name
+        assert re.match("not certain", doubtful[name].strip(), re.IGNORECASE), (name, doubtful[name])
+        assert "expected-value" in doubtful[name].replace("<wbr>", ""), (name, doubtful[name])
+    assert doubtful["tolerance"].startswith(("failed", "not certain"))
+    assert "expected-value" in doubtful["tolerance"]
+    assert "so so" in doubtful["table"]
+    for kind in ("designs", "budgets", "fronts", "tolerances"):
+        assert all(one["status"].split(":")[0] in ("ok", "unbounded") for one in sound["json"][kind]), kind
+        assert all(one["status"].split(":")[0] in ("inaccurate", "failed") for one in doubtful["json"][kind]), kind
+
+
+def test_one_design_that_is_not_sure_makes_the_headline_doubtful_though_it_is_not_the_best(tmp_path, monkeypatch):
+    worsen(monkeypatch, has_inerter)
+    text = study_text('indices = ["J1"]\nbaseline = "S1"', elements='k = "20 kN/m"\nc = "1 kN s/m"\nb = "30 kg"')
+    first = judged_study(tmp_path, text)["headline"]
+    assert first.startswith("Not certain (inaccurate: S2, it is so so; expected-value simulates it")
+    assert "Best ride comfort: S1" in first
+
+
+def test_a_design_that_keeps_a_limit_by_an_inaccurate_value_is_not_sure(tmp_path, monkeypatch):
+    assert judged_study(tmp_path, LIMITED)["headline"].startswith("Best ride comfort")
+    worsen(monkeypatch, is_about_tyres)
+    doubtful = judged_study(tmp_path, LIMITED)
+    assert doubtful["headline"].startswith(
+        "Not certain (inaccurate: S1 and S2, the limit dynamic tyre load at most 900 N"
+    )
+    assert all(one["status"].startswith("inaccurate") for one in doubtful["json"]["designs"])
+
+
+def test_a_claim_that_rests_on_a_doubtful_estimate_is_undetermined_and_says_why_first():
+    sure, doubtful = Measured(5.0, 0.1), Measured(5.0, 0.1, doubt="inaccurate: it is so so")
+    for measured, verdict in ((sure, ClaimVerdict.SHOWN), (doubtful, ClaimVerdict.UNDETERMINED)):
+        for one in (measured, measured.minus(Measured(0.5)), Measured(9.0).minus(measured), measured.times(1.0)):
+            assert within(one, 1.0, 9.0) is verdict
+    said = statement("5 %", within(doubtful, 1.0, 9.0), by=[doubtful])
+    assert said.found == "not to be relied on (inaccurate: it is so so): 5 %"

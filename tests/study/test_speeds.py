@@ -1,0 +1,140 @@
+"""A best design at one speed says what it becomes at 0.8 and 1.2 of it, and doubts itself first where it loses much."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from combinations import CARS
+from study_text import study_text
+
+import inerter as it
+from inerter.files.study.cases import Case, cases, run_case
+from inerter.files.study.loading import load_study
+from inerter.files.study.results import dataset
+from inerter.files.study.running import StudyResult
+from inerter.report.answers import answers
+from inerter.report.study_data import as_text
+
+QUARTER = {"vehicle": 'sprung_mass = "250 kg"\nunsprung_mass = "35 kg"\ntyre_stiffness = "150 kN/m"'}
+
+
+def half_car(number, study='indices = ["J1"]\nbaseline = "S1"', road=""):
+    """A random half car with a usual strut and one with an inerter in series with its damper, all with given values."""
+    rng = np.random.default_rng([808, number])
+    vehicle = {key: (value * float(rng.uniform(0.8, 1.25)), unit) for key, (value, unit) in CARS["half-car"].items()}
+    c, b = (float(np.exp(rng.uniform(np.log(low), np.log(high)))) for low, high in ((800, 5e3), (20, 300)))
+    text = "\n".join(f'{key} = "{value!r} {unit}"' for key, (value, unit) in vehicle.items())
+    return f"""
+[vehicle]
+model = "half-car"
+{text}
+[road]
+speed = "{float(rng.uniform(8.0, 35.0))!r} m/s"
+roughness = "5e-7 m^3/cycle"
+{road}
+[elements]
+k = "{float(rng.uniform(15e3, 60e3))!r} N/m"
+c = "{c!r} N s/m"
+b = "{b!r} kg"
+f = "20 N"
+[layouts]
+S1 = "k | c"
+S3 = "k | c - b | c"
+S4 = "k | c | f"
+[study]
+{study}
+"""
+
+
+def found(tmp_path, text):
+    path = tmp_path / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    study = load_study(path)
+    results = dataset(study, {case: run_case(study, case) for case in cases(study)})
+    return study, results
+
+
+def at(study, factor):
+    return replace(study, road=replace(study.road, speed=factor * study.road.speed))
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_the_answer_tells_what_designs_of_half_cars_become_at_other_speeds(number, tmp_path):
+    study, results = found(tmp_path, half_car(number))
+    told = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 3, (), (), (), False))))["designs"]
+    values = {}
+    for i, factor in enumerate((0.8, 1.0, 1.2)):
+        there = at(study, factor)
+        for layout in study.layouts:
+            car, asked = there.design(layout), it.RideComfort(there.road)
+            values[layout, i] = it.evaluate(car, asked, it.Norm()).value
+            own = results["speed_value"].sel(layout=layout, index="J1").values[i]
+            assert own == pytest.approx(values[layout, i], rel=1e-12)
+    for design in told:
+        (slow, fast), layout = design["at_speeds"], design["layout"]
+        for one, i in ((slow, 0), (fast, 2)):
+            better = 100.0 * (1.0 - values[layout, i] / values["S1", i])
+            assert one["speed"] == pytest.approx((0.8, 1.0, 1.2)[i] * study.road.speed)
+            assert one["improvement_percent"] == pytest.approx(better, abs=1e-9)
+    best = min(study.layouts, key=lambda layout: values[layout, 1])
+    gains = [100.0 * (1.0 - values[best, i] / values["S1", i]) for i in range(3)]
+    scaled = [values[best, i] / values[best, 1] / math.sqrt((0.8, 1.0, 1.2)[i]) for i in (0, 2)]
+    lost = (best != "S1" and gains[1] >= 0.05 and min(gains[0], gains[2]) < 0.5 * gains[1]) or max(scaled) > 1.1
+    sentences = answers(results, study)
+    assert sentences[0].startswith("Not certain away from") == lost
+    (sentence,) = [one for one in sentences if "km/h" in one and one.count("km/h") >= 3]
+    for speed in (0.8, 1.2):
+        assert f"{3.6 * speed * study.road.speed:.4g} km/h" in sentence
+
+
+def test_what_is_tuned_to_one_speed_is_doubted_first(tmp_path):
+    """Some of the family lose half of what they gain, or gain more than the speed explains; others do not."""
+    doubts = []
+    for number in range(12):
+        study, results = found(tmp_path, half_car(number, 'indices = ["J1", "J3"]\nbaseline = "S1"'))
+        doubts.append(answers(results, study)[0].startswith("Not certain away from"))
+    assert any(doubts)
+    assert not all(doubts)
+
+
+def test_with_friction_the_same_method_values_other_speeds_and_one_that_simulates_is_replaced(tmp_path):
+    asked = 'indices = ["J1"]\nbaseline = "S1"\nevaluate = ["{}"]'
+    for method in ("statistical-linearisation", "expected-value"):
+        text = half_car(1, asked.format(method) + ("\nrealisations = 2" if method == "expected-value" else ""))
+        study, results = found(tmp_path, text)
+        assert results["speed_value"].attrs["methods"] == "statistical-linearisation"
+        there = at(study, 1.2)
+        value = it.evaluate(there.design("S4"), it.RideComfort(there.road), it.StatisticalLinearisation()).value
+        assert results["speed_value"].sel(layout="S4", index="J1").values[2] == pytest.approx(value, rel=1e-12)
+        assert any("by linearisation" in sentence for sentence in answers(results, study))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        study_text('indices = ["J1", "J3"]', **QUARTER),
+        half_car(0, 'indices = ["J5"]'),
+        half_car(0, 'indices = ["J1"]\nsweep = { "road.speed" = ["20 m/s", "30 m/s"] }'),
+        half_car(0).replace("[study]", '[[conditions]]\n"road.speed" = "20 m/s"\n[[conditions]]\n[study]'),
+    ],
+    ids=["quarter car", "peak gain", "sweep", "conditions"],
+)
+def test_where_speed_only_scales_or_is_varied_nothing_is_said(text, tmp_path):
+    study, results = found(tmp_path, text)
+    assert "speed_value" not in results or not np.isfinite(results["speed_value"]).any()
+    assert not any("by exact norms" in one and "km/h" in one for one in answers(results, study))
+
+
+def test_over_a_sweep_the_answer_is_about_the_place_that_it_names(tmp_path):
+    text = half_car(2, 'indices = ["J1"]\nbaseline = "S1"\nsweep = { k = ["20 kN/m", "40 kN/m"] }')
+    study, results = found(tmp_path, text)
+    assert results["speed_value"].dims == ("layout", "index", "k", "speed")
+    there = at(study, 0.8).design("S3", 20e3)
+    value = it.evaluate(there, it.RideComfort(at(study, 0.8).road), it.Norm()).value
+    assert results["speed_value"].sel(layout="S3", index="J1", k=20e3).values[0] == pytest.approx(value, rel=1e-12)
+    assert any("k = " in one and one.count("km/h") >= 3 for one in answers(results, study))
+    assert Case("S3", "J1") in list(cases(study))

@@ -40,7 +40,7 @@ _CLEAR_LINE = 8.0  # amplitude over the median within an octave
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class LocalisedSamples:
     """The samples that are looked at: residual in N and over what sensors leave, and the motion there."""
 
     time: Matrix
@@ -81,7 +81,7 @@ def _corrected(f: Finding) -> dict[str, object]:
     return {**f.numbers, "p": min(f.numbers["p"] * _TESTS, 1.0)}
 
 
-def _samples(c: RecordFit) -> Samples:
+def _samples(c: RecordFit) -> LocalisedSamples:
     used = c.fitted | c.checked
     motion, force = c.experiment.motion, c.model - c.offset
     velocity, interval = motion.velocity, c.record.interval
@@ -101,7 +101,7 @@ def _samples(c: RecordFit) -> Samples:
     blocks = int(np.clip(turned.size // 2, _FEWEST_BLOCKS, _MOST_BLOCKS))
     level = np.sqrt(np.mean(c.draws**2, axis=0))
     level = np.sqrt(np.convolve(level**2, np.ones(5) / 5.0, "same")) + 1e-12
-    return Samples(
+    return LocalisedSamples(
         c.record.time[used],
         c.residual[used],
         np.maximum(level, 0.3 * float(np.median(level)))[used],
@@ -121,7 +121,7 @@ def _share(before: float, after: float) -> float:
     return 1.0 - after / max(before, 1e-300)
 
 
-def _instants(s: Samples) -> Iterator[Finding]:
+def _instants(s: LocalisedSamples) -> Iterator[Finding]:
     """A hundredth of the samples that holds most of the squared residual."""
     square = (s.residual / s.level) ** 2
     most = np.sort(square)[-max(int(_RARE * square.size), 1) :]
@@ -142,7 +142,7 @@ def _instants(s: Samples) -> Iterator[Finding]:
     yield Finding(MisfitPattern.INSTANTS, "info", numbers=numbers)
 
 
-def _over_time(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+def _over_time(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """A level of the residual that steps or grows."""
     square = (s.residual / s.level) ** 2
     sizes = np.bincount(s.block)
@@ -197,7 +197,7 @@ def _p(found: Matrix, drawn: Matrix) -> float:
     return (1.0 + float(np.sum(drawn >= found * (1.0 - 1e-12)))) / (1.0 + drawn.size)
 
 
-def _coefficients(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+def _coefficients(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """Coefficients of the residual on a signal that step or go steadily over time."""
     signals = {"constant": np.ones(s.time.size), "direction": np.sign(s.motion["velocity"])}
     signals |= {name: s.motion[name] for name in ("displacement", "velocity", "acceleration", "force", "force rate")}
@@ -240,7 +240,7 @@ def _coefficient_split(both: Matrix, own: Matrix, square: float) -> tuple[int, f
     return at, float(left[best]), float((a[-1] - a[at - 1]) / later[best] - a[at - 1] / b[at - 1])
 
 
-def _dependences(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+def _dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """The quantity of which the residual is a function, and that with which the scatter of the rest grows."""
     best, fitted = _mean(s, random)
     yield best
@@ -251,7 +251,7 @@ def _dependences(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
         yield replace(found, numbers={**found.numbers, "share": remaining * found.numbers["share"]})
 
 
-def _mean(s: Samples, random: np.random.Generator) -> tuple[Finding, Matrix]:
+def _mean(s: LocalisedSamples, random: np.random.Generator) -> tuple[Finding, Matrix]:
     """The quantity of which the mean residual is a function, with those that do as well, and that function [N]."""
     found, laws = [], {}
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
@@ -296,7 +296,7 @@ def _bins(q: Matrix, count: int) -> tuple[NDArray[np.int64], Matrix]:
     return bins, np.array([float(np.median(q[bins == i])) if np.any(bins == i) else 0.0 for i in range(edges.size + 1)])
 
 
-def _spreads(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+def _spreads(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """The quantity with whose size the scatter of the residual grows, and few positions at which it sits."""
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
     scaled = np.abs(s.residual) / s.level * float(np.median(s.level))
@@ -321,7 +321,7 @@ def _log_share(means: Matrix, weights: NDArray[np.int64]) -> float:
     return _share(float(w @ means), math.exp(float(w @ np.log(np.maximum(means, 1e-300)))))
 
 
-def _positions(s: Samples, square: Matrix, within: Matrix, signs: Matrix) -> Iterator[Finding]:
+def _positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs: Matrix) -> Iterator[Finding]:
     """Up to three stretches of the travel, a quarter of it together, that hold most of the misfit."""
     x = s.motion["displacement"]
     low, high = np.quantile(x, (0.002, 0.998))
@@ -342,7 +342,7 @@ def _positions(s: Samples, square: Matrix, within: Matrix, signs: Matrix) -> Ite
     yield Finding(MisfitPattern.POSITIONS, "info", "displacement", {"share": share, "p": p, "places": at, "held": held})
 
 
-def _channels(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
+def _channels(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """Further channels, such as a temperature, with which the level of the residual goes from block to block."""
     square = (s.residual / s.level) ** 2
     sizes = np.bincount(s.block)
@@ -358,7 +358,7 @@ def _channels(s: Samples, random: np.random.Generator) -> Iterator[Finding]:
         yield Finding(MisfitPattern.CHANNEL, "info", name, {"share": share, "p": p, "correlation": r})
 
 
-def _spectral(s: Samples, c: RecordFit) -> Iterator[Finding]:
+def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
     """A line that stands alone in the spectrum of the residual, or a band that holds most of it."""
     n = s.residual.size
     window = get_window("hann", n)

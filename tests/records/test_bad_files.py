@@ -128,7 +128,11 @@ BAD = {
     "no header": (text("".join(ROWS)), {}, "no header above its 3 columns. .* time=0, displacement=1, force=2 and "),
     "thousands": (changed(30, '0.06,0.001,"1,234.5"\n'), {}, 'line 32: "1,234.5" has separators of thousands'),
     "thousands everywhere": (text("".join(f"1'{i:03d}.5;2'500.0\n" for i in range(9))), {}, "separators of thousands"),
-    "a sum below the numbers": (text(HEADER + "".join(ROWS) + "Summe,1,2\n"), {}, 'line 62: expected a number .*, got "Summe"'),
+    "a sum below the numbers": (
+        text(HEADER + "".join(ROWS) + "Summe,1,2\n"),
+        {},
+        'line 62: expected a number .*, got "Summe"',
+    ),
     "no unit": (columns(time, x, ("F", F)), {}, "'F' has no unit. Name the unit of the force, such as units={'force'"),
     "a unit that was misspelt": (good, {"units": {"force": "Newtn"}}, "the unit 'Newtn' that was named is not known"),
     "a unit of nothing": (good, {"units": {"Load": "N"}}, "units has 'Load', which is none of time, displacement"),

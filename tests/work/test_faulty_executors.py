@@ -179,7 +179,9 @@ def test_values_are_right_or_there_is_a_sentence(fault: Callable[..., Any], seed
     )
 
 
-@pytest.mark.parametrize("executor", [object(), "dask", 4, Executor, {}], ids=repr)
+@pytest.mark.parametrize(
+    "executor", [object(), "dask", 4, Executor, {}], ids=["object", "text", "number", "class", "mapping"]
+)
 def test_what_is_no_executor_is_told(executor: Any, study: it.Study, tmp_path: Path) -> None:
     car = it.QuarterCar(181.75, 25, 120e3, strut=it.Spring(120e3) | it.Damper(it.free(1e3, 1e4)))
     comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))

@@ -32,9 +32,7 @@ class Pace:
     each: int = 1
     left_of: dict[Kind, int] = field(default_factory=dict)  # designs
     took: dict[Kind, list[float]] = field(default_factory=dict)  # seconds, and of how many designs
-    parts: dict[str, tuple[ProgressStep, float]] = field(
-        default_factory=dict
-    )  # under way, and since when
+    parts: dict[str, tuple[ProgressStep, float]] = field(default_factory=dict)  # under way, and since when
     begun: float | None = None
     last: float = 0.0
 

@@ -212,7 +212,7 @@ class LinearProblem:
     ) -> Estimate:
         """The estimate with what rounding, and what stands in for the excitation that is meant, make of it."""
         stand_ins = stand_ins_of(self.question.drive, self.unfiltered.mechanism)
-        own = (ErrorSource(ROUNDING, rounding + _FEW),)
+        own: tuple[ErrorSource, ...] = (ErrorSource(ROUNDING, rounding + _FEW),)
         if self.excesses:
             own = (*own, ErrorSource(DENSITY, integral))
         promise = CORRECTED if self.excesses else PROMISE

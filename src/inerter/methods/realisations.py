@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,7 +81,7 @@ class Drive:
 
 def factor_of(arrival: Arrival, omega: Array) -> NDArray[np.complex128]:
     """What an arrival makes of the lines of its source [rad/s]."""
-    passed = 1.0 if arrival.filter is None else arrival.filter.response(omega)
+    passed: Any = 1.0 if arrival.filter is None else arrival.filter.response(omega)
     if arrival.excess is not None:
         passed = passed * arrival.excess.factor(omega)
     return np.asarray(arrival.lever * passed * np.exp(-1j * omega * arrival.delay))

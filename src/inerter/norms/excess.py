@@ -54,7 +54,7 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
     `excesses` has the functions of the sources that have one; the system has the filters that stand in for them.
     """
     A = balance(system.A)[0]
-    poles = np.linalg.eigvals(A) if len(A) else np.zeros(0, complex)
+    poles = np.asarray(np.linalg.eigvals(A) if len(A) else np.zeros(0), dtype=complex)
     names = [s for s in dict.fromkeys(system.sources) if s in excesses]
     columns = [list(dict.fromkeys(system.sources)).index(name) for name in names]
 

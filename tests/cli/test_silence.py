@@ -83,6 +83,16 @@ def in_fraction() -> None:
         time.sleep(2.5)
 
 
+@pytest.mark.parametrize("terminal", [False, True], ids=["log", "terminal"])
+def test_what_shows_the_progress_of_a_part_silences_what_is_around_it(
+    terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: terminal)
+    with pulses.alive():
+        in_fraction()
+    assert not [line for line in capsys.readouterr().err.splitlines() if line.startswith("inerter:")]
+
+
 @pytest.mark.parametrize("work", [in_progress, in_steps, in_fraction], ids=lambda work: work.__name__)
 def test_each_way_to_show_progress_has_a_line_in_time(
     work: Callable[[], None], capsys: pytest.CaptureFixture[str]

@@ -23,7 +23,7 @@ from rich.progress import (
 )
 
 from inerter.cli.pace import Pace
-from inerter.cli.pulse import Pulse, pulse
+from inerter.cli.pulse import Pulse, display, pulse
 from inerter.files.study.cases import Outcome
 from inerter.files.study.journal import Further
 from inerter.files.study.running import Progress as Report
@@ -125,7 +125,7 @@ def _in_lines(study: _Study) -> Iterator[Shown]:
 def _on_terminal(study: _Study) -> Iterator[Shown]:
     """A bar, which moves."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(study.what, total=None)
 
         def update(step: ProgressStep) -> None:
@@ -151,7 +151,7 @@ def steps(what: str) -> Iterator[Callable[[str, int, int], None]]:
             yield pieces
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         tasks: dict[str, TaskID] = {}
 
         def show(piece: str, done: int, total: int) -> None:
@@ -196,7 +196,7 @@ def fraction(what: str) -> Iterator[Callable[[float], None]]:
             yield lambda done: part.__setitem__(0, done)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=1.0)
         yield lambda done: bar.update(task, completed=done)
 

@@ -14,6 +14,7 @@ _LOOK = 0.4  # seconds between two looks at the clock
 _SHORT, _LONG = 600.0, 3600.0  # seconds of work up to which a log has a line every two seconds, or every ten
 _THEN = {_SHORT: 1.0, _LONG: 5.0}  # silences, as multiples, up to these
 _SELDOM = 30.0
+_open = 0  # displays of progress, of which the innermost alone is seen: it knows more than those around it
 
 
 class Pulse:
@@ -26,8 +27,11 @@ class Pulse:
         self.words = words
         self.begun = time.monotonic() if begun is None else begun
         self.printed = time.monotonic()
+        self.level = _open
 
     def __call__(self, step: ProgressStep) -> None:
+        if self.level != _open:
+            return
         now = time.monotonic()
         factor = next((f for end, f in _THEN.items() if now - self.begun < end), _SELDOM)
         if now - self.printed >= _SILENCE * factor:
@@ -40,11 +44,23 @@ class Pulse:
 
 
 @contextmanager
+def display() -> Iterator[None]:
+    """Silence every pulse around this block, in which something else shows the progress."""
+    global _open  # noqa: PLW0603
+    _open += 1
+    try:
+        yield
+    finally:
+        _open -= 1
+
+
+@contextmanager
 def pulse(words: Callable[[ProgressStep], str]) -> Iterator[Pulse]:
     """What prints steps of the work in this block, in the given words and with the time, and can print more."""
-    printer = Pulse(words)
-    with listening(Listener(printer, every=_LOOK)):
-        yield printer
+    with display():
+        printer = Pulse(words)
+        with listening(Listener(printer, every=_LOOK)):
+            yield printer
 
 
 @contextmanager

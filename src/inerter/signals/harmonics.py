@@ -142,7 +142,7 @@ def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000
     excesses = (road.coherence.excess(sign, road.speed) for sign in (1.0, -1.0))
     mean, half = (
         (0.0 if ratio is None else np.polyval(ratio[0], s) / np.polyval(ratio[1], s))
-        * (part.coefficient if excess is None else excess.factor(s.imag) * part.coefficient)
+        * (part.coefficient if excess is None else excess.factor(2.0 * math.pi * own.frequencies) * part.coefficient)
         for ratio, excess, part in zip(ratios, excesses, (own, other), strict=True)
     )
     return {

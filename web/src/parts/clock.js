@@ -16,8 +16,18 @@ export function Clock({ since = null }) {
   return seconds < SOON ? null : html`<span class="clock">${seconds < 100 ? `${seconds} s` : `${Math.floor(seconds / 60)} min ${seconds % 60} s`}</span>`;
 }
 
-/** Something that goes on: a bar that moves, and the time. @param {{what: string, since?: number | null}} props */
-export const Moving = ({ what, since }) => html`<span class="moving">${what} <progress aria-label=${what}></progress> <${Clock} since=${since} /></span>`;
+const AT_LAST = 300; // [ms] until something moves: a step of a slider is answered before that
+
+/** Something that goes on: at once in words, then with a bar that moves, and the time. @param {{what: string, since?: number | null}} props */
+export function Moving({ what, since = null }) {
+  const [begun] = useState(Date.now());
+  const [moves, setMoves] = useState(false);
+  useEffect(() => {
+    const waiting = setTimeout(() => setMoves(true), AT_LAST);
+    return () => clearTimeout(waiting);
+  }, []);
+  return html`<span class="moving">${what}${moves && html` <progress aria-label=${what}></progress> <${Clock} since=${since ?? begun} />`}</span>`;
+}
 
 const WORDS = { current: "current", coming: "coming", none: "no answer" };
 

@@ -52,4 +52,15 @@ export function soughtIn(answers = NOTHING, question) {
 }
 
 /** A question without its numbers: what it has in common with that of another step of the same slider. @param {string} question */
-const shape = (question) => JSON.stringify(JSON.parse(question), (_, value) => (typeof value === "number" || takenApart(value) !== null ? 0 : value));
+function shape(question) {
+  const known = SHAPES.get(question);
+  if (known !== undefined) return known;
+  const found = JSON.stringify(JSON.parse(question), (_, value) => (typeof value === "number" || takenApart(value) !== null ? 0 : value));
+  if (SHAPES.size >= REMEMBERED) SHAPES.clear();
+  SHAPES.set(question, found);
+  return found;
+}
+
+const REMEMBERED = 50; // shapes, each of which a page asks for many times while an answer is coming
+/** @type {Map<string, string>} */
+const SHAPES = new Map();

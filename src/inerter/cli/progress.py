@@ -192,7 +192,11 @@ def fraction(what: str) -> Iterator[Callable[[float], None]]:
     """A callback that shows what part of one long piece of work is done."""
     if not sys.stderr.isatty():
         part = [0.0]
-        with pulse(lambda step: f"{what}: {100 * part[0]:.0f} % done"):
+
+        def words(step: ProgressStep) -> str:
+            return f"{what}: {100 * part[0]:.0f} % done{f'; {step}' if step.total else ''}"
+
+        with pulse(words):
             yield lambda done: part.__setitem__(0, done)
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())

@@ -25,6 +25,7 @@ from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
 from inerter.records.lost import losses, restored
 from inerter.vehicle.rig import Rig
+from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS, _ACCURACY = 25, 1e-5
@@ -54,7 +55,9 @@ def explanations(
     found: dict[Suspect, Explanation] = {}
     lost = lost_samples(problem.experiments)
     known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-    for hypothesis in known if before.sound else [*known, *hypotheses(problem, places)]:
+    every = known if before.sound else [*known, *hypotheses(problem, places)]
+    for tried, hypothesis in enumerate(every):
+        report("possible causes", tried, len(every))
         e = _explanation(_tried(problem, optimum, hypothesis, by), by, before)
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e

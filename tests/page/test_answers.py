@@ -284,6 +284,8 @@ def test_a_fit_that_is_withheld_says_so_first_and_hands_nothing_on(visitor: Visi
     page.wait_for_selector(".notice:has-text('fit.json: Not to be relied on')")
     assert "There is no device to take" in page.inner_text(".notice:has-text('fit.json')")
     assert visitor.text == before
+    page.locator(".fit").get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".fit", state="detached")
 
 
 STICKING = study_text(

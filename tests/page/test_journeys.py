@@ -335,6 +335,8 @@ def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Pa
     page.wait_for_selector("text=fit.json: The device is in the new layout")
     wait_until(lambda: _study(visitor) == taken)
     assert names
+    page.locator(".fit").get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".fit", state="detached")
 
 
 @pytest.mark.campaign

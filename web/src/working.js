@@ -4,7 +4,7 @@ import { Lost } from "./api.js";
 import { unitOf } from "./kinds.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName, names, parse, renamed } from "./network/algebra.js";
-import { doubted } from "./parts/doubts.js";
+import { doubted, isOk } from "./parts/doubts.js";
 import { freeIn } from "./questions.js";
 import { isRange, nextLayout, textOf } from "./state/document.js";
 
@@ -131,17 +131,15 @@ export function takeDevice(store, { elements = {}, layouts = {} }) {
   return `The device is in the new layout ${name}, beside the strut that was there.`;
 }
 
-/** A fitted device joins the strut, if all of its values are given; returns what to tell, first whether it can be relied on.
+/** A fitted device joins the strut, if its values are given; returns what to tell, first whether it can be relied on.
  * @param {Store} store @param {any} fit @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device */
 export function takeFitted(store, fit, device) {
-  const withheld = withheldIn(fit);
-  const doubts = doubted([{ of: "the fit", status: fit.status }]);
-  if (withheld.length > 0 || device === null) return `${doubts}There is no device to take: the fit withholds ${withheld.join(", ") || "its values"}.`;
-  return `${doubts}${takeDevice(store, device)}`;
+  if (isOk(fit.status) && device !== null) return takeDevice(store, device);
+  return `${doubted([{ of: "the fit", status: fit.status }])}${withheld(fit)}`;
 }
 
-/** The values of a fit that are not given: they have no interval. @param {any} fit @returns {string[]} */
-export const withheldIn = ({ parameters }) => Object.entries(parameters ?? {}).filter(([, { interval }]) => (interval?.[0] ?? null) === null).map(([name]) => name);
+/** What is told in the place of a device: the values of a fit that is not to be relied on are not given. @param {any} fit */
+export const withheld = ({ parameters }) => `There is no device to take: the fit withholds ${Object.keys(parameters ?? {}).join(", ") || "its values"}.`;
 
 /** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
 const textsOf = (state, parameters) => Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));

@@ -16,7 +16,7 @@ from inerter.files.identification.loading import identification_of
 from inerter.files.identification.running import Identified, read, run_identification
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
-from inerter.report.identified_values import Known, elements_block, known, value_and_interval
+from inerter.report.identified_values import elements_block, value_and_interval
 
 Body = Mapping[str, Any]
 
@@ -42,7 +42,5 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
 
 
 def _device(found: Identified) -> dict[str, Any] | None:
-    """The device as tables of a study document; None where a value of it is withheld: then there is none to hand on."""
-    if any(known(found, name) is Known.NOTHING for name in found.fit.parameters):
-        return None
-    return tables_of(elements_block(found).encode(), PATH, "a device")
+    """The device as tables of a study document; None where its values are withheld: then there is none to hand on."""
+    return tables_of(elements_block(found).encode(), PATH, "a device") if found.explains else None

@@ -6,7 +6,7 @@ import { Plot } from "../plot.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { shown, withUnit } from "../state/scale.js";
 import { Files } from "./files.js";
-import { begin, stop, takeFitted, withheldIn } from "../working.js";
+import { begin, stop, takeFitted, withheld } from "../working.js";
 import { Progress } from "./work.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -79,7 +79,7 @@ function Fit({ store, api, job }) {
       ${(result.notes ?? []).map((/** @type {any} */ note) => html`<p class="quiet">${typeof note === "string" ? note : (note.sentence ?? "")}</p>`)}
       ${result.device
         ? html`<button type="button" class="main" onClick=${() => store.dispatch({ type: "said", about: "device", text: takeFitted(store, result, result.device) })}>Take the device into the editor</button>`
-        : html`<p>There is no device to take: the fit withholds ${withheldIn(result).join(", ")}.</p>`}
+        : html`<p>${withheld(result)}</p>`}
       <${Files} api=${api} job=${job} />`}
   </section>`;
 }

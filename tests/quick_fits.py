@@ -14,9 +14,11 @@ from inerter.identification.intervals import best_fit_of
 from inerter.identification.judging import check_parts, judge_of
 from inerter.identification.localising import localisation_of
 from inerter.identification.noise import plain
+from inerter.identification.options import FitOptions
 from inerter.identification.problem import FitProblem
 from inerter.identification.solving import SolvedFit, _for_fit
 from inerter.identification.space import space_of
+from inerter.identification.sticking import Adhesion
 from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
@@ -38,7 +40,9 @@ def quick_fit(
     problem = replace(problem, whitenings=judge.fitted, systems={})
     optimum = best_fit_of(problem, optimum.point, evaluations=40)
     misfit = judge.misfit(problem, optimum.point)
-    return SolvedFit(problem, optimum, (), checked, (lead,), (), (), 1.0, judge, misfit, 0)
+    return SolvedFit(
+        problem, optimum, (), checked, (lead,), (), (), 1.0, judge, misfit, FitOptions(), Adhesion({}), None
+    )
 
 
 def explained(solution: SolvedFit) -> tuple[list[Explanation], Localisation]:

@@ -85,9 +85,19 @@ def _spikes_of(values: Vector, width: int) -> Iterator[Instant]:
             left = float(np.max(np.abs(values[near] - law(near - middle))))
             size = float(height[np.argmax(np.abs(height))])
             same = bool(np.all(height * size > 0.3 * size**2))
+            if not _leaves_and_returns(values, start, stop, size):
+                continue
             if same and abs(size) > limit[at] and left < _RETURN * abs(size) + 3.0 * float(scale[at]):
                 yield Instant(start, stop, size)
                 break
+
+
+def _leaves_and_returns(values: Vector, start: int, stop: int, size: float) -> bool:
+    """Whether both edges are jumps of about the size, against the slopes before and after; a joint has one edge."""
+    before = (values[start - 1] - values[start - 4]) / 3.0
+    after = (values[stop + 3] - values[stop]) / 3.0
+    into, out = values[start] - values[start - 1] - before, values[stop] - values[stop - 1] - after
+    return bool(into * size > 0.5 * size**2 and out * size < -0.5 * size**2)
 
 
 def _deviation(values: Vector) -> Vector:
@@ -105,10 +115,11 @@ def _local_scale(deviation: Vector) -> Vector:
     return np.asarray(np.maximum(whole, level))
 
 
-def held_values(values: Vector) -> list[Instant]:
+def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
     """Runs of at least four equal values where noise would have changed them, or the motion would have gone on.
 
-    A channel at its limit, one that stands still and one whose values repeat all the time hold nothing.
+    A channel at its limit, one that stands still and one whose values repeat all the time hold nothing. One that is not
+    `smooth` may rest and go on with a jump, as a force does where backlash is open: there only noise tells.
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500:506] = values[500]
@@ -129,7 +140,7 @@ def held_values(values: Vector) -> list[Instant]:
         if values[a] in ends:
             continue
         away, scatter = _departure(values, a, b)
-        moved = away > max(3.0 * step, 5.0 * noise, 5.0 * scatter, 1e-9 * float(np.ptp(values)))
+        moved = smooth and away > max(3.0 * step, 5.0 * noise, 5.0 * scatter, 1e-9 * float(np.ptp(values)))
         if moved or (noise > step and _by_chance(same, inside, a, b, step / max(noise, 1e-300)) * values.size < _RARE):
             found.append(Instant(a, b, away))
     common = sum(i.stop - i.start for i in found) > _COMMON * values.size

@@ -53,7 +53,7 @@ def faulty_instants(record: Record) -> FaultyInstants:
 
 def _held_together(record: Record) -> dict[str, list[Instant]]:
     """Held values of each channel, also where only the other one shows that the recorder missed samples."""
-    held = {role: held_values(getattr(record, role)) for role in _ROLES}
+    held = {role: held_values(getattr(record, role), smooth=role == "displacement") for role in _ROLES}
     result = {}
     for role, other in zip(_ROLES, reversed(_ROLES), strict=True):
         values = getattr(record, role)

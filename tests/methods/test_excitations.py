@@ -229,8 +229,8 @@ def test_a_peak_is_where_a_simulated_sine_is_largest(source):
     car = it.QuarterCar(250.0, 35.0, 180e3, Spring(25e3) | Damper(1500.0)).mechanism()
     found = it.evaluate(car, it.PeakResponse(source, "tyre_load", amplitude=0.3), it.Norm())
     (arrival,) = it.OneInput(source).arrivals(car)
-    by_time, status, _ = Forced(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
-    assert status.ok
+    by_time, squares = Forced(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
+    assert squares.status.ok
     assert by_time == pytest.approx(found.value, rel=1e-5)
     assert found.value == found.peaks[0].gain
 

@@ -171,6 +171,7 @@ def as_numbers(c):
     return Car(np.array([1400.0, 2400.0, 520.0]), np.array([45.0, 45.0, 40.0, 40.0]), *pairs, rows, 1e4)
 
 
+@pytest.mark.campaign
 def test_a_search_minimises_the_value_that_is_reported():
     """Values and slopes of the search against the quadrature, whose minimum over the damper the optimum has."""
     speed, track = 10.0, 0.5

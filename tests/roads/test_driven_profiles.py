@@ -37,10 +37,10 @@ HEADER = "distance [m], height [mm]\n"
 BAD = {
     "no units": (
         "distance, height\n0,0\n1,1\n",
-        r"'distance' has no unit. Write it behind the name, such as \"distance \[m\]\"",
+        r"'distance' and 'height' have no unit. Write it behind the name, such as \"distance \[m\], height \[mm\]\"",
     ),
     "no header": ("0,0\n1,1\n", "has no header, and several columns increase throughout"),
-    "no header, no unit": ("0,0\n1,1\n2,0\n", "'column 0' has no unit"),
+    "no header, no unit": ("0,0\n1,1\n2,0\n", "'column 0' and 'column 1' have no unit"),
     "one unit": (
         "distance [m], height\n0,0\n1,1\n",
         r"'height' has no unit. Write it behind the name, such as \"height \[mm\]\"",
@@ -77,7 +77,7 @@ def test_no_file(tmp_path):
 
 def test_not_text(tmp_path):
     (tmp_path / "road.csv").write_bytes(b"\xff\xfe\x00\x81")
-    with pytest.raises(SignalError, match=r"road\.csv is written in UTF-16"):
+    with pytest.raises(SignalError, match="no rows of numbers in two or more columns were found"):
         profile(tmp_path / "road.csv", 20.0)
 
 

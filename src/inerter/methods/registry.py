@@ -63,6 +63,13 @@ def averages(name: str) -> bool:
     return "realisations" in _settings(_kind(name))
 
 
+def without_roads(name: str, *, has_play: bool) -> str:
+    """A quick method that sees as much as the given one, as far as it can without averaging over random inputs."""
+    if not averages(name):
+        return name
+    return DEFAULT if is_blind(name) or has_play else StatisticalLinearisation.name
+
+
 def deciding(name: str, message: str) -> str:
     """Words on the method that can decide what this one does not, to go after the message of its status."""
     others = [other for other in METHODS if what_is_seen(other) is Sees.BOTH]

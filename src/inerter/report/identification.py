@@ -85,6 +85,7 @@ def write_identification(
         drawn.setdefault(figure.section, []).append(PageFigure(svg, figure.caption))
         progress(count / (_MOST_FIGURES * len(found.readings) + len(found.fit.localisations) + 2))
     write_text(folder / REPORT, identification_page(found, drawn, answered.notes))
+    progress(1.0)
 
 
 def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], notes: tuple[str, ...] = ()) -> str:

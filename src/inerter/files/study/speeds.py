@@ -12,9 +12,7 @@ from inerter.methods.asking import Asked
 from inerter.methods.counterpart import has_play
 from inerter.methods.equivalent import has_friction
 from inerter.methods.method import asked_of, evaluate
-from inerter.methods.norm import Norm
-from inerter.methods.registry import averages, is_blind
-from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.methods.registry import averages, is_blind, without_roads
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
 
@@ -41,7 +39,7 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
     if not study.needs_road(index):
         return {}
     method = quick_method(study, vehicle)
-    if not (_is_late(vehicle, study.asked(index, layout)) or (method != Norm.name and _rubs(vehicle))):
+    if not (_is_late(vehicle, study.asked(index, layout)) or (not is_blind(method) and _rubs(vehicle))):
         return {}
     values = []
     for factor in BESIDE:
@@ -58,10 +56,7 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
 def quick_method(study: Study, vehicle: Vehicle) -> str:
     """The method of the values at other speeds: the first that judges, unless it averages random roads."""
     first = study.evaluate[0]
-    if not averages(first):
-        return first
-    is_loose = not is_blind(first) and has_play(piecewise(vehicle))
-    return Norm.name if is_loose else StatisticalLinearisation.name
+    return without_roads(first, has_play=averages(first) and has_play(piecewise(vehicle)))
 
 
 def _rubs(vehicle: Vehicle) -> bool:

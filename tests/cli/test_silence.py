@@ -104,6 +104,24 @@ def test_each_way_to_show_progress_has_a_line_in_time(
         assert any("starts 3 of 64, lowest 1.25" in line for line in lines), lines
 
 
+def fail_within(name: str) -> None:
+    with within(name):
+        report("starts", 1, 4, share=0.25)
+        raise ZeroDivisionError
+
+
+def test_designs_that_have_ended_are_not_told_to_be_under_way(capsys: pytest.CaptureFixture[str]) -> None:
+    own = Pace({"S1": 1, "S2": 1}, ("J1",), 1)
+    with progress("study", pace=own) as shown:
+        shown.cases(0, 2, None, 0)
+        for name in ("S1 J1", "S2 J1"):
+            with within(name):
+                report("starts", 1, 4, share=0.25)
+        with pytest.raises(ZeroDivisionError):
+            fail_within("S2 J3")
+        assert own.parts == {}
+
+
 def test_lines_of_a_long_log_become_seldom(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     clock = [0.0]
     monkeypatch.setattr(pulses, "time", SimpleNamespace(monotonic=lambda: clock[0]))

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 from campaigns import sampled
 from filtered import iso_2631_wk
 from nodal import Nodal
@@ -328,3 +329,17 @@ def test_a_stroke_that_integrates_what_comes_to_rest_has_its_norm(seed: int) -> 
         exact, _ = h2_exactly(problem.system(close(problem.descriptor, {})), None)
         found = it.evaluate(car, index, it.Norm())
         assert found.value == pytest.approx(float(exact[0]) * float(problem.weights[0]), rel=1e-9)
+
+
+@pytest.mark.parametrize("weighting", ["Wk", "Wd", "Wf"])
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+def test_a_shock_from_rest_keeps_its_mean_and_a_sensor_loses_gravity(weighting: str, gravity: float) -> None:
+    """A mean of the shock, 0.076 m/s^2, goes with gravity: 8 % of a motion below 1 Hz at most."""
+    time = np.arange(0.0, 10.0, 1e-3)
+    shock = np.where((time > 1.0) & (time < 1.3), 4.0 * np.sin(np.pi * (time - 1.0) / 0.3), 0.0)
+    system = it.iso2631(weighting)
+    values = scipy.signal.lsim((system.A, system.B, system.C, system.D), shock, time)[1]
+    expected = np.sqrt(np.trapezoid(values**2, time) / time[-1])
+    found = it.weighted(time, shock + gravity, weighting)
+    assert found.rms == pytest.approx(expected, rel=0.08 if gravity else 1e-3)
+    assert found.constant == pytest.approx(gravity, abs=0.08 if gravity else 0.0)

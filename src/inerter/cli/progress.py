@@ -69,7 +69,6 @@ class _Study:
 
     def words(self, step: ProgressStep) -> str:
         """All that is known, in a line."""
-        self.pace.take(step)
         if self.begun is None:
             return f"{self.what}: {self.compiling or step}"
         part = self.part()
@@ -104,7 +103,7 @@ def progress(
 @contextmanager
 def _in_lines(study: _Study) -> Iterator[Shown]:
     """A line when designs are begun, one when all are found, and one whenever it was silent for long."""
-    with pulse(study.words) as printer:
+    with pulse(study.words, study.pace.take) as printer:
 
         def show(done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
             study.count(done, total, last, not_ok)
@@ -129,6 +128,7 @@ def _on_terminal(study: _Study) -> Iterator[Shown]:
         task = bar.add_task(study.what, total=None)
 
         def update(step: ProgressStep) -> None:
+            study.pace.take(step)
             words = study.words(step)
             if study.begun is None:
                 bar.update(task, description=words)

@@ -23,13 +23,20 @@ class Pulse:
     In a log that is two seconds in the first ten minutes, ten in the first hour and a minute afterwards.
     """
 
-    def __init__(self, words: Callable[[ProgressStep], str], begun: float | None = None) -> None:
-        self.words = words
+    def __init__(
+        self,
+        words: Callable[[ProgressStep], str],
+        take: Callable[[ProgressStep], object] | None = None,
+        begun: float | None = None,
+    ) -> None:
+        self.words, self.take = words, take
         self.begun = time.monotonic() if begun is None else begun
         self.printed = time.monotonic()
         self.level = _open
 
     def __call__(self, step: ProgressStep) -> None:
+        if self.take is not None:
+            self.take(step)
         if self.level != _open:
             return
         now = time.monotonic()
@@ -55,10 +62,15 @@ def display() -> Iterator[None]:
 
 
 @contextmanager
-def pulse(words: Callable[[ProgressStep], str]) -> Iterator[Pulse]:
-    """What prints steps of the work in this block, in the given words and with the time, and can print more."""
+def pulse(
+    words: Callable[[ProgressStep], str], take: Callable[[ProgressStep], object] | None = None
+) -> Iterator[Pulse]:
+    """A printer of steps of the work in this block, in the given words and with the time, that can print more.
+
+    `take` is called with every step, also where nothing is printed.
+    """
     with display():
-        printer = Pulse(words)
+        printer = Pulse(words, take)
         with listening(Listener(printer, every=_LOOK)):
             yield printer
 

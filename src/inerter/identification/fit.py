@@ -142,7 +142,7 @@ class Localisation:
         if not self.patterns:
             return "the misfit has no pattern that was looked for"
         first = self.patterns[0]
-        return first.sentence if float(first.numbers["p"]) < 1.0 else f"{first.sentence} (which may be chance)"
+        return first.sentence if float(first.numbers.get("p", 0.0)) < 1.0 else f"{first.sentence} (which may be chance)"
 
     @property
     def changes(self) -> tuple[float, ...]:

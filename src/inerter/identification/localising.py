@@ -70,15 +70,20 @@ def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
         *_channels(bounded, random),
         *_spectral(s, c),
     ]
-    chosen = [f for f in found if f.numbers["p"] * _TESTS < SURE and f.numbers["share"] > NOTICED]
+    chosen = [f for f in found if _chance(f) * _TESTS < SURE and f.numbers["share"] > NOTICED]
     if not chosen:  # the largest, said to be uncertain
-        chosen = [f for f in found if f.numbers["p"] < _MAYBE and f.numbers["share"] > _MUCH]
+        chosen = [f for f in found if _chance(f) < _MAYBE and f.numbers["share"] > _MUCH]
     chosen.sort(key=lambda f: -f.numbers["share"] - _TELLING * (f.kind in _COEFFICIENTS))
     return Localisation(c.record.source, tuple(replace(f, numbers=_corrected(f)) for f in chosen))
 
 
+def _chance(f: Finding) -> float:
+    """The p-value of one test; 0 of a pattern that is told by its size alone, and has none."""
+    return float(f.numbers.get("p", 0.0))
+
+
 def _corrected(f: Finding) -> dict[str, object]:
-    return {**f.numbers, "p": min(f.numbers["p"] * _TESTS, 1.0)}
+    return {**f.numbers, "p": min(_chance(f) * _TESTS, 1.0)} if "p" in f.numbers else dict(f.numbers)
 
 
 def _samples(c: RecordFit) -> LocalisedSamples:
@@ -124,8 +129,11 @@ def _share(before: float, after: float) -> float:
 def _instants(s: LocalisedSamples) -> Iterator[Finding]:
     """A hundredth of the samples that holds most of the squared residual."""
     square = (s.residual / s.level) ** 2
-    most = np.sort(square)[-max(int(_RARE * square.size), 1) :]
-    rest = (float(square.sum()) - float(most.sum())) / (square.size - most.size)
+    if not square.any():
+        return
+    ordered = np.sort(square)
+    number = max(int(_RARE * square.size), 1)
+    most, rest = ordered[-number:], max(float(ordered[:-number].mean()), float(np.finfo(float).tiny))
     inside = float(most.mean())
     share = _share(float(square.mean()), math.exp((1.0 - _RARE) * math.log(rest) + _RARE * math.log(inside)))
     share *= float(most.sum()) / float(square.sum())
@@ -133,11 +141,11 @@ def _instants(s: LocalisedSamples) -> Iterator[Finding]:
         return
     marked = square > max(0.05 * float(square.max()), 25.0 * rest)
     near = np.convolve(marked, np.ones(7), "same") > 0.0
-    number, count = label(near)
-    peaks = [int(np.argmax(np.where(number == i, square, 0.0))) for i in range(1, min(count, 200) + 1)]
+    numbered, count = label(near)
+    peaks = [int(np.argmax(np.where(numbered == i, square, 0.0))) for i in range(1, min(count, 200) + 1)]
     numbers = {
         "count": count, "times": tuple(float(s.time[p]) for p in peaks[:6]),
-        "largest": float(np.abs(s.residual[peaks]).max()), "share": share, "p": 0.0,
+        "largest": float(np.abs(s.residual[peaks]).max()), "share": share,
     }  # fmt: skip
     yield Finding(MisfitPattern.INSTANTS, "info", numbers=numbers)
 
@@ -244,7 +252,7 @@ def _dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[F
     """The quantity of which the residual is a function, and that with which the scatter of the rest grows."""
     best, fitted = _mean(s, random)
     yield best
-    explains = best.numbers["p"] * _TESTS < SURE and best.numbers["share"] > NOTICED
+    explains = _chance(best) * _TESTS < SURE and best.numbers["share"] > NOTICED
     rest = replace(s, residual=s.residual - fitted) if explains else s
     remaining = float(rest.residual @ rest.residual) / max(float(s.residual @ s.residual), 1e-300)
     for found in _spreads(rest, random):
@@ -376,7 +384,8 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
     share = float(np.sum(amplitude[main] ** 2)) / max(total, 1e-300)
     if beside.size > 8 and amplitude[at] > _CLEAR_LINE * float(np.median(amplitude[beside])):
         foreign = bool(moved[at] < _CLEAR_LINE * float(np.median(moved[beside])))
-        chance = float(frequency.size) * math.exp(-math.log(2.0) * (_CLEAR_LINE**2))
+        above = float(amplitude[at]) / max(float(np.median(amplitude[beside])), 1e-300)
+        chance = float(frequency.size) * math.exp(-math.log(2.0) * above**2)  # of a Rayleigh amplitude of that median
         numbers = {
             "frequency": float(frequency[at]), "amplitude": float(amplitude[at]), "foreign": foreign,
             "share": share if foreign else 0.5 * share, "p": chance,
@@ -392,5 +401,5 @@ def _band(frequency: Matrix, excess: Matrix, total: float, highest: float) -> It
         return
     low, high = (float(frequency[int(np.searchsorted(part, q * part[-1]))]) for q in (0.15, 0.85))
     if 0.8 * highest < low and high < 2.5 * low and high > low:
-        numbers = {"low": low, "high": high, "highest": highest, "share": 0.7 * float(part[-1]) / total, "p": 0.0}
+        numbers = {"low": low, "high": high, "highest": highest, "share": 0.7 * float(part[-1]) / total}
         yield Finding(MisfitPattern.BAND, "info", numbers=numbers)

@@ -37,8 +37,9 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
     """An acceleration [m/s^2] at even steps of `time` [s] through a weighting of ISO 2631-1, from rest.
 
     `run.time` and `run["sprung_acceleration"]` of a simulation will do, and so will the columns of a record. The mean
-    is taken away first if it is more than a twentieth of the standard deviation, since a sensor that reads gravity
-    would begin with a step; `constant` has it. The acceleration is taken as linear between its samples, which
+    is taken away first if it is more than a twentieth of the standard deviation and the record begins nearer to it
+    than to zero, since a sensor that reads gravity would begin with a step; `constant` has it. A shock or a braking
+    from rest has a mean too, and stays as it is. The acceleration is taken as linear between its samples, which
     therefore come some ten times in the shortest wave that matters: that of 100 Hz, of 0.63 Hz with "Wf".
 
     Raises `PerformanceIndexError` for another weighting, for steps that are not even, for values that are no finite
@@ -52,7 +53,8 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
     system = iso2631(weighting)
     times, given = _checked(time, acceleration)
     mean = float(given.mean())
-    constant = mean if abs(mean) > _CONSTANT * float(given.std()) else 0.0
+    is_offset = abs(given[0] - mean) < abs(given[0])  # else taking it away would make the step that it is to spare
+    constant = mean if is_offset and abs(mean) > _CONSTANT * float(given.std()) else 0.0
     given = given - constant if constant else given
     step = float(times[-1] - times[0]) / (times.size - 1)
     values = _passed(system, given, step)

@@ -216,12 +216,12 @@ def within(name: str, first: float = 0.0, last: float = 1.0) -> Iterator[None]:
     shares = _SHARES.set((low + (high - low) * first, low + (high - low) * last))
     try:
         yield
-        listener = _LISTENER.get()
-        if listener is not None and not outer:
-            listener.tell(ProgressStep("done", within=(name,), share=1.0, over=True))
     finally:
         _WITHIN.reset(names)
         _SHARES.reset(shares)
+        listener = _LISTENER.get()
+        if listener is not None and not outer:
+            listener.tell(ProgressStep("done", within=(name,), share=1.0, over=True))
 
 
 @contextmanager

@@ -171,6 +171,20 @@ def as_numbers(c):
     return Car(np.array([1400.0, 2400.0, 520.0]), np.array([45.0, 45.0, 40.0, 40.0]), *pairs, rows, 1e4)
 
 
+def test_a_search_has_the_values_that_are_reported_and_their_slopes():
+    """Compiled values and slopes against those of one design at a time, at a track and speed where roll feels much."""
+    index = it.RandomResponse({"roll_displacement": 1.0}, it.Road(5e-7, 10.0, it.Coherence.isotropic(0.5)))
+
+    def value(c):
+        return it.evaluate(free_car().with_values({"c": c}), index, it.Norm()).value
+
+    found, (slope,) = it.Norm().objective(free_car(), index).value_and_gradient(np.array([700.0]))
+    assert found == pytest.approx(value(700.0), rel=1e-7)
+    assert slope * 700.0 == pytest.approx(
+        (value(700.0 * math.exp(1e-3)) - value(700.0 * math.exp(-1e-3))) / 2e-3, rel=1e-4
+    )
+
+
 @pytest.mark.campaign
 def test_a_search_minimises_the_value_that_is_reported():
     """Values and slopes of the search against the quadrature, whose minimum over the damper the optimum has."""

@@ -194,7 +194,7 @@ def test_a_faulty_sensor_is_named_in_the_first_line(
 ) -> None:
     """Of three hypotheses, since each is a fit."""
     whole, tried = explaining.hypotheses, {"delay", "gain", "filtered force"}
-    monkeypatch.setattr(explaining, "hypotheses", lambda problem: [h for h in whole(problem) if h.name in tried])
+    monkeypatch.setattr(explaining, "hypotheses", lambda *given: [h for h in whole(*given) if h.name in tried])
     folder = rattled / "out"
     arguments = [str(rattled / "late.csv"), "--config", str(rattled / "rig.toml"), "-o", str(folder)]
     assert call(["identify", *arguments]) == 1

@@ -175,7 +175,8 @@ def test_kernels_that_are_missing_are_compiled_beforehand_and_each_is_told_once(
         )
         for _ in range(2)
     ]
-    assert [done.stderr for done in found] == ["", ""]
+    slow = "inerter: compiling the numerical kernels"  # said where that takes more than two seconds
+    assert not [line for done in found for line in done.stderr.splitlines() if not line.startswith(slow)]
     lines = found[0].stdout.splitlines()
     assert lines[:3] == ["twice 1 3", "thrice 2 3", "half 3 3"]
     assert lines[3:] == ["ready", "2.0 3.0 0.5"]

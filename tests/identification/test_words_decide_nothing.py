@@ -72,7 +72,8 @@ def opaque(patch: pytest.MonkeyPatch) -> None:
 
 def with_few_rivals(patch: pytest.MonkeyPatch) -> None:
     """Try every eighth hypothesis only, since each is a fit; and draw nothing."""
-    patch.setattr(explaining, "hypotheses", lambda problem, whole=explaining.hypotheses: whole(problem)[::8])
+    whole = explaining.hypotheses
+    patch.setattr(explaining, "hypotheses", lambda problem, places=(): whole(problem, places)[::8])
     patch.setattr("inerter.cli.identify.write_identification", lambda *arguments: None)
 
 

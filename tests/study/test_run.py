@@ -154,7 +154,8 @@ def test_interrupted_sweep_resumes_to_the_same_bytes(
     after = lines(broken / "journal.jsonl")
     complete = [line for line in kept if line.endswith("}")]
     assert after[: len(complete)] == complete
-    assert len(after) == 1 + 4 * points  # every case once: nothing finished was computed again
+    cases = [line for line in after if '"rows": ' not in line]  # beside searches of designs that were not done
+    assert len(cases) == 1 + 4 * points  # every case once: nothing finished was computed again
 
 
 @pytest.mark.campaign

@@ -117,6 +117,7 @@ def test_designs_that_have_ended_are_not_told_to_be_under_way(capsys: pytest.Cap
         for name in ("S1 J1", "S2 J1"):
             with within(name):
                 report("starts", 1, 4, share=0.25)
+                assert list(own.parts) == [name]
         with pytest.raises(ZeroDivisionError):
             fail_within("S2 J3")
         assert own.parts == {}

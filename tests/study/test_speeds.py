@@ -138,3 +138,21 @@ def test_over_a_sweep_the_answer_is_about_the_place_that_it_names(tmp_path):
     assert results["speed_value"].sel(layout="S3", index="J1", k=20e3).values[0] == pytest.approx(value, rel=1e-12)
     assert any("k = " in one and one.count("km/h") >= 3 for one in answers(results, study))
     assert Case("S3", "J1") in list(cases(study))
+
+
+def test_values_that_their_method_doubts_are_told_so_first(tmp_path):
+    """Friction that sticks for a part of the time: linearisation says of itself that it may be off."""
+    text = half_car(1, 'indices = ["J1"]\nbaseline = "S4"\nevaluate = ["statistical-linearisation"]')
+    text = text.replace('f = "20 N"', 'f = "400 N"')
+    study, results = found(tmp_path, text)
+    there = at(study, 0.8)
+    doubted = [
+        not it.evaluate(there.design(layout), it.RideComfort(there.road), it.StatisticalLinearisation()).status.ok
+        for layout in study.layouts
+    ]
+    assert any(doubted)
+    for layout, is_doubted in zip(study.layouts, doubted, strict=True):
+        message = results["speed_message"].sel(layout=layout, index="J1").item()
+        assert message.startswith("inaccurate") or not is_doubted
+    assert any("friction" in message for message in results["speed_message"].sel(index="J1").values)
+    assert answers(results, study)[0].startswith("Not certain at other speeds: inaccurate")

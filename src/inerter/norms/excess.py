@@ -56,6 +56,8 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
     A = balance(system.A)[0]
     poles = np.asarray(np.linalg.eigvals(A) if len(A) else np.zeros(0), dtype=complex)
     names = [s for s in dict.fromkeys(system.sources) if s in excesses]
+    if not names:
+        return np.zeros(len(system.outputs)), np.zeros(len(system.outputs))
     columns = [list(dict.fromkeys(system.sources)).index(name) for name in names]
 
     def densities(omega: Array) -> tuple[Array, Array]:

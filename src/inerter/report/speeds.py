@@ -35,15 +35,20 @@ class SpeedSentences:
     others: list[str]
 
 
-def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, float | None]]:
+def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, float | str | None]]:
     """One design at each of the other speeds: its value, and its improvement over the baseline's design there [%]."""
     where = {name: names[name] for name in ("layout", "index", *swept_places(results))}
     own = results["speed_value"].sel(where)
     if not np.isfinite(own).all():
         return []
-    better = _improvements(results, where)
+    better, doubts = _improvements(results, where), _messages(results, where)
     return [
-        {"speed": float(speed), "value": json_data(float(value)), "improvement_percent": json_data(float(more))}
+        {
+            "speed": float(speed),
+            "value": json_data(float(value)),
+            "improvement_percent": json_data(float(more)),
+            "message": "; ".join(doubts),
+        }
         for speed, value, more in zip(results["speed"].values, own.values, better, strict=True)
         if speed != results["speed"].values[1]
     ]
@@ -57,7 +62,11 @@ def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSent
         if where is not None and np.isfinite(results["speed_value"].sel(where)).all():
             lost, sentence = _told(results, where, write)
             late = np.ptp(_beyond_speed(results, where)) > 1e-6
-            if lost:
+            doubts = _messages(results, where)
+            if doubts:
+                begin = f"{sentence[0].upper()}{sentence[1:]}"
+                found.doubts.append(f"Not certain at other speeds: {'; '.join(doubts)}. {begin}")
+            elif lost:
                 found.doubts.append(f"Not certain away from {_at(results, 1, write)}: {sentence}")
             elif late:
                 found.others.append(f"{sentence[0].upper()}{sentence[1:]}")
@@ -72,7 +81,7 @@ def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple
     method = results["speed_value"].attrs["methods"]
     places = {k: v for k, v in where.items() if k in swept_places(results)}
     of = f" of {place_text(results, places, write, named=True)}" if places else ""
-    by = f" by {' and '.join(brief_words_of(one) for one in method.split(' and '))}"
+    by = f" by {' and '.join(brief_words_of(one) for one in method.split())}"
     ends = [
         f"{write(float(values[i]), unit, np.nan)} at {_at(results, i, write)}{_compared(better[i], baseline, layout)}"
         for i in (0, 2)
@@ -80,16 +89,22 @@ def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple
     here = (
         f"{write(float(values[1]), unit, np.nan)} at {_at(results, 1, write)}{_compared(better[1], baseline, layout)}"
     )
-    sentence = (
-        f"the best design{of} for {index_title(results, index)}, {layout}, has {here}, but{by} {' and '.join(ends)}"
-    )
     tuned = bool(max(beyond[0], beyond[2]) > 1.0 + _TUNED)
     lost = np.isfinite(better[1]) and better[1] >= NOTICEABLE and min(better[0], better[2]) < _LOST * better[1]
+    doubt = bool(lost or tuned)
+    design = f"the best design{of} for {index_title(results, index)}, {layout}, has {here}"
+    sentence = f"{design}{', but' if doubt else ';'}{by} {' and '.join(ends)}"
     if tuned:
         sentence += f", where the speed alone would make it {_alone(results, where, write)}"
-    doubt = bool(lost or tuned)
     advice = ". Sweep road.speed, or give [[conditions]] of several speeds" if doubt else ""
-    return doubt, f"{sentence if doubt else sentence.replace(', but', ';')}{advice}."
+    return doubt, f"{sentence}{advice}."
+
+
+def _messages(results: xr.Dataset, where: Mapping[str, Any]) -> list[str]:
+    """What makes the values of a design, and of the baseline's that they are compared with, doubtful."""
+    every = dict.fromkeys([where["layout"], results.attrs["baseline"] or where["layout"]])
+    found = [str(results["speed_message"].sel({**where, "layout": layout}).item()) for layout in every]
+    return list(dict.fromkeys(message.rstrip(".") for message in found if message))
 
 
 def _alone(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:

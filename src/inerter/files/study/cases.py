@@ -117,6 +117,7 @@ class Outcome:
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
     speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`
+    speed_message: str = ""  # what makes those doubtful
 
     @property
     def case(self) -> Case:
@@ -229,7 +230,11 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     left_out = design_notes(study, vehicle.mechanism())
     notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
     notes += [parts_of(note) for note in left_out]
+    speeds: dict[str, list[float]] = {}
+    speed_message = ""
     is_known = bool(np.isfinite(own[study.evaluate[0]].value))
+    if is_at_one_speed and is_known:
+        speeds, speed_message = at_other_speeds(study, vehicle, case.layout, case.index)
     return Outcome(
         case.layout,
         case.index,
@@ -244,5 +249,6 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
         over_linear=None if over is None else (-over.percent, over.percent_error),
         error_bounds={m: {i: e.error_bound for i, e in by_index.items()} for m, by_index in estimates.items()},
-        speeds=at_other_speeds(study, vehicle, case.layout, case.index) if is_at_one_speed and is_known else {},
+        speeds=speeds,
+        speed_message=speed_message,
     )

@@ -73,6 +73,7 @@ class Gathered:
             self._enter_scatter(number, outcome)
         for method, values in outcome.speeds.items():
             arrays["speed_value"][number] = values
+            arrays["speed_message"][number] = self._once(outcome.speed_message)
             self._by[method] = None
         for i, found in enumerate(outcome.limits):
             for name, number_told in zip(LIMITED, found, strict=True):
@@ -101,7 +102,7 @@ class Gathered:
             data["improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*data["value"].dims).values
             self._enter_errors()
         if "speed_value" in data:
-            data["speed_value"].attrs["methods"] = " and ".join(self._by)
+            data["speed_value"].attrs["methods"] = " ".join(self._by)
         if study.sweeps:
             return data
         found = {case: outcome.parameters for case, outcome in self.designs.items() if outcome.values}
@@ -284,6 +285,7 @@ UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
 }
 SPEEDS: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "speed_value": (("speed",), np.nan, "index of the same design at other speeds"),
+    "speed_message": ((), "", "what makes those values doubtful"),
 }
 PERCENT = {"limit_cost", "improvement", "improvement_bound", "improvement_error", "over_linear", "over_linear_error"}
 

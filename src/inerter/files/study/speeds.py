@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inerter.errors import InerterError
+from inerter.errors import InerterError, worst_of
 from inerter.files.study.places import place_of, with_numbers
 from inerter.methods.asking import Asked
 from inerter.methods.counterpart import has_play
@@ -29,28 +29,30 @@ def asks_at_one_speed(study: Study) -> bool:
     return study.road is not None and SPEED not in varied and study.quantile is None
 
 
-def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> dict[str, list[float]]:
-    """The method, and the values of a design at the speeds `BESIDE` that of the study; empty where there is no need.
+def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> tuple[dict[str, list[float]], str]:
+    """Values of a design at the speeds `BESIDE` that of the study, by their method, and what makes them doubtful.
+
+    Both are empty where there is no need.
 
     The study is one that `asks_at_one_speed`. At another speed the road is rougher or smoother, and no more, unless
     several axles meet it or the design has friction. A method that averages random roads is replaced by the quickest
     that sees as much friction.
     """
     if not study.needs_road(index):
-        return {}
+        return {}, ""
     method = quick_method(study, vehicle)
     if not (_is_late(vehicle, study.asked(index, layout)) or (not is_blind(method) and _rubs(vehicle))):
-        return {}
-    values = []
+        return {}, ""
+    found = []
     for factor in BESIDE:
         assert study.road is not None
         there = with_numbers(study, [(place_of(SPEED), factor * study.road.speed)])
         try:
-            found = evaluate(vehicle, there.asked(index, layout), there.method(method))
+            found.append(evaluate(vehicle, there.asked(index, layout), there.method(method)))
         except (InerterError, np.linalg.LinAlgError, ArithmeticError):
-            return {}
-        values.append(found.value)
-    return {method: values}
+            return {}, ""
+    status = worst_of(one.status for one in found)
+    return {method: [one.value for one in found]}, "" if status.ok else str(status)
 
 
 def quick_method(study: Study, vehicle: Vehicle) -> str:

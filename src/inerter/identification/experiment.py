@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError
 from inerter.networks.elements.roles import Guard, Linear
+from inerter.records.lost import MAD
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
@@ -24,7 +25,6 @@ from inerter.systems.piecewise import PiecewiseSystem
 Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and find nothing new
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the time in which the device answers; parts of an interval, as a power of 2
-_MAD = 1.4826  # standard deviations in a median absolute deviation
 _AT_REST = 0.02  # of the largest velocity
 
 
@@ -168,7 +168,7 @@ def _noise(record: Record) -> float:
     """
     if record.force_noise is not None:
         return record.force_noise
-    sixth = _MAD * float(np.median(np.abs(np.diff(record.force, 6)))) / math.sqrt(math.comb(12, 6))
+    sixth = MAD * float(np.median(np.abs(np.diff(record.force, 6)))) / math.sqrt(math.comb(12, 6))
     intermittent = max(sixth, resolution(record.force) / math.sqrt(12.0))
     return max(min(quietest(record.force, record.interval), intermittent), 1e-9)
 

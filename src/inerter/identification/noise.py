@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 
+from inerter.records.lost import MAD
+
 Matrix = NDArray[np.float64]
-_MAD = 1.4826  # standard deviations in a median absolute deviation
 _LEAST = 1.0 / 3.0  # of the level, what errors are at least
 _BANDS, _LINES = 6, 20  # of the spectrum of residuals: in an octave, and the fewest lines in each
 _NEAR = 2  # samples before and after, whose errors count as alike
@@ -58,7 +59,7 @@ def plain(kept: NDArray[np.bool_], level: float) -> Whitening:
 def whitening_of(residual: Matrix, by: Whitening) -> Whitening:
     """A whitening as coarse as residuals ask for: by the spectrum of others, but their own size."""
     white = by(residual)[by.weight > 0.0]
-    size = _MAD * float(np.median(np.abs(white - np.median(white))))
+    size = MAD * float(np.median(np.abs(white - np.median(white))))
     return replace(by, weight=by.weight / max(size, _LEAST), offsets={})
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from inerter.records.lost import MAD
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, resolution
 
 Vector = NDArray[np.float64]
-_MAD = 1.4826
 _LOUDER = 6.0  # ratio of the variances of the displacement at high and at low speed
 _LEAST_JITTER = 5e-3  # of an interval
 _PARTS = 8  # of a record, whose delays are compared
@@ -46,7 +46,7 @@ def jitter(record: Record, motion: Motion) -> float | None:
     slow, fast = speed <= low, speed >= high
     passed = 1.0 - min(2.0 * motion.bandwidth * record.interval, 0.9)
     least = resolution(record.displacement) ** 2 / 12.0 * passed
-    quiet, loud = (max((_MAD * float(np.median(np.abs(off[part])))) ** 2, least) for part in (slow, fast))
+    quiet, loud = (max((MAD * float(np.median(np.abs(off[part])))) ** 2, least) for part in (slow, fast))
     squares = float(np.mean(speed[fast] ** 2) - np.mean(speed[slow] ** 2))
     if loud < _LOUDER * quiet or squares <= 0.0:
         return None

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.records.gaps import runs
+from inerter.records.lost import MAD
 from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-_MAD = 1.4826  # standard deviations in a median absolute deviation
 _SIXTH = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / -20.0  # a sample less what its neighbours predict
 _AROUND = 50  # samples to either side, whose deviations a spike has to exceed too
 _CLEAR = 8.0  # standard deviations from the prediction of the neighbours
@@ -109,9 +109,9 @@ def _deviation(values: Vector) -> Vector:
 
 def _local_scale(deviation: Vector) -> Vector:
     """Standard deviation in most of the record, or about each sample if that is larger."""
-    whole = _MAD * float(np.median(np.abs(deviation)))
+    whole = MAD * float(np.median(np.abs(deviation)))
     blocks = np.array_split(np.abs(deviation), max(deviation.size // _AROUND, 1))
-    level = np.repeat([_MAD * float(np.median(block)) for block in blocks], [block.size for block in blocks])
+    level = np.repeat([MAD * float(np.median(block)) for block in blocks], [block.size for block in blocks])
     return np.asarray(np.maximum(whole, level))
 
 
@@ -150,7 +150,7 @@ def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
 def _noise(values: Vector) -> float:
     """Standard deviation of what changes from sample to sample, by third differences."""
     third = np.diff(values, 3)
-    return _MAD * float(np.median(np.abs(third))) / math.sqrt(20.0)
+    return MAD * float(np.median(np.abs(third))) / math.sqrt(20.0)
 
 
 def _by_chance(same: Mask, inside: Mask, a: int, b: int, step: float) -> float:
@@ -186,7 +186,7 @@ def joints(record: Record, excused: Mask) -> list[Instant]:
     windows = np.lib.stride_tricks.sliding_window_view(z, 4)
     jump = windows[4:] @ _FORWARD[::-1] - windows[:-4] @ _FORWARD  # between samples i + 3 and i + 4
     size = np.where(_grown(excused, 8)[3 : 3 + jump.size], 0.0, np.abs(jump))
-    noise = max(_MAD * float(np.median(np.abs(jump))), resolution(z))
+    noise = max(MAD * float(np.median(np.abs(jump))), resolution(z))
     found: list[Instant] = []
     rest = size.copy()
     for _ in range(_MOST_JOINTS):

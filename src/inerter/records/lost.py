@@ -26,7 +26,7 @@ _MOST = 200  # samples that may be lost at one place
 _AROUND, _DEGREE = 12, 5  # samples on either side of a loss, and of the polynomial through all of them
 _STEP = 4.0  # ratio of what a loss and a step leave, from which on one of them is clearly right
 _WHOLE, _SAME = 0.25, 0.25  # how far from a whole number of samples, and from one velocity, a loss may look
-_MAD = 1.4826
+MAD = 1.4826  # standard deviations in a median absolute deviation
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def losses(record: Record) -> list[Loss]:
     leap = after @ design[0] - before @ design[0]  # half an interval beyond either side
     rates = before @ design[1], -(after @ design[1])  # of one interval ...
     bends = 2.0 * (before @ design[2]), 2.0 * (after @ design[2])  # ... and how they change in one
-    noise = max(_MAD * float(np.median(np.abs(leap - np.median(leap)))), _least(record, design))
+    noise = max(MAD * float(np.median(np.abs(leap - np.median(leap)))), _least(record, design))
     found: list[Loss | None] = []
     for i in np.flatnonzero(np.abs(leap) > _SURE * noise):
         near = slice(max(i - points, 0), i + points + 1)

@@ -4,10 +4,12 @@
 
 Each mutant changes one number in its last digit, one comparison, one sign, one factor or one choice (min for max, all
 for any, and for or) in the sources of vehicles, indices, signals, roads, systems, norms, methods, optimisation, records
-or units, drawn by the seed with as many for each area. The tests of its area run first (default markers, doctests
-included), and what survives them meets the tests of every area. The share that is noticed is printed with its 95 %
-interval (Wilson). The work goes on in copies of the repository; nothing in it is changed. `--only AREA` draws for one
-area, `--jobs 2` runs two mutants at a time, and `--resume` goes on where the file of results ends.
+or units, drawn by the seed with as many for each area. One run of the always-run tests (doctests included, those of
+the page left out) records which tests execute which lines. A mutant meets the tests that execute its line: those of its
+area first, each group by increasing duration; where no test does (constants of a module), all tests of the area, then
+all. The share that is noticed is printed with its 95 % interval (Wilson). The work goes on in copies of the repository;
+nothing in it is changed. `--only AREA` draws for one area, `--jobs 2` runs two mutants at a time, `--resume` goes on
+where the file of results ends, and `--coverage FOLDER` keeps the record of lines. Needs the extra "bench".
 """
 
 from __future__ import annotations
@@ -28,6 +30,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from queue import Queue
+from xml.etree import ElementTree
+
+from coverage import CoverageData
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = "src/inerter"
@@ -43,8 +48,8 @@ AREAS = {  # sources, and the tests that are about them; those of vehicles and r
     "records": ("records", "tests/records tests/identification"),
     "units": ("units.py", "tests/test_units.py tests/files tests/report"),
 }
-EVERYTHING = "tests src"
-ALONE = "tests/page"  # not about formulas, and minutes long
+EVERYTHING = ["tests", "src", "--ignore", "tests/page"]  # the page's are not about formulas, and minutes long
+PYTEST = [sys.executable, "-m", "pytest", "-q", "--no-header"]
 MOST_SECONDS = 900.0  # of the tests of one mutant; what hangs is noticed
 _SWAPS = {"min": "max", "max": "min", "argmin": "argmax", "argmax": "argmin", "any": "all", "all": "any"}
 _SWAPS |= {"minimum": "maximum", "maximum": "minimum", "sin": "cos", "cos": "sin", "floor": "ceil", "ceil": "floor"}
@@ -89,7 +94,7 @@ class Mutant:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a mutant: noticed by the tests of its "area", by "everything", or "survived"."""
+    """What became of a mutant: noticed by the tests of its "area", by "others", or "survived"."""
 
     area: str
     file: str
@@ -109,7 +114,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", choices=list(AREAS), action="append")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--area-tests-alone", action="store_true", help="leave the tests of other areas out")
+    parser.add_argument("--coverage", type=Path, help="folder that keeps which tests execute which lines")
     parser.add_argument("--resume", action="store_true")
     parser.add_argument("-o", "--output", type=Path, default=Path("mutations.csv"))
     given = parser.parse_args()
@@ -123,11 +128,12 @@ def main() -> None:
         copies: Queue[Path] = Queue()
         for i in range(given.jobs):
             copies.put(copied(Path(folder) / str(i)))
+        executed = tests_by_line(Path(folder) / "0", given.coverage or Path(folder) / "coverage")
 
         def tested(mutant: Mutant) -> Outcome:
             copy = copies.get()
             try:
-                return test(mutant, copy, area_alone=given.area_tests_alone)
+                return test(mutant, copy, executed.get((mutant.file, header_line(mutant)), []))
             finally:
                 copies.put(copy)
 
@@ -253,22 +259,62 @@ def copied(place: Path) -> Path:
     return place
 
 
-def test(mutant: Mutant, copy: Path, *, area_alone: bool) -> Outcome:
-    """Run the tests of a mutant's area on it, and those of every area if they notice nothing."""
+def tests_by_line(copy: Path, folder: Path) -> dict[tuple[str, int], list[str]]:
+    """Node ids of the always-run tests that execute each line (file, number), in order of increasing duration.
+
+    Runs them once, in a copy of the repository, if the folder does not hold the record of an earlier run."""
+    folder.mkdir(parents=True, exist_ok=True)
+    data, report = folder.resolve() / "coverage.db", folder.resolve() / "junit.xml"
+    if not report.exists():
+        (folder / "coverage.ini").write_text(f"[run]\nrelative_files = true\ndata_file = {data}\n")
+        options = ["--cov=inerter", "--cov-context=test", "--cov-report=", f"--cov-config={folder / 'coverage.ini'}"]
+        junit = [f"--junitxml={report}", "-o", "junit_family=xunit1"]
+        subprocess.run([*PYTEST, *options, *junit, *EVERYTHING], cwd=copy, env=environment(copy), check=False)
+    seconds = {
+        (case.get("file"), case.get("name")): float(case.get("time") or 0.0)
+        for case in ElementTree.parse(report).iter("testcase")
+    }
+
+    def duration(test: str) -> float:
+        return seconds.get((test.partition("::")[0], test.rpartition("::")[2]), 0.0)
+
+    executed: dict[tuple[str, int], list[str]] = {}
+    recorded = CoverageData(str(data))
+    recorded.read()
+    for path in recorded.measured_files():
+        file = f"{SOURCE}/{path.partition(f'{SOURCE}/')[2]}"
+        for line, contexts in recorded.contexts_by_lineno(path).items():
+            tests = {context.partition("|")[0] for context in contexts} - {""}
+            executed[file, line] = sorted(tests, key=lambda test: (duration(test), test))
+    return executed
+
+
+def header_line(mutant: Mutant) -> int:
+    """The first line of the statement that holds a mutant, which is executed whenever the mutant is."""
+    tree = ast.parse((ROOT / mutant.file).read_text(encoding="utf-8"))
+    lines = [node.lineno for node in ast.walk(tree) if isinstance(node, ast.stmt) and node.lineno <= mutant.line]
+    return max(lines)
+
+
+def test(mutant: Mutant, copy: Path, executing: list[str]) -> Outcome:
+    """Run the tests that execute a mutant's line; where none does, those of its area and then all."""
     path = copy / mutant.file
     original = path.read_text(encoding="utf-8")
     begin = time.perf_counter()
     path.write_text(original[: mutant.begin] + mutant.after + original[mutant.end :], encoding="utf-8")
+    source, area = AREAS[mutant.area]
+    of_area = [a for a in [*area.split(), f"{SOURCE}/{source}"] if (copy / a).exists()]
+    if executing:
+        own = [test for test in executing if test.startswith(tuple(of_area))]
+        steps = [("area", own), ("others", [test for test in executing if test not in set(own)])]
+    else:
+        steps = [("area", of_area), ("others", EVERYTHING)]
+    outcome, by = "survived", ""
     try:
-        source, area = AREAS[mutant.area]
-        steps = [("area", [*area.split(), f"{SOURCE}/{source}"])]
-        if not area_alone:
-            steps.append(("everything", [*EVERYTHING.split(), "--ignore", ALONE]))
-        outcome, by = "survived", ""
-        for name, arguments in steps:
-            failure = failing(copy, [a for a in arguments if a.startswith("-") or (copy / a).exists()])
-            if failure:
-                outcome, by = name, failure
+        for name, tests in steps:
+            by = failing(copy, tests) if tests else ""
+            if by:
+                outcome = name
                 break
     finally:
         path.write_text(original, encoding="utf-8")
@@ -277,30 +323,26 @@ def test(mutant: Mutant, copy: Path, *, area_alone: bool) -> Outcome:
     return Outcome(mutant.area, mutant.file, mutant.line, text, mutant.before, mutant.after, outcome, by, seconds)
 
 
-def failing(copy: Path, arguments: list[str]) -> str:
+def environment(copy: Path) -> dict[str, str]:
+    """The environment in which the package is that of the copy."""
+    return {**os.environ, "PYTHONPATH": str(copy / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def failing(copy: Path, tests: list[str]) -> str:
     """The first test that fails; empty if none does."""
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-x",
-        "-q",
-        "-n",
-        "0",
-        "-p",
-        "no:cacheprovider",
-        "--no-header",
-        *arguments,
-    ]
-    environment = {**os.environ, "PYTHONPATH": str(copy / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
+    listed = copy / "tests.txt"
+    listed.write_text("\n".join(tests), encoding="utf-8")
+    command = [*PYTEST, "-x", "-n", "0", "-p", "no:cacheprovider", f"@{listed}"]
     try:
         done = subprocess.run(
-            command, cwd=copy, env=environment, capture_output=True, text=True, timeout=MOST_SECONDS, check=False
+            command, cwd=copy, env=environment(copy), capture_output=True, text=True, timeout=MOST_SECONDS, check=False
         )
     except subprocess.TimeoutExpired:
         return "a time limit"
     if done.returncode == 0:
         return ""
+    if done.returncode not in (1, 2):  # neither a failure nor an error of collection
+        raise RuntimeError(f"pytest ended with {done.returncode}: {done.stdout[-500:]}{done.stderr[-500:]}")
     found = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
     return found.group(1) if found else f"exit code {done.returncode}: {done.stdout[-200:]}{done.stderr[-200:]}"
 

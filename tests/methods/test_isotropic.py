@@ -171,6 +171,7 @@ def as_numbers(c):
     return Car(np.array([1400.0, 2400.0, 520.0]), np.array([45.0, 45.0, 40.0, 40.0]), *pairs, rows, 1e4)
 
 
+@pytest.mark.campaign
 def test_a_search_has_the_values_that_are_reported_and_their_slopes():
     """Compiled values and slopes against those of one design at a time, at a track and speed where roll feels much."""
     index = it.RandomResponse({"roll_displacement": 1.0}, it.Road(5e-7, 10.0, it.Coherence.isotropic(0.5)))

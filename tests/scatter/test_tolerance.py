@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import scipy.optimize
+from campaigns import sampled
 from strategies import paper_quarter_car
 
 import inerter as it
@@ -274,7 +275,7 @@ def test_the_interval_of_a_quantile_covers(count, share):
     assert inside >= 0.95 * 400 - 3.0 * np.sqrt(400 * 0.05 * 0.95)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", sampled(range(3), [0]))
 def test_a_robust_quantile_is_that_of_its_design(seed):
     """By a sample of its own: within its interval of that by 4096 samples, not below as that of the search."""
     spread = {"c": 0.4, "b": 0.4}

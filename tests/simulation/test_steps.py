@@ -111,7 +111,7 @@ def family(seeds: range | list[int], steps: tuple[float, ...], needed: int) -> d
     return found
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), [0, 1]))
+@pytest.mark.parametrize("chunk", sampled(range(4), [0]))
 def test_the_step_decides_nothing(chunk: int) -> None:
     family(range(1000 * chunk, 1000 * chunk + 20), (5e-4, 2e-4, 5e-5, 1.25e-5), 6)
 
@@ -135,7 +135,7 @@ def survives(seed: int, steps: tuple[float, ...]) -> str:
     return "simulated"
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), [0, 1]))
+@pytest.mark.parametrize("chunk", sampled(range(4), [0]))
 def test_extremes_are_simulated_or_refused(chunk: int) -> None:
     found = [survives(seed, (5e-4, 1e-4)) for seed in range(1000 * chunk, 1000 * chunk + 10)]
     assert found.count("simulated") >= 5

@@ -160,7 +160,7 @@ def test_a_large_sweep_is_checked_at_its_ends_and_extremes() -> None:
     assert corners <= {both.swept(point) for point in checking._tried(both)}
 
 
-@pytest.mark.parametrize("seed", sampled(range(4), [0, 1]))
+@pytest.mark.parametrize("seed", sampled(range(4), [0]))
 def test_a_sweep_cut_anywhere_goes_on_to_the_same_bytes(tmp_path: Path, swift: Callable, seed: int) -> None:
     """No line that is whole is computed again, whatever was cut; nor is a copy by another name touched."""
     study, draw = study_of(tmp_path, 25), random.Random(seed)

@@ -12,6 +12,7 @@ from pathlib import Path
 from inerter.cli.options import Cluster
 from inerter.errors import StudyError, WorkError
 from inerter.work import cluster as clusters
+from inerter.work.progress import report
 
 _ANSWER = "10s"  # within which a scheduler must
 
@@ -48,6 +49,7 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
     Raises `StudyError` for an address that is none, `WorkError` if dask is not installed or the scheduler does not
     answer.
     """
+    report("connecting to the scheduler")
     try:
         import distributed
     except ImportError:

@@ -55,8 +55,9 @@ def law(network: it.Network | None) -> np.ndarray:
     return np.array([sum(float(e.value) for e in elements if e.unit == unit) for unit in units])
 
 
-def by_hand(full: it.FullCar, omega: float) -> np.ndarray:
-    """Displacements of heave, pitch, roll and four wheels under four road displacements, by Newton's laws.
+def by_hand(full: it.FullCar, omega: float) -> tuple[np.ndarray, np.ndarray]:
+    """Displacements of heave, pitch, roll and four wheels by Newton's laws: under four road displacements, and under a
+    force and two moments on the body.
 
     Where a wheel is follows from right-handed axes: x forwards, y left, z up; roll turns about x, pitch nose up.
     """
@@ -82,7 +83,7 @@ def by_hand(full: it.FullCar, omega: float) -> np.ndarray:
     tyres = np.zeros((7, 4))
     for i, (axle, _) in enumerate(WHEELS):
         tyres[3 + i, i] = getattr(full, f"tyre_stiffness_{axle}")
-    return np.linalg.solve(dynamic, tyres)
+    return np.linalg.solve(dynamic, tyres), np.linalg.solve(dynamic, np.eye(7, 3))
 
 
 @pytest.mark.parametrize("seed", [*range(4), *(pytest.param(n, marks=pytest.mark.campaign) for n in range(4, 60))])
@@ -94,7 +95,12 @@ def test_frequency_responses_are_those_of_matrices_written_by_hand(seed: int) ->
     omega = np.array([0.5, 7.0, 60.0, 400.0])
     found = it.frequency_response(it.assemble(full, roads, [f"{name}_velocity" for name in names]), omega)
     for response, w in zip(found, omega, strict=True):  # velocities over the roads' velocities
-        expected = by_hand(full, w)
+        expected, _ = by_hand(full, w)
+        np.testing.assert_allclose(response, expected, atol=1e-11 * np.abs(expected).max(), rtol=1e-9)
+    forces = ["sprung_force", "pitch_moment", "roll_moment"]
+    found = it.frequency_response(it.assemble(full, forces, [f"{name}_velocity" for name in names]), omega)
+    for response, w in zip(found, omega, strict=True):
+        expected = 1j * w * by_hand(full, w)[1]
         np.testing.assert_allclose(response, expected, atol=1e-11 * np.abs(expected).max(), rtol=1e-9)
 
 

@@ -284,7 +284,7 @@ def tests_by_line(copy: Path, folder: Path) -> dict[tuple[str, int], list[str]]:
     for path in recorded.measured_files():
         file = f"{SOURCE}/{path.partition(f'{SOURCE}/')[2]}"
         for line, contexts in recorded.contexts_by_lineno(path).items():
-            tests = {context.partition("|")[0] for context in contexts} - {""}
+            tests = {context.rpartition("|")[0] for context in contexts} - {""}
             executed[file, line] = sorted(tests, key=lambda test: (duration(test), test))
     return executed
 

@@ -10,7 +10,8 @@ from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
 import inerter as it
 from inerter.methods.sampled import SampledObjective
-from inerter.optimisation.limits import for_each
+from inerter.optimisation.constrained import Limited
+from inerter.optimisation.limits import bounds_of, for_each
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
@@ -254,3 +255,19 @@ def test_a_peak_gain_that_some_design_has_can_be_asked_for(seed):
     more, less = (it.optimise(car, J1, NORM, subject_to=[it.equal(J5, there.value * f)]) for f in (1.001, 0.999))
     slope = np.log(more.value / less.value) / np.log(1.001 / 0.999)
     assert best.limits[0].sensitivity == pytest.approx(slope, rel=0.02, abs=1e-4)
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_a_start_counts_the_less_the_further_it_is_beyond_a_limit(number):
+    car, index, limit = random_quarter_car(np.random.default_rng(number), strut(np.random.default_rng(number))), J1, J3
+    names = list(car.free_values().values())
+    lower, upper = np.array([v.lower for v in names]), np.array([v.upper for v in names])
+    points = np.exp(np.random.default_rng(number).uniform(np.log(lower), np.log(upper), (40, lower.size)))
+    values, limited = (NORM.objective(car, one).values(points) for one in (index, limit))
+    bound = float(np.median(limited))
+    found = Limited(NORM.objective(car, index), bounds_of(car, [it.at_most(limit, bound)], NORM), lower, upper)
+    factor = found.values(points) / values
+    np.testing.assert_allclose(factor[limited <= bound], 1.0, rtol=1e-12)
+    beyond = np.argsort(limited)[np.sort(limited) > bound]
+    assert np.all(factor[beyond] > 1.0)
+    assert np.all(np.diff(factor[beyond]) > 0.0)

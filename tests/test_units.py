@@ -206,6 +206,32 @@ def test_formatted_text_reads_back_to_its_digits(value, unit, digits):
     assert read == pytest.approx(value, rel=0.51 * 10.0 ** (1 - digits), abs=0.0)
 
 
+@pytest.mark.parametrize("unit", ["", "1", "%", "m", "m^2", "N m", "Hz", "N^2/Hz", *UNITS])
+def test_a_quantity_of_any_unit_is_read_or_refused_where_another_is_expected(unit):
+    for given in (
+        "",
+        "%",
+        "k",
+        "M",
+        "m",
+        "mm",
+        "km/h",
+        "kN/m",
+        "kN s/m",
+        "MN",
+        "kg",
+        "t",
+        "deg",
+        "Hz",
+        "m^3/cycle",
+        "N",
+    ):
+        try:
+            assert math.isfinite(parse_quantity(f"3 {given}", unit))
+        except UnitError as error:
+            assert f"3 {given}".strip() in str(error)
+
+
 @given(st.text(max_size=30), st.sampled_from(UNITS))
 def test_any_text_is_a_number_or_a_unit_error(text, unit):
     for candidate in (text, "1 " + text):

@@ -340,7 +340,7 @@ def _as_force(given: str, units: Iterable[str]) -> str:
 
 def _prefixed(given: str, unit: str) -> str:
     """`unit`, with the k or M of `given` where that is what the author meant ("120 kN" for N/m)."""
-    return given[0] + unit if given[0] in "kM" and given[1:2] == unit[0] else unit
+    return given[0] + unit if unit and given[:1] in ("k", "M") and given[1:2] == unit[0] else unit
 
 
 def _converted(text: str, number: str, given: str, unit: str) -> float:

@@ -13,6 +13,8 @@ from strategies import elements, logarithmic, networks, paper_half_car, paper_qu
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, InerterError, RideComfort, Road, Spring, TyreLoad
+from inerter.methods.counterpart import has_play
+from inerter.systems.piecewise import piecewise
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = [RideComfort(ROAD), TyreLoad(ROAD)]
@@ -53,3 +55,16 @@ def test_random_half_cars(seed):
         estimate = it.evaluate(paper_half_car(front, rear), index, method)
         honest(estimate)
         assert estimate.status.ok
+
+
+@pytest.mark.parametrize(
+    ("beside", "has_gap"),
+    [
+        (Damper(400.0), False),
+        (Friction(30.0), False),
+        (Spring(2e4) - Gap(1e-3), True),
+        (Friction(30.0) | Spring(2e4) - Gap(1e-3), True),  # one damper would stand for the friction alone
+    ],
+)
+def test_a_gap_is_known_beside_friction_too(beside, has_gap):
+    assert has_play(piecewise(paper_quarter_car(Spring(3e4) | Damper(500.0) | beside))) == has_gap

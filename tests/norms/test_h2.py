@@ -11,7 +11,8 @@ from strategies import logarithmic, random_stable
 
 from inerter import LinearSystem, StatusKind, frequency_response, h2_norm
 from inerter.norms.h2 import h2
-from inerter.norms.stability import stability
+from inerter.norms.mean_square import Transfer, mean_square
+from inerter.norms.stability import split, stability
 
 ZERO = [[0.0]]
 
@@ -211,3 +212,17 @@ def test_direct_terms_of_one_source_may_cancel():
     system = LinearSystem([[-1.0]], [[1.0, 1.0]], [[1.0]], [[2.0, -2.0]], sources=("road", "road"))
     assert h2_norm(system) == pytest.approx(math.sqrt(2.0), rel=1e-12)
     assert h2_norm(system.delayed("road", [0.0, 0.1])) == math.inf
+
+
+def test_an_output_that_does_not_move_has_the_mean_square_zero():
+    """1 / (s + 1) less itself, at once and later."""
+    for times in ((0.0, 0.0), (0.3, 0.3)):
+        assert mean_square(Transfer([1, 1], ([1], [-1]), times)) == (0.0, [])
+
+
+@given(st.integers(1, 6), st.integers(1, 3), st.integers(1, 3), st.integers(0, 2**32 - 1))
+def test_a_stable_system_has_an_empty_lasting_part(order, inputs, outputs, seed):
+    system = random_stable(np.random.default_rng(seed), order, inputs, outputs, 1e-2)
+    parts = split(system)
+    assert [m.shape for m in (parts.lasting.A, parts.lasting.B, parts.lasting.C)] == [(0, 0), (0, inputs), (outputs, 0)]
+    assert parts.decaying.A.shape == (order, order)

@@ -14,8 +14,8 @@ from strategies import paper_half_car, paper_quarter_car
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad, budget
 from inerter import StatisticalLinearisation as Linearisation
-from inerter.errors import DesignError, PerformanceIndexError, StatusKind
-from inerter.optimisation.budget import with_element
+from inerter.errors import OK, DesignError, PerformanceIndexError, StatusKind
+from inerter.optimisation.budget import Crossing, lies_on_the_way, with_element
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
@@ -349,3 +349,12 @@ def test_a_budget_is_no_better_than_what_it_rests_on(seed):
     assert np.isnan(found.standard_error)
     assert found.ranges[0].lower == found.bounds[0]
     assert found.ranges[-1].upper == found.bounds[1]
+
+
+@pytest.mark.parametrize("value", [1e-6, 3.0, 4e4])
+def test_a_range_rests_on_its_own_points_and_on_the_next_beyond_its_end(value):
+    step = 0.5
+    for better, sign in (("below", 1.0), ("above", -1.0)):
+        end = Crossing(value, 0.0, (value, value), better, OK)
+        for steps, rests in ((-9.0, True), (-0.9, True), (0.9, True), (1.1, False), (9.0, False)):
+            assert lies_on_the_way(math.log(value) + sign * steps * step, end, step) is rests

@@ -9,6 +9,8 @@ from strategies import paper_quarter_car
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, free
+from inerter.optimisation.local import trust_region
+from inerter.work.progress import ProgressStep, heard
 
 J1 = RideComfort(Road(roughness=5e-7, speed=25.0))
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
@@ -89,3 +91,35 @@ def test_by_the_norm_there_is_nothing_over_linear():
     assert it.optimise(paper_quarter_car(k | c), J1, Norm()).over_linear is None
     best = it.optimise(paper_quarter_car(k | c), J1, it.StatisticalLinearisation())
     assert best.over_linear.difference.value == pytest.approx(0.0, abs=1e-9)
+
+
+class Bowl:
+    """(x / 3)^2 + (3 / x)^2 in each value, whose asked points are counted."""
+
+    def __init__(self):
+        self.asked = 0
+
+    def values(self, points):
+        self.asked += len(points)
+        return np.sum((points / 3.0) ** 2 + (3.0 / points) ** 2, axis=1)
+
+
+class Steps(list):
+    """The steps that are reported."""
+
+    def tell(self, step: ProgressStep) -> None:
+        self.append(step)
+
+    def evaluated(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize("size", [1, 3])
+def test_a_costly_search_counts_each_evaluation_once(size):
+    bowl, steps = Bowl(), Steps()
+    with heard(steps):
+        found = trust_region(bowl, np.full(size, 2.0), np.full(size, 1.0), np.full(size, 10.0))
+    np.testing.assert_allclose(found.point, 3.0, rtol=1e-2)
+    assert [step.done for step in steps] == list(range(1, bowl.asked + 1))
+    assert found.evaluations == bowl.asked
+    assert {step.total for step in steps} == {60 * size}

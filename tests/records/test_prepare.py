@@ -115,3 +115,12 @@ def test_parts_of_a_record():
     assert record.trim(0.2, 0.4).time == pytest.approx(record.time[100:201])
     with pytest.raises(RecordError, match="a part is too short"):
         record.samples(slice(0, 6)).split(0.7)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_delay_may_leave_four_samples_and_no_fewer(sign):
+    time = 1e-3 * np.arange(20)
+    record = Record(time, 1e-3 * np.cos(300.0 * time), np.sin(300.0 * time))
+    assert prepare.shift_force(record, sign * 16e-3).time.size == 4
+    with pytest.raises(RecordError, match="fewer than 4 samples"):
+        prepare.shift_force(record, sign * 17e-3)

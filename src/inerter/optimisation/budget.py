@@ -145,7 +145,7 @@ def _budget(
     ends = [c for c in crossings if c.better == wanted]
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
     ranges = _ranges(grid, gaps, crossings, between)
-    asked = [known[at].status for at in grid if end is None or _lies_on_the_way(at, end, grid[1] - grid[0])]
+    asked = [known[at].status for at in grid if end is None or lies_on_the_way(at, end, grid[1] - grid[0])]
     return Budget(
         parameter=parameter,
         unit=chosen[0].unit,
@@ -268,7 +268,7 @@ def _ranges(
     return tuple(found)
 
 
-def _lies_on_the_way(at: float, end: Crossing, step: float) -> bool:
+def lies_on_the_way(at: float, end: Crossing, step: float) -> bool:
     """Whether a point of the grid (a logarithm) is one on which a range up to its end, or from it on, rests."""
     beyond = at - float(np.log(end.value))
     return beyond <= step if end.better == "below" else beyond >= -step

@@ -114,7 +114,7 @@ REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "a duration between two steps": (
         lambda: drive(duration=0.1005),
-        r"whole number of steps, got 0.1005 s in steps of 0.001 s\. Try step = 0.000995",
+        r"whole number of steps, got 0.1005 s in steps of 0.001 s\. Try a step of 0.000995049505 s\.$",
     ),
     "no duration": (lambda: drive(road=table(), duration=None), r"does not repeat: give a duration"),
     "a negative duration": (lambda: drive(duration=-1.0), r"[Dd]uration.*-1"),

@@ -294,7 +294,7 @@ def whole_steps(duration: float, step: float) -> int:
     if round(count) < 1 or abs(count - round(count)) > 1e-6:
         raise SimulationError(
             f"The duration must be a whole number of steps, got {duration:g} s in steps of {step:g} s. "
-            f"Try step = {duration / max(1, math.ceil(count)):.9g}."
+            f"Try a step of {duration / max(1, math.ceil(count)):.9g} s."
         )
     return round(count)
 

@@ -288,12 +288,30 @@ def test_a_robust_quantile_is_that_of_its_design(seed):
 
 
 @pytest.mark.campaign
-def test_designs_beyond_double_precision_are_sampled_less_and_said_so():
+@pytest.mark.parametrize("spread", [{"k": 0.05, "c": 0.15}, {"sprung_mass": 0.05}], ids=["elements", "a mass"])
+@pytest.mark.parametrize("over", ["one condition", "mean", "worst"])
+def test_designs_beyond_double_precision_are_sampled_less_and_said_so(over: str, spread: dict[str, float]):
     """Masses 44 decades apart: each value takes thousands of times longer, so 256 are taken, of the same sample."""
     strut = it.Spring(1.07503e16, name="k") | it.Damper(2.38633e-10, name="c")
     car = it.QuarterCar(sprung_mass=5.24436e-23, unsprung_mass=2.87718e21, tyre_stiffness=77555.9e3, strut=strut)
-    comfort = it.RideComfort(it.Road(roughness=7464.31, speed=2.77159e-22))
-    found = it.tolerance(car, comfort, NORM, spread={"k": 0.05, "c": 0.15}, seed=0)
+    index = it.RideComfort(it.Road(roughness=7464.31, speed=2.77159e-22))
+    use = it.Conditions([it.Condition(0.3), it.Condition(0.7, road={"speed": 3e-22})])
+    if over != "one condition":
+        index = getattr(use, over)(index)
+    found = it.tolerance(car, index, NORM, spread=spread, seed=0)
     assert found.values.size == 2 * 256
     assert str(found.status.kind) == "inaccurate"
     assert "256 of 4096 designs of the sample" in found.status.message
+
+
+@pytest.mark.parametrize(
+    "spread",
+    [{"k": 0.05, "c": 0.1}, pytest.param({"sprung_mass": 0.05}, marks=pytest.mark.campaign)],
+    ids=["elements", "a mass"],
+)
+def test_designs_within_double_precision_keep_their_sample_over_conditions(spread: dict[str, float]):
+    car = fixed()
+    use = it.Conditions([it.Condition(0.3), it.Condition(0.7, road={"speed": 30.0})])
+    found = it.tolerance(car, use.mean(J1), NORM, spread=spread, samples=512)
+    assert found.values.size == 2 * 512
+    assert found.status.ok

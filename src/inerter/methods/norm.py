@@ -56,10 +56,13 @@ class Norm:
         return evaluate_problems(mechanism, [index.question(mechanism) for index in indices], conventions, points)
 
     def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> float:
-        """The part of many designs for which double precision does not suffice, each of which takes some 10 ms."""
+        """The part of many designs for which double precision does not suffice, each of which takes some 10 ms.
+
+        Without free values it is that of one design: 0 or 1.
+        """
         mechanism = vehicle.mechanism()
         problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
-        rows = rows_of(problem.descriptor, points, next(iter(points.values())).size)
+        rows = rows_of(problem.descriptor, points, next(iter(points.values())).size if points else 1)
         return float(np.mean(CompiledQuestion(problem).is_unsure(rows)))
 
     def objective(self, vehicle: Vehicle, index: Index) -> Differentiable:

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import DesignError, Status, StatusKind
-from inerter.methods.asking import Asked, estimate_of, is_composed
+from inerter.methods.asking import Asked, estimate_of
 from inerter.methods.averages import CONFIDENCE
-from inerter.methods.method import Doubting, Estimate, Method, evaluate, evaluate_many
+from inerter.methods.method import Doubting, Estimate, Method, asked_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
 from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of
 from inerter.vehicle.changed import changed
@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 _MOST_CORNERS = 10  # values that scatter, whose extremes are all combined
 _FEWEST = 16  # samples
 _TRIED, _FEW = 64, 256  # designs that are tried before the sample, and those that are taken where each takes long
+_TRIED_ALONE = 16  # of them, where each is a mechanism of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,18 +128,24 @@ def tolerance(
 
 
 def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter, samples: int, seed: int) -> int:
-    """How many samples to take: few where most values need more digits than double precision has."""
-    if (
-        samples <= _FEW
-        or is_composed(index)
-        or not isinstance(method, Doubting)
-        or not elements_scatter(design, scatter)
-    ):
+    """How many samples to take: few where most designs need more digits than double precision has.
+
+    Of an index that is made of several answers, such as one over conditions, each may need them.
+    """
+    if samples <= _FEW or not isinstance(method, Doubting):
         return samples
     unit = scipy.stats.qmc.Sobol(len(scatter.names), rng=np.random.default_rng(seed)).random(_TRIED)
     own = nominal(design, scatter)
-    points = dict(zip(own, (scatter.factors(unit) * np.array(list(own.values()))).T, strict=True))
-    return _FEW if method.share_unsure(loosened(design, scatter), index, points) > 0.5 else samples
+    table = scatter.factors(unit) * np.array(list(own.values()))
+    if elements_scatter(design, scatter):
+        tried = [(loosened(design, scatter), dict(zip(own, table.T, strict=True)))]
+    else:
+        rows = [dict(zip(own, row, strict=True)) for row in table[:: _TRIED // _TRIED_ALONE].tolist()]
+        tried = [(changed(design, row), {}) for row in rows]
+    unsure = [
+        method.share_unsure(vehicle, one, points) for whole, points in tried for vehicle, one in asked_of(whole, index)
+    ]
+    return _FEW if sum(unsure) > 0.5 * len(tried) else samples
 
 
 def _found(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -10,16 +12,17 @@ from hypothesis import strategies as st
 
 from inerter.errors import StudyError
 from inerter.files.common.entries import one_of, positive_number, some_names
-from inerter.files.common.kinds import kind_with, kinds
+from inerter.files.common.kinds import kind_of, kind_with, kinds
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.toml import read_shape
+from inerter.files.common.toml import check_measurements, read_shape
 from inerter.files.identification.loading import load_identification
 from inerter.files.rig.loading import load_rig
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.loading import load_study
 from inerter.files.study.shape import shapes
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 WORDS = st.text("abcdefgh", min_size=3, max_size=8)
 MAYBE = st.one_of(st.just(""), WORDS)
 
@@ -74,27 +77,54 @@ def test_a_refusal_has_a_line_for_each() -> None:
     ]
 
 
+LOADS = {"run": load_study, "simulate": load_simulation, "rig": load_rig, "identify": load_identification}
+
+
 @pytest.mark.parametrize("section", [section for kind in kinds() for section in kind.sections])
 def test_a_section_of_another_kind_of_file_says_which_and_is_one_of_its_own(section: str, tmp_path: Path) -> None:
     owner = kind_with(section)
     assert owner is not None
-    loads = {"run": load_study, "simulate": load_simulation, "rig": load_rig, "identify": load_identification}
-    assert {kind.command for kind in kinds()} == set(loads)
+    assert {kind.command for kind in kinds()} == set(LOADS)
     path = tmp_path / "file.toml"
-    path.write_text(f"[{section}]\n", encoding="utf-8")
     hint = f"It is a section of {owner.plural}, for: inerter {owner.command}."
-    for command, load in loads.items():
+    for kind in kinds():
+        sections = dict.fromkeys([*kind.sections, section])
+        path.write_text("\n".join(f"[{one}]" for one in sections), encoding="utf-8")
         try:
-            load(path)
+            LOADS[kind.command](path)
         except StudyError as error:
-            unknown = f"{section}: unknown key" in str(error)
+            text = str(error)
         else:
-            unknown = False
-        if command == owner.command:
-            assert not unknown
-        elif unknown:
+            text = ""
+        if kind == owner:
+            assert f"{section}: unknown key" not in text
+        elif (kind.command, section) != ("rig", "signal"):  # what a table and a road may both be
+            assert f"{section}: unknown key" in text
+            assert hint in text
+
+
+@pytest.mark.parametrize("example", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_file_of_another_kind_is_one_sentence_with_the_command_that_takes_it(example: Path) -> None:
+    kind = kind_of(tomllib.loads(example.read_text(encoding="utf-8")))
+    for other in kinds():
+        if other != kind:
             with pytest.raises(StudyError) as refused:
-                load(path)
-            assert hint in str(refused.value)
-        else:
-            assert (command, section) == ("rig", "signal")  # what a table and a road may both be
+                LOADS[other.command](example)
+            text = f"this is a {kind.singular}; expected a {other.singular} for inerter {other.command}"
+            assert str(refused.value) == f"{example.name}: {text}. Try: {kind.call(example)}"
+    with pytest.raises(StudyError, match=f"this is a {kind.singular}; expected measurements"):
+        check_measurements(example)
+
+
+@pytest.mark.parametrize("size", [10, 200_000])
+@pytest.mark.parametrize("load", LOADS.values(), ids=LOADS)
+def test_measurements_in_the_place_of_a_file_are_one_sentence(
+    load: Callable[[Path], object], size: int, tmp_path: Path
+) -> None:
+    path = tmp_path / "bench.csv"
+    path.write_text("time [s],force [N],displacement [m]\n" + "0.1,1,2\n" * size, encoding="utf-8")
+    with pytest.raises(StudyError) as refused:
+        load(path)
+    assert "this is a file of measurements" in str(refused.value)
+    assert f"Try: inerter identify {path}" in str(refused.value)
+    assert len(str(refused.value).splitlines()) == 1

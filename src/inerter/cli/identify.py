@@ -15,6 +15,7 @@ from inerter.cli.options import Cluster
 from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.files.common.folder import REPORT, Intent, claimed
+from inerter.files.common.toml import check_measurements
 from inerter.files.identification.loading import IdentificationRequest, RecordRequest, load_identification
 from inerter.files.identification.running import FIT, read, run_identification
 from inerter.files.identification.shape import channel_units, gap_treatment
@@ -51,6 +52,8 @@ def identify(
     as_json: bool,
 ) -> int:
     """Identify a device from records into a folder; returns the exit code."""
+    for path in paths:
+        check_measurements(path)
     request = _request(paths, model, config, options, settings)
     readings = []
     for path in paths:

@@ -27,6 +27,16 @@ class FileKind:
     command: str
     sections: tuple[str, ...]
     folder: str  # the package
+    usage: str = "{file}"  # what follows the command, where {file} is the path of a file
+
+    @property
+    def singular(self) -> str:
+        """What one file is called."""
+        return self.plural.removesuffix("s")
+
+    def call(self, path: Path) -> str:
+        """The command line that takes the file at `path`."""
+        return f"inerter {self.command} {self.usage.format(file=path)}"
 
     def check_lines(self, path: Path) -> Iterable[str]:
         """Sentences about a sound file of this kind; raises `StudyError` for another."""
@@ -48,8 +58,16 @@ def kind_with(section: str) -> FileKind | None:
 
 def kind_of(tables: Mapping[str, Any]) -> FileKind:
     """The kind of file of whose sections most are in `tables`; a study file where there are none of any."""
+    return max(kinds(), key=lambda kind: (_share(kind, tables), kind.command == DEFAULT))
 
-    def share(kind: FileKind) -> tuple[float, bool]:
-        return sum(section in tables for section in kind.sections) / len(kind.sections), kind.command == DEFAULT
 
-    return max(kinds(), key=share)
+def mistaken_kinds(tables: Mapping[str, Any], keys: Iterable[str]) -> tuple[FileKind, FileKind] | None:
+    """The kind of file that `tables` are and the one whose keys are given, where they plainly differ; else None."""
+    found, known = kind_of(tables), set(keys)
+    wanted = next((kind for kind in kinds() if known.issuperset(kind.sections)), found)
+    return (found, wanted) if _share(found, tables) > _share(wanted, tables) else None
+
+
+def _share(kind: FileKind, tables: Mapping[str, Any]) -> float:
+    """The part of the sections of a kind that are in `tables`."""
+    return sum(section in tables for section in kind.sections) / len(kind.sections)

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from inerter.errors import StudyError
+from inerter.files.common.kinds import FileKind, kind_of, kind_with, mistaken_kinds
 from inerter.files.common.problem import Problem
 from inerter.files.common.problems import explain, refusal
 from inerter.files.common.tables import Shape, Shapes
@@ -31,7 +32,13 @@ def read_shape(path: Path, what: str, file: type[File], shapes: Shapes) -> File:
 
 
 def shape_of(tables: Mapping[str, Any], path: Path, file: type[File], shapes: Shapes) -> File:
-    """Tables as the shape of a kind of file; `path`, where they are from, is for messages."""
+    """Tables as the shape of a kind of file; `path`, where they are from, is for messages.
+
+    Raises `StudyError` with one sentence for a file of another kind, else with a line for every entry that does not fit.
+    """
+    if (mistaken := mistaken_kinds(tables, file.model_fields)) is not None:
+        found, wanted = mistaken
+        raise _mistaken(path, found, f"a {wanted.singular} for inerter {wanted.command}")
     try:
         return file.model_validate(tables, context=tables)
     except ValidationError as error:
@@ -58,20 +65,49 @@ def read_tables(path: Path, what: str) -> dict[str, Any]:
 def tables_of(data: bytes, path: Path, what: str) -> dict[str, Any]:
     """The tables that the bytes of a TOML file say; raises `StudyError` where they are no TOML."""
     if len(data) > _LARGEST:
-        raise refusal(
-            path, [Problem(fault=f"larger than {_LARGEST} bytes", expected=f"{what}, which is a page of TOML")]
-        )
+        fault, expected = f"larger than {_LARGEST} bytes", f"{what}, which is a page of TOML"
+        raise refusal(path, [_record_problem(path, what) or Problem(fault=fault, expected=expected)])
     try:
         return tomllib.loads(data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
+    except (ValueError, RecursionError) as error:
+        raise refusal(path, [_unreadable(error, data, path, what)]) from None
+
+
+def _unreadable(error: Exception, data: bytes, path: Path, what: str) -> Problem:
+    """The problem of bytes that are no TOML."""
+    if (record := _record_problem(path, what)) is not None:
+        return record
+    if isinstance(error, UnicodeDecodeError):
         line = data.count(b"\n", 0, error.start) + 1
-        said = f"line {line}: not UTF-8 text; save the file with the encoding UTF-8."
-        raise refusal(path, [Problem(said=said)]) from None
-    except tomllib.TOMLDecodeError as error:
-        raise refusal(path, [_syntax_problem(str(error), data)]) from None
-    except (RecursionError, ValueError):  # thousands of brackets, or of digits in a whole number
-        said = f"not {what}: brackets nested too deeply, or a number too long."
-        raise refusal(path, [Problem(said=said)]) from None
+        return Problem(said=f"line {line}: not UTF-8 text; save the file with the encoding UTF-8.")
+    if isinstance(error, tomllib.TOMLDecodeError):
+        return _syntax_problem(str(error), data)
+    # thousands of brackets, or of digits in a whole number
+    return Problem(said=f"not {what}: brackets nested too deeply, or a number too long.")
+
+
+def _record_problem(path: Path, what: str) -> Problem | None:
+    """That a file is one of measurements, where its name says so."""
+    from inerter.records.readers import FORMATS  # noqa: PLC0415 - heavy
+
+    if path.suffix.lower() not in FORMATS or path.suffix.lower() == ".txt":
+        return None
+    hint = f"Try: inerter identify {path} --model choose"
+    return Problem(fault="this is a file of measurements", expected=what, hint=hint)
+
+
+def check_measurements(path: Path) -> None:
+    """Raises `StudyError` for a TOML file where measurements are expected, with the command that takes it."""
+    if path.suffix.lower() == ".toml" and path.is_file():
+        tables = read_tables(path, "measurements")
+        if any(kind_with(section) for section in tables):
+            raise _mistaken(path, kind_of(tables), "measurements")
+
+
+def _mistaken(path: Path, kind: FileKind, expected: str) -> StudyError:
+    """The error that reports a sound file of another kind than was expected."""
+    hint = f"Try: {kind.call(path)}"
+    return refusal(path, [Problem(fault=f"this is a {kind.singular}", expected=expected, hint=hint)])
 
 
 def _syntax_problem(message: str, data: bytes) -> Problem:

@@ -2,4 +2,4 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("configurations", "identify", ("record", "model", "fit"), __name__)
+KIND = FileKind("configurations", "identify", ("record", "model", "fit"), __name__, "RECORD --config {file}")

@@ -2,4 +2,4 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("rig files", "rig", ("rig",), __name__)
+KIND = FileKind("rig files", "rig", ("rig",), __name__, "{file} -o record.csv")

@@ -21,6 +21,8 @@ _OCTAVE = 12  # parts of an octave in which densities are averaged before the li
 _FEWEST = 3  # bands that make a line
 _FIRST = 3  # line that counts: the straight lines that are taken away are felt below
 _SEGMENTS = 8  # of the profile, which overlap by half
+POINTS, AVERAGES, FILTERED = SAMPLING = ("points", "averages", "filtered")  # what the heights of a profile are
+_STEEP = (1.05, 8.0)  # wavinesses whose shorter waves are told apart: their sum has no end at 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +30,9 @@ class RoadSpectrum:
     """The one-sided density of the heights over wavenumber, and the line Gd(n) = Gd(n0) (n / n0)^-waviness through it.
 
     The line is that of least squares between the logarithms of densities averaged in twelfths of an octave from
-    `lowest` to `highest`; `scatter` is the standard deviation of these from the line, as a factor.
+    `lowest` to `highest`; `scatter` is the standard deviation of these from the line, as a factor. Line and `averages`
+    are those of the road. In `density`, that of the samples, shorter waves than two intervals are seen too; `folded` is
+    by which factor `standard` would be higher with them.
     """
 
     wavenumber: Matrix  # (n,) [cycle/m]
@@ -41,6 +45,7 @@ class RoadSpectrum:
     highest: float
     bands: int = 0  # of the line
     averages: tuple[tuple[float, float], ...] = ()  # of the bands: wavenumber and density
+    folded: float = 1.0
 
     @property
     def iso8608_class(self) -> RoadClass:
@@ -61,11 +66,16 @@ class RoadSpectrum:
         return RoadShape(tuple(wavenumbers), tuple((np.array(densities) / line).tolist()))
 
 
-def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIGHEST, track: str = "") -> RoadSpectrum:
+def road_spectrum(
+    profile: Profile, lowest: float = LOWEST, highest: float = HIGHEST, track: str = "", sampling: str = POINTS
+) -> RoadSpectrum:
     """The spectrum of one track of a profile, by Welch's method, and the line through it from `lowest` to `highest`.
 
     The profile is cut into pieces that overlap by half, a straight line is taken from each, and Hann's window put on
     it. Without a `track`, of two tracks the mean. Points that are not evenly spaced are joined by lines.
+
+    `sampling` says what the heights are: "points" of the road, or "averages", each over its interval, of which the line
+    is corrected for what waves shorter than two intervals add; or "filtered", without such waves, as they are.
 
     Raises `RecordError` for a profile that is too short, or spaced too widely, for three bands of the line.
     """
@@ -75,6 +85,9 @@ def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIG
         raise RecordError(
             f"The line is laid from a low to a higher wavenumber [cycle/m], got {lowest!r} to {highest!r}."
         )
+    if sampling not in SAMPLING:
+        known = " or ".join(repr(one) for one in SAMPLING)
+        raise RecordError(f"The sampling of a profile is {known}, got {sampling!r}.")
     even = profile.even()
     if track and track not in even.tracks:
         raise RecordError(f"{profile.source!r} has no track {track!r}.")
@@ -86,14 +99,17 @@ def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIG
     density = np.mean(densities, axis=0)
     if not np.any(density[1:] > 0.0):
         raise RecordError(f"{profile.source!r} is flat: there is no spectrum to lay a line through.")
-    leaked = _leakage(np.arange(_FIRST, density.size))
-    n, smooth, lines = _bands(wavenumber[_FIRST:], density[_FIRST:] / leaked, lowest, highest)
+    whole = slice(_FIRST, (size + 1) // 2)  # without the line at half of a cycle in an interval, which is two in one
+    leaked = _leakage(np.arange(_FIRST, whole.stop))
+    n, smooth, lines = _bands(wavenumber[whole], density[whole] / leaked, lowest, highest)
     if n.size < _FEWEST:
         raise RecordError(
             f"{profile.source!r} is {profile.length:g} m long with a point every {even.interval:g} m: too short, or "
             f"too widely spaced, for a line from {lowest:g} to {highest:g} cycle/m."
         )
-    x, y = np.log(n / N0), np.log(smooth) - _bias_of_logarithm(_freedom(even.distance.size, size, lines))
+    x, seen = np.log(n / N0), np.log(smooth) - _bias_of_logarithm(_freedom(even.distance.size, size, lines))
+    folding = np.log(_folding(n * even.interval, _waviness(x, seen, n * even.interval, sampling), sampling))
+    y = seen - folding
     slope, intercept = np.polyfit(x, y, 1)
     return RoadSpectrum(
         wavenumber=wavenumber[1:],
@@ -105,8 +121,38 @@ def road_spectrum(profile: Profile, lowest: float = LOWEST, highest: float = HIG
         lowest=float(n[0]),
         highest=float(n[-1]),
         bands=int(n.size),
-        averages=tuple(zip(n.tolist(), smooth.tolist(), strict=True)),
+        averages=tuple(zip(n.tolist(), (smooth * np.exp(-folding)).tolist(), strict=True)),
+        folded=math.exp(float(np.mean(folding))),
     )
+
+
+def _folding(part: Matrix, waviness: float, sampling: str) -> Matrix:
+    """Density of samples over that of a road with this waviness, at wavenumbers times the interval [1].
+
+    Waves of n + k/d look like those of n at points that are d apart, for every whole k. Their sum is one of Hurwitz's
+    zeta functions on each side. An average over d takes sinc(n d) of the height of a wave.
+    """
+    if sampling == FILTERED:
+        return np.ones_like(part)
+    steep = waviness if sampling == POINTS else waviness + 2.0
+    zeta = scipy.special.zeta
+    total = part**steep * (zeta(steep, part) + zeta(steep, 1.0 - part))
+    return np.asarray(total if sampling == POINTS else total * np.sinc(part) ** 2)
+
+
+def _waviness(x: Matrix, seen: Matrix, part: Matrix, sampling: str) -> float:
+    """The waviness that is the slope of the line without what its own shorter waves add, within bounds.
+
+    The steeper it is the less they add, and the less steep is the line without them: there is one.
+    """
+
+    def beyond(waviness: float) -> float:
+        return float(-np.polyfit(x, seen - np.log(_folding(part, waviness, sampling)), 1)[0]) - waviness
+
+    low, high = _STEEP
+    if beyond(low) <= 0.0 or beyond(high) >= 0.0:
+        return low if beyond(low) <= 0.0 else high
+    return float(scipy.optimize.brentq(beyond, low, high, xtol=1e-9))
 
 
 def _leakage(line: Matrix) -> Matrix:

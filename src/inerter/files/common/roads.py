@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from textwrap import wrap
 from typing import Annotated, Any
@@ -20,7 +20,7 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.schema import checked
 from inerter.files.common.suggest import some
 from inerter.files.common.tables import Shape
-from inerter.roads.spectrum import N0, RoadSpectrum, road_spectrum
+from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
 from inerter.units import format_quantity, shown
@@ -34,10 +34,11 @@ COHERENCE = (_TRACK, _CORNER)  # what has a unit
 _LEVEL = "level"
 _FORMS = 'track = "1.5 m", level = 0.6 or wavenumber = "0.2 cycle/m"'
 _ROUGH = ("roughness", "class", "profile")  # keys that say how rough a road is
-_OF_PROFILES = ("track", "columns", "units", "interval")
+_OF_PROFILES = ("track", "columns", "units", "interval", "sampling")
 _SIDES = tuple(filter(None, TRACKS))
 _WAVINESS, _TO = 1.5, 2.5  # of profiles for which a road of waviness 2 stands without a warning
 _WIDTH = 110  # of a remark
+_FOLDED = 0.01  # of a line, by which it is corrected without a word
 _FEWEST = 12  # bands of a line, which are an octave, without a warning
 
 
@@ -101,6 +102,12 @@ class RoadTable(Shape):
         description="Of a profile without distances: from row to row.",
         examples=[profiles.SPACING_EXAMPLE],
     )
+    sampling: Annotated[str | None, word("a sampling", SAMPLING)] = Field(
+        default=None,
+        description="Of a profile: its heights are those of points (if left out), averages over an interval, or were "
+        "filtered before.",
+        examples=['sampling = "filtered"'],
+    )
     coherence: CoherenceTable | None = Field(
         default=None,
         description="How alike left and right track are, for vehicles on two tracks; the same road if left out.",
@@ -119,8 +126,8 @@ class RoadTable(Shape):
             raise EntryError(got=f"{both}{', '.join(others)} and {last}", expected=f"one of the {of}")
         for key in _OF_PROFILES:
             if key in table and "profile" not in table:
-                fault = f"there is no profile that {'it is' if key in ('track', 'interval') else 'they are'} of"
-                article = {"track": "a ", "interval": "an "}.get(key, "")
+                fault = f"there is no profile that {'they are' if key in ('columns', 'units') else 'it is'} of"
+                article = {"track": "a ", "interval": "an ", "sampling": "a "}.get(key, "")
                 raise EntryError(got=article + key, fault=fault, expected=f"profile, or no {key}")
         if given in (["class"], ["profile"]):
             known = ROAD_CLASSES.get(str(table.get("class")), ROAD_CLASSES["A"])  # of another, or until it is read
@@ -144,6 +151,8 @@ class MeasuredLine:
     highest: float
     shape: RoadShape | None = None  # of the spectrum about the line of waviness 2
     reading: tuple[str, ...] = ()  # sentences about how the file was read
+    sampling: str = POINTS
+    folded: float = 1.0  # the line of the samples over that of the road
 
     @property
     def source(self) -> str:
@@ -159,7 +168,20 @@ class MeasuredLine:
             f"the road is the line of waviness 2 through {self.source}, of class {letter} of ISO 8608, with "
             f"the roughness {format_quantity(self.roughness, 'm^3/cycle', 6)}; {own} "
             f"has the waviness {self.waviness:.2f} and "
-            f"a scatter by a factor of {self.scatter:.2f}" + "".join(f". {said.rstrip('.')}" for said in self.reading)
+            f"a scatter by a factor of {self.scatter:.2f}{self._correction}"
+            + "".join(f". {said.rstrip('.')}" for said in self.reading)
+        )
+
+    @property
+    def _correction(self) -> str:
+        """By how much the line is another one than that of the samples; empty if by little."""
+        change = 100.0 * (1.0 / self.folded - 1.0)
+        if abs(change) < 100.0 * _FOLDED:
+            return ""
+        what = "of points" if self.sampling == POINTS else "averages over an interval"
+        return (
+            f". Taken as heights {what}, which show waves too that are shorter than two intervals, the line is changed "
+            f'by {change:+.2g} %; if they were filtered before, say sampling = "filtered"'
         )
 
     @property
@@ -197,13 +219,15 @@ def line_through(table: RoadTable | None, beside: Path) -> tuple[MeasuredLine | 
             raise EntryError(got=shown(table.profile), fault=f"there is no such file {place}", expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         measured = profiles.read(path, table.columns, table.units, table.interval)
-        spectrum = road_spectrum(measured, track=track)
+        sampling = table.sampling or POINTS
+        spectrum = road_spectrum(measured, track=track, sampling=sampling)
     except EntryError as error:
         problem = error.problem
         return None, [at(("road", "profile"), got=problem.got, fault=problem.fault, expected=problem.expected)]
     except (RecordError, OSError, ValueError) as error:  # the last: a name that no file can have
         return None, [at(("road", "profile"), str(error))]
-    return _line(path, digest, track, spectrum, measured.notes), []
+    line = _line(path, digest, track, spectrum, measured.notes)
+    return replace(line, sampling=sampling), []
 
 
 _PROFILE = 'a table of distances and heights, such as profile = "road.csv"'
@@ -231,6 +255,7 @@ def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum, reading: 
         highest=spectrum.highest,
         shape=spectrum.road(1.0).shape,
         reading=reading,
+        folded=spectrum.folded,
     )
 
 

@@ -34,7 +34,7 @@ def read_shape(path: Path, what: str, file: type[File], shapes: Shapes) -> File:
 def shape_of(tables: Mapping[str, Any], path: Path, file: type[File], shapes: Shapes) -> File:
     """Tables as the shape of a kind of file; `path`, where they are from, is for messages.
 
-    Raises `StudyError` with one sentence for a file of another kind, else with a line for every entry that does not fit.
+    Raises `StudyError` with a sentence for a file of another kind, or with a line for every entry that does not fit.
     """
     if (mistaken := mistaken_kinds(tables, file.model_fields)) is not None:
         found, wanted = mistaken

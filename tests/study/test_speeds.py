@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from combinations import CARS
 from study_text import study_text
 
 import inerter as it
+from inerter.errors import DesignError, Status, StatusKind
+from inerter.files.common.entries import element_name
+from inerter.files.common.problem import EntryError
 from inerter.files.study.cases import Case, cases, run_case
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
+from inerter.methods.method import Estimate
+from inerter.networks.elements.values import NAME
 from inerter.report.answers import answers
 from inerter.report.study_data import as_text
 
@@ -72,7 +79,7 @@ def test_the_answer_tells_what_designs_of_half_cars_become_at_other_speeds(numbe
         for layout in study.layouts:
             car, asked = there.design(layout), it.RideComfort(there.road)
             values[layout, i] = it.evaluate(car, asked, it.Norm()).value
-            own = results["speed_value"].sel(layout=layout, index="J1").values[i]
+            own = results["at_speeds.value"].sel(layout=layout, index="J1").values[i]
             assert own == pytest.approx(values[layout, i], rel=1e-12)
     for design in told:
         (slow, fast), layout = design["at_speeds"], design["layout"]
@@ -106,10 +113,10 @@ def test_with_friction_the_same_method_values_other_speeds_and_one_that_simulate
     for method in ("statistical-linearisation", "expected-value"):
         text = half_car(1, asked.format(method) + ("\nrealisations = 2" if method == "expected-value" else ""))
         study, results = found(tmp_path, text)
-        assert results["speed_value"].attrs["methods"] == "statistical-linearisation"
+        assert results["at_speeds.value"].attrs["methods"] == "statistical-linearisation"
         there = at(study, 1.2)
         value = it.evaluate(there.design("S4"), it.RideComfort(there.road), it.StatisticalLinearisation()).value
-        assert results["speed_value"].sel(layout="S4", index="J1").values[2] == pytest.approx(value, rel=1e-12)
+        assert results["at_speeds.value"].sel(layout="S4", index="J1").values[2] == pytest.approx(value, rel=1e-12)
         assert any("by linearisation" in sentence for sentence in answers(results, study))
 
 
@@ -125,17 +132,17 @@ def test_with_friction_the_same_method_values_other_speeds_and_one_that_simulate
 )
 def test_where_speed_only_scales_or_is_varied_nothing_is_said(text, tmp_path):
     study, results = found(tmp_path, text)
-    assert "speed_value" not in results or not np.isfinite(results["speed_value"]).any()
+    assert "at_speeds.value" not in results or not np.isfinite(results["at_speeds.value"]).any()
     assert not any("by exact norms" in one and "km/h" in one for one in answers(results, study))
 
 
 def test_over_a_sweep_the_answer_is_about_the_place_that_it_names(tmp_path):
     text = half_car(2, 'indices = ["J1"]\nbaseline = "S1"\nsweep = { k = ["20 kN/m", "40 kN/m"] }')
     study, results = found(tmp_path, text)
-    assert results["speed_value"].dims == ("layout", "index", "k", "speed")
+    assert results["at_speeds.value"].dims == ("layout", "index", "k", "at_speeds.speed")
     there = at(study, 0.8).design("S3", 20e3)
     value = it.evaluate(there, it.RideComfort(at(study, 0.8).road), it.Norm()).value
-    assert results["speed_value"].sel(layout="S3", index="J1", k=20e3).values[0] == pytest.approx(value, rel=1e-12)
+    assert results["at_speeds.value"].sel(layout="S3", index="J1", k=20e3).values[0] == pytest.approx(value, rel=1e-12)
     assert any("k = " in one and one.count("km/h") >= 3 for one in answers(results, study))
     assert Case("S3", "J1") in list(cases(study))
 
@@ -152,7 +159,69 @@ def test_values_that_their_method_doubts_are_told_so_first(tmp_path):
     ]
     assert any(doubted)
     for layout, is_doubted in zip(study.layouts, doubted, strict=True):
-        message = results["speed_message"].sel(layout=layout, index="J1").item()
+        message = results["at_speeds.message"].sel(layout=layout, index="J1").item()
         assert message.startswith("inaccurate") or not is_doubted
-    assert any("friction" in message for message in results["speed_message"].sel(index="J1").values)
+    assert any("friction" in message for message in results["at_speeds.message"].sel(index="J1").values)
     assert answers(results, study)[0].startswith("Not certain at other speeds: inaccurate")
+
+
+REASONS = {
+    "a refusal": (DesignError("No equilibrium is known."), "No equilibrium is known"),
+    "a singular matrix": (np.linalg.LinAlgError("Singular matrix"), "Singular matrix"),
+    "a failed status": (
+        Estimate(math.nan, "m/s^2", Status(StatusKind.FAILED, "no convergence after 50 steps")),
+        "no convergence after 50 steps",
+    ),
+    "an infinite value": (Estimate(math.inf, "m/s^2"), "without bounds"),
+}
+
+
+@pytest.mark.parametrize("why", REASONS)
+@pytest.mark.parametrize("factor", [0.8, 1.2])
+def test_what_cannot_be_computed_at_another_speed_is_said(why, factor, tmp_path, monkeypatch):
+    """Before, the sentence about other speeds was left out without a word."""
+    result, words = REASONS[why]
+
+    def fails(vehicle, index, method):
+        if not math.isclose(index.road.speed, factor * own.road.speed):
+            return it.evaluate(vehicle, index, method)
+        if isinstance(result, Exception):
+            raise result
+        return result
+
+    text = half_car(1)
+    own, _ = found(tmp_path, text)
+    monkeypatch.setattr("inerter.files.study.speeds.evaluate", fails)
+    study, results = found(tmp_path, text)
+    sentence = answers(results, study)[0]
+    assert sentence.startswith("Not certain away from ")
+    assert f"could not be computed: at {3.6 * factor * own.road.speed:.4g} km/h" in sentence
+    assert words in sentence
+    told = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 3, (), (), (), False))))["designs"]
+    for design in told:
+        values = [one["value"] for one in design["at_speeds"]]
+        assert [value is None for value in values] == [factor == 0.8, factor == 1.2]
+        assert all(words in one["message"] for one in design["at_speeds"])
+
+
+@pytest.mark.parametrize("name", ["speed", "speed_value", "speed_message", "at_speeds", "v"])
+def test_an_element_of_any_name_that_results_do_not_use_can_be_swept(name, tmp_path):
+    """Also one that is called as what results say of other speeds is."""
+    text = half_car(2, f'indices = ["J1"]\nsweep = {{ {name} = ["20 kN/m", "40 kN/m"] }}')
+    text = re.sub(r"(?<![\w])k(?![\w/])", name, text)
+    _, results = found(tmp_path, text)
+    assert results["value"].dims[:3] == ("layout", "index", name)
+    assert np.isfinite(results["at_speeds.value"]).all()
+    results.to_netcdf(tmp_path / "results.nc")
+    with xr.open_dataset(tmp_path / "results.nc") as again:
+        assert again[name].values.tolist() == [20e3, 40e3]
+
+
+def test_names_of_results_are_refused_for_elements_or_cannot_be_names(tmp_path):
+    """So no dimension of a sweep stands for two things."""
+    _, results = found(tmp_path, half_car(2, 'indices = ["J1"]\nsweep = { k = ["20 kN/m", "40 kN/m"] }'))
+    assert "at_speeds.value" in results
+    for name in {*map(str, results.variables), *map(str, results.dims)} - {"k"}:
+        if NAME.fullmatch(name):
+            with pytest.raises(EntryError):
+                element_name(name)

@@ -38,10 +38,10 @@ class SpeedSentences:
 def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, float | str | None]]:
     """One design at each of the other speeds: its value, and its improvement over the baseline's design there [%]."""
     where = {name: names[name] for name in ("layout", "index", *swept_places(results))}
-    own = results["speed_value"].sel(where)
-    if not np.isfinite(own).all():
+    own, doubts = results["at_speeds.value"].sel(where), _messages(results, where)
+    if not np.isfinite(own).all() and not _reason(results, where):
         return []
-    better, doubts = _improvements(results, where), _messages(results, where)
+    better = _improvements(results, where)
     return [
         {
             "speed": float(speed),
@@ -49,17 +49,19 @@ def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, f
             "improvement_percent": json_data(float(more)),
             "message": "; ".join(doubts),
         }
-        for speed, value, more in zip(results["speed"].values, own.values, better, strict=True)
-        if speed != results["speed"].values[1]
+        for speed, value, more in zip(results["at_speeds.speed"].values, own.values, better, strict=True)
+        if speed != results["at_speeds.speed"].values[1]
     ]
 
 
 def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSentences:
     """For each index what its best design becomes at other speeds, what is lost there first."""
     found = SpeedSentences([], [])
-    for index in indices(results) if "speed_value" in results else ():
+    for index in indices(results) if "at_speeds.value" in results else ():
         where = _best(results, index)
-        if where is not None and np.isfinite(results["speed_value"].sel(where)).all():
+        if where is None:
+            continue
+        if np.isfinite(results["at_speeds.value"].sel(where)).all():
             lost, sentence = _told(results, where, write)
             late = np.ptp(_beyond_speed(results, where)) > 1e-6
             doubts = _messages(results, where)
@@ -70,17 +72,22 @@ def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSent
                 found.doubts.append(f"Not certain away from {_at(results, 1, write)}: {sentence}")
             elif late:
                 found.others.append(f"{sentence[0].upper()}{sentence[1:]}")
+        elif reason := _reason(results, where):
+            found.doubts.append(
+                f"Not certain away from {_at(results, 1, write)}: what the best design{_of(results, where, write)} "
+                f"for {index_title(results, index)}, {where['layout']}, has at other speeds could not be computed: "
+                f"{reason}."
+            )
     return found
 
 
 def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple[bool, str]:
     """Whether much is lost, and a sentence."""
     index, layout, baseline = where["index"], where["layout"], results.attrs["baseline"]
-    values, better = results["speed_value"].sel(where).values, _improvements(results, where)
+    values, better = results["at_speeds.value"].sel(where).values, _improvements(results, where)
     unit, beyond = index_unit(results, index), _beyond_speed(results, where)
-    method = results["speed_value"].attrs["methods"]
-    places = {k: v for k, v in where.items() if k in swept_places(results)}
-    of = f" of {place_text(results, places, write, named=True)}" if places else ""
+    method = results["at_speeds.value"].attrs["methods"]
+    of = _of(results, where, write)
     by = f" by {' and '.join(brief_words_of(one) for one in method.split())}"
     ends = [
         f"{write(float(values[i]), unit, np.nan)} at {_at(results, i, write)}{_compared(better[i], baseline, layout)}"
@@ -100,22 +107,33 @@ def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple
     return doubt, f"{sentence}{advice}."
 
 
+def _of(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
+    """The place in a sweep of a design, in words; empty without a sweep."""
+    places = {k: v for k, v in where.items() if k in swept_places(results)}
+    return f" of {place_text(results, places, write, named=True)}" if places else ""
+
+
+def _reason(results: xr.Dataset, where: Mapping[str, Any]) -> str:
+    """Why a design has no finite values at other speeds; empty where they were not asked for."""
+    return str(results["at_speeds.message"].sel(where).item()).rstrip(".")
+
+
 def _messages(results: xr.Dataset, where: Mapping[str, Any]) -> list[str]:
     """What makes the values of a design, and of the baseline's that they are compared with, doubtful."""
     every = dict.fromkeys([where["layout"], results.attrs["baseline"] or where["layout"]])
-    found = [str(results["speed_message"].sel({**where, "layout": layout}).item()) for layout in every]
+    found = [str(results["at_speeds.message"].sel({**where, "layout": layout}).item()) for layout in every]
     return list(dict.fromkeys(message.rstrip(".") for message in found if message))
 
 
 def _alone(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
-    value, unit = float(results["speed_value"].sel(where)[1]), index_unit(results, where["index"])
-    speeds = results["speed"].values
+    value, unit = float(results["at_speeds.value"].sel(where)[1]), index_unit(results, where["index"])
+    speeds = results["at_speeds.speed"].values
     return " and ".join(write(value * float(np.sqrt(speeds[i] / speeds[1])), unit, np.nan) for i in (0, 2))
 
 
 def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Values over what they would be if the speed only made the road's velocity larger."""
-    values, speeds = results["speed_value"].sel(where).values, results["speed"].values
+    values, speeds = results["at_speeds.value"].sel(where).values, results["at_speeds.speed"].values
     return np.asarray(values / values[1] / np.sqrt(speeds / speeds[1]))
 
 
@@ -128,16 +146,16 @@ def _compared(better: float, baseline: str, layout: str) -> str:
 
 
 def _at(results: xr.Dataset, place: int, write: Writer) -> str:
-    speed = 3.6 * float(results["speed"].values[place])
+    speed = 3.6 * float(results["at_speeds.speed"].values[place])
     return write(speed, "km/h", np.nan)
 
 
 def _improvements(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """How much better than the baseline's own design at each speed [%]; nan without one."""
-    baseline, own = results.attrs["baseline"], results["speed_value"].sel(where).values
+    baseline, own = results.attrs["baseline"], results["at_speeds.value"].sel(where).values
     if not baseline:
         return np.full(own.shape, np.nan)
-    return np.asarray(100.0 * (1.0 - own / results["speed_value"].sel({**where, "layout": baseline}).values))
+    return np.asarray(100.0 * (1.0 - own / results["at_speeds.value"].sel({**where, "layout": baseline}).values))
 
 
 def _best(results: xr.Dataset, index: str) -> dict[str, Any] | None:

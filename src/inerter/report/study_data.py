@@ -58,7 +58,7 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
             "unit": units[names["index"]],
             "improvement_percent": json_data(arrays["improvement"][place].item()),
             **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
-            **({"at_speeds": at_speeds(data, names)} if "speed_value" in data else {}),
+            **({"at_speeds": at_speeds(data, names)} if "at_speeds.value" in data else {}),
             "status": arrays["status"][design],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }

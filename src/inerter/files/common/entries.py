@@ -249,8 +249,7 @@ _TAKEN = frozenset(
         "layout index method other parameter point omega value standard_error improvement other_value parameter_value "
         "parameter_low parameter_high at_bound status starts agreed evaluations parameter_unit index_unit index_title "
         "improvement_error realisations over_linear over_linear_error elements method_words limit limit_unit "
-        "limit_value limit_active limit_cost error_bound other_error_bound improvement_bound speed speed_value "
-        "speed_message"
+        "limit_value limit_active limit_cost error_bound other_error_bound improvement_bound"
     ).split()
 )
 

@@ -72,8 +72,8 @@ class Gathered:
         if self._uncertain:
             self._enter_scatter(number, outcome)
         for method, values in outcome.speeds.items():
-            arrays["speed_value"][number] = values
-            arrays["speed_message"][number] = self._once(outcome.speed_message)
+            arrays["at_speeds.value"][number] = values
+            arrays["at_speeds.message"][number] = self._once(outcome.speed_message)
             self._by[method] = None
         for i, found in enumerate(outcome.limits):
             for name, number_told in zip(LIMITED, found, strict=True):
@@ -101,8 +101,8 @@ class Gathered:
             widest = 100.0 * abs(data["value"] / base) * (data["error_bound"] + of_base) / (1.0 - of_base)
             data["improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*data["value"].dims).values
             self._enter_errors()
-        if "speed_value" in data:
-            data["speed_value"].attrs["methods"] = " ".join(self._by)
+        if "at_speeds.value" in data:
+            data["at_speeds.value"].attrs["methods"] = " ".join(self._by)
         if study.sweeps:
             return data
         found = {case: outcome.parameters for case, outcome in self.designs.items() if outcome.values}
@@ -203,7 +203,7 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "other": len(indices),
         "parameter": len(parameters),
         "limit": len(study.limits),
-        "speed": len(BESIDE),
+        "at_speeds.speed": len(BESIDE),
     }
     variables = {}
     uncertain, limited = UNCERTAIN if is_uncertain(study) else {}, LIMITED if study.limits else {}
@@ -229,7 +229,7 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         coords["limit"] = [f"{one.words} (swept)" if one.words in swept_words else one.label for one in study.limits]
         coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
     if beside and study.road is not None:
-        coords["speed"] = ("speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
+        coords["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
     for sweep in study.sweeps:
         attributes = {
             "units": sweep.unit,
@@ -283,9 +283,10 @@ UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "over_linear": ((), np.nan, "improvement over the best linear design by the method of the search"),
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
 }
+# names with a point, which no element can have, so that a sweep of any element has its own dimension
 SPEEDS: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
-    "speed_value": (("speed",), np.nan, "index of the same design at other speeds"),
-    "speed_message": ((), "", "what makes those values doubtful"),
+    "at_speeds.value": (("at_speeds.speed",), np.nan, "index of the same design at other speeds"),
+    "at_speeds.message": ((), "", "what makes those values doubtful"),
 }
 PERCENT = {"limit_cost", "improvement", "improvement_bound", "improvement_error", "over_linear", "over_linear_error"}
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inerter.errors import InerterError, worst_of
+from inerter.errors import InerterError
 from inerter.files.study.places import place_of, with_numbers
 from inerter.methods.asking import Asked
 from inerter.methods.counterpart import has_play
@@ -36,23 +36,32 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
 
     The study is one that `asks_at_one_speed`. At another speed the road is rougher or smoother, and no more, unless
     several axles meet it or the design has friction. A method that averages random roads is replaced by the quickest
-    that sees as much friction.
+    that sees as much friction. A value that cannot be computed is nan, and the message says why.
     """
     if not study.needs_road(index):
         return {}, ""
     method = quick_method(study, vehicle)
     if not (_is_late(vehicle, study.asked(index, layout)) or (not is_blind(method) and _rubs(vehicle))):
         return {}, ""
-    found = []
-    for factor in BESIDE:
-        assert study.road is not None
-        there = with_numbers(study, [(place_of(SPEED), factor * study.road.speed)])
-        try:
-            found.append(evaluate(vehicle, there.asked(index, layout), there.method(method)))
-        except (InerterError, np.linalg.LinAlgError, ArithmeticError):
-            return {}, ""
-    status = worst_of(one.status for one in found)
-    return {method: [one.value for one in found]}, "" if status.ok else str(status)
+    found = [_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
+    values, messages = [value for value, _ in found], [message for _, message in found if message]
+    return {method: values}, "; ".join(dict.fromkeys(messages))
+
+
+def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], factor: float) -> tuple[float, str]:
+    """The value at that part of the speed of the study, and what makes it doubtful, or why there is none."""
+    layout, index, method = asked
+    assert study.road is not None
+    speed = factor * study.road.speed
+    there = with_numbers(study, [(place_of(SPEED), speed)])
+    try:
+        found = evaluate(vehicle, there.asked(index, layout), there.method(method))
+    except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
+        return np.nan, f"at {3.6 * speed:.4g} km/h there is no value ({str(error).rstrip('.')})"
+    if not np.isfinite(found.value):
+        reason = str(found.status) if not found.status.ok else "it is without bounds"
+        return np.nan, f"at {3.6 * speed:.4g} km/h there is no finite value ({reason.rstrip('.')})"
+    return found.value, "" if found.status.ok else str(found.status)
 
 
 def quick_method(study: Study, vehicle: Vehicle) -> str:

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import tomllib
+from dataclasses import asdict
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,11 @@ import numpy as np
 import pytest
 from app.conftest import DOCUMENT, EXAMPLES, changed
 from campaigns import sampled
+from combinations import CARS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
+from study_text import study_text
 
 import inerter as it
 from inerter.app import answers
@@ -30,6 +33,8 @@ from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.running import run_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.results import dataset
+from inerter.report.answers import answers as sentences_of
+from inerter.report.speeds import speed_sentences
 from inerter.report.study_data import as_text
 
 
@@ -88,6 +93,31 @@ def test_optima_are_those_of_a_run(client: TestClient, ran: Any) -> None:
     for design in answer["designs"]:
         (result,), case = design["results"], wanted[design["layout"], "J1"]
         assert (result["value"], result["improvement_percent"]) == (case["value"], case["improvement_percent"])
+
+
+@pytest.mark.parametrize("layouts", [["S1", "S3"], ["S3"]], ids=["both", "one"])
+def test_an_optimum_tells_what_it_becomes_at_other_speeds_as_a_run_does(
+    client: TestClient, tmp_path: Path, layouts: list[str]
+) -> None:
+    """In the panel and in work, by the sentences of the report of the command line."""
+    text = study_text(
+        f'indices = ["J1"]\noptimise = "norm"\nbaseline = "{layouts[0]}"',
+        vehicle="\n".join(f'{key} = "{value!r} {unit}"' for key, (value, unit) in CARS["half-car"].items()),
+        elements='k = "25 kN/m"\nc = { from = "300 N s/m", to = "10 kN s/m" }\nb = "60 kg"',
+        layouts="\n".join(f'{name} = "k | c{" - b | c" if name == "S3" else ""}"' for name in layouts),
+    ).replace("quarter-car", "half-car")
+    path = tmp_path / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    study = it.load_study(path)
+    results = dataset(study, {case: run_case(study, case) for case in cases(study)})
+    expected = asdict(speed_sentences(results))
+    (sentence,) = expected["doubts"] + expected["others"]
+    assert sentence.count("km/h") >= 3
+    assert sentence in sentences_of(results, study)
+    document = tomllib.loads(text)
+    panel = client.post("/api/panel/optimise", json={"study": document}).json()
+    work = client.post("/api/work", json={"kind": "optimise", "study": document, "wait": 30}).json()["result"]
+    assert panel["at_speeds"] == work["at_speeds"] == expected
 
 
 @settings(max_examples=2)

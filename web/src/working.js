@@ -24,9 +24,9 @@ export async function optimise(store, api, asked) {
       store.dispatch({ type: "viewed", view: { tab: "work" } });
       return "Under way: see Work.";
     }
-    const { designs } = await api.post("panel/optimise", { ...body, client: "page.optimise", sequence: Date.now() });
+    const { designs, at_speeds: speeds } = await api.post("panel/optimise", { ...body, client: "page.optimise", sequence: Date.now() });
     if (store.get().history.present.study !== study) return "The study was changed meanwhile, and the values are not taken. Press Optimise again.";
-    return takeOptima(store, designs);
+    return withSpeeds(takeOptima(store, designs), speeds);
   } catch (error) {
     return /** @type {Error} */ (error).message;
   }
@@ -45,6 +45,9 @@ export function takeOptima(store, designs, gesture = null) {
   store.change({ type: "valuedAll", values: Object.fromEntries(taken.map(({ best, values }) => [best.layout, values])) }, gesture);
   return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) => best.layout + atBounds(best)).join(", ")}.`;
 }
+
+/** What is told of optima, with what they become at other speeds: doubts first. @param {string} text @param {{doubts: string[], others: string[]} | undefined} speeds */
+export const withSpeeds = (text, speeds) => [...(speeds?.doubts ?? []), text, ...(speeds?.others ?? [])].join(" ");
 
 /** Whether a layout is in the study, and has these values free. @param {import("./state/document.js").Study} study @param {string} layout @param {string[]} values */
 function isHere(study, layout, values) {

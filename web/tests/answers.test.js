@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { answerOf, questions, soughtAnswer, soughtOf, unchosenIn } from "../src/questions.js";
 import { initial, reduce } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
-import { takeFitted, takeOptima } from "../src/working.js";
+import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
 import { budgetTold } from "../src/panels/answers.js";
 import { createStore } from "../src/state/store.js";
 
@@ -164,4 +164,9 @@ test("only what is given is handed on: no withheld device, no values of another 
   assert.match(takeOptima(store, [{ layout: "S2", index: "J1", texts: { c: "1 N s/m" }, status: { norm: "infeasible" }, message: "a limit is broken" }]), /^Not to be relied on: J1 of S2: infeasible: a limit is broken\. The best J1 of S2\.$/);
   const given = { status: "ok", parameters: { b: { value: 123, interval: [120, 125] } } };
   assert.match(takeFitted(store, given, device), /^The device is in the new layout/);
+});
+
+test("what optima become at other speeds stands before them where it is doubtful", () => {
+  assert.equal(withSpeeds("The best J1 of S2.", { doubts: ["Not certain away from 90 km/h: x."], others: ["Also y."] }), "Not certain away from 90 km/h: x. The best J1 of S2. Also y.");
+  assert.equal(withSpeeds("The best J1 of S2.", undefined), "The best J1 of S2.");
 });

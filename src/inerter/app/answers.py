@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pkgutil import resolve_name
 from typing import Any
 
@@ -21,6 +21,7 @@ from inerter.files.common.shape import ROAD
 from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
+from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, is_blind, methods_that, searches
@@ -28,6 +29,7 @@ from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
 from inerter.optimisation.budget import budget as find_budget
 from inerter.optimisation.threads import one_blas_thread
+from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.scatter.tolerance import tolerance
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
@@ -132,8 +134,13 @@ def tree_of(network: Network) -> Answer:
     return {"kind": sign, "parts": [tree_of(part) for part in network.parts]}  # type: ignore[attr-defined]
 
 
-def optimum(study: Study, body: Body) -> Answer:
-    """The best design of each layout for each index that is asked for, as a study finds and judges it."""
+def optimum(
+    study: Study, body: Body, tell: Callable[[int, int, str], None] = lambda count, total, case: None
+) -> Answer:
+    """The best design of each layout for each index that is asked for, as a study finds and judges it.
+
+    With it, in the sentences of its report, what the best become at other speeds, first what makes them doubtful.
+    """
     wanted = tuple(body.get("indices") or study.indices)
     asked = replace(
         study,
@@ -142,13 +149,32 @@ def optimum(study: Study, body: Body) -> Answer:
         evaluate=tuple(body.get("methods") or study.evaluate),
         sweeps=(),
     )
-    layouts = body.get("layouts") or study.layouts
+    layouts = tuple(body.get("layouts") or study.layouts)
     for layout in layouts:
         study.design(layout)
     for name in asked.methods:
         asked.method(name)
-    found = [run_case(asked, Case(layout, index)) for layout in layouts for index in wanted]
-    return {"designs": [_told(study, outcome) for outcome in found]}
+    found: dict[Case, Outcome] = {}
+    every = [Case(layout, index) for layout in layouts for index in wanted]
+    for case in every:
+        tell(len(found), len(every), f"{case.layout} {case.index}")
+        found[case] = run_case(asked, case)
+    tell(len(found), len(every), "")
+    return {
+        "designs": [_told(study, outcome) for outcome in found.values()],
+        "at_speeds": asdict(_at_speeds(asked, found)),
+    }
+
+
+def _at_speeds(study: Study, found: Mapping[Case, Outcome]) -> SpeedSentences:
+    """What the best of these designs become at other speeds, in sentences; none where speed only scales them."""
+    if not any(outcome.speeds for outcome in found.values()):
+        return SpeedSentences([], [])
+    layouts = {case.layout: study.layouts[case.layout] for case in found}
+    indices = tuple(dict.fromkeys(case.index for case in found))
+    baseline = study.baseline if study.baseline in layouts else None
+    there = replace(study, layouts=layouts, indices=indices, baseline=baseline, trade_off=(), budgets=())
+    return speed_sentences(dataset(there, found))
 
 
 def _told(study: Study, outcome: Outcome) -> Answer:

@@ -29,15 +29,7 @@ Body = Mapping[str, Any]
 
 
 def optimise(body: Body, folder: Path, tell: Tell) -> Any:
-    study = study_from(body["study"])
-    layouts, indices = body.get("layouts") or list(study.layouts), body.get("indices") or list(study.indices)
-    cases = [(layout, index) for layout in layouts for index in indices]
-    found: list[Any] = []
-    for layout, index in cases:
-        tell(len(found), len(cases), f"{layout} {index}")
-        found += optimum(study, {**body, "layouts": [layout], "indices": [index]})["designs"]
-    tell(len(found), len(cases), "")
-    return {"designs": found}
+    return optimum(study_from(body["study"]), body, tell)
 
 
 def run(body: Body, folder: Path, tell: Tell) -> Any:

@@ -83,7 +83,10 @@ function JobRow({ store, api, job }) {
 /** @param {{store: Store, job: Job}} props */
 function OptimumResult({ store, job }) {
   const { result } = job;
-  return html`<${Doubts} members=${result.designs.flatMap(membersOf)} />${result.designs.map(
+  const { doubts = [], others = [] } = result.at_speeds ?? {};
+  return html`<${Doubts} members=${result.designs.flatMap(membersOf)} />
+    ${doubts.length > 0 && html`<div class="doubts problem" role="alert">${doubts.map((/** @type {string} */ doubt) => html`<p key=${doubt}>${doubt}</p>`)}</div>`}
+    ${others.map((/** @type {string} */ sentence) => html`<p class="quiet" key=${sentence}>${sentence}</p>`)}${result.designs.map(
     (/** @type {any} */ design) => html`<p key=${`${design.layout} ${design.index}`}>${Object.entries(design.texts).map(([name, text]) => `${name} = ${rounded(String(text))}`).join(", ")}
       <button type="button" onClick=${() => store.dispatch({ type: "said", about: "taken", text: takeOptima(store, [design]) })}>Take it into the editor</button></p>`,
   )}`;

@@ -10,9 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from combinations import CARS
 from study_text import study_text
 
 import inerter as it
+from inerter.app.designs import design_of
+from inerter.app.valued import limits_at
 from inerter.errors import StudyError
 from inerter.files.common.entries import element_name
 from inerter.files.common.problem import EntryError
@@ -21,9 +24,12 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved
+from inerter.networks.elements.values import NAME
+from inerter.report.answers import answers
 from inerter.report.findings import headlines
 from inerter.report.page import report
 from inerter.report.question import condition_rows
+from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table
 
 FREE = """k = { from = "10 kN/m", to = "200 kN/m" }
@@ -75,7 +81,7 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
     assert float(row["static-stiffness.strut at least [N/m]"]) == by_hand.limits[1].value
     assert float(row["cost of static-stiffness.strut at least_percent"]) == by_hand.limits[1].sensitivity
     for name in result.data.variables:  # an element that is swept would stand beside them
-        if not str(name).startswith(("gain_", "output_")):
+        if NAME.fullmatch(str(name)) and not str(name).startswith(("gain_", "output_")):
             with pytest.raises(EntryError, match="results use"):
                 element_name(name)
     text = summary_table(result.data)
@@ -311,3 +317,73 @@ def test_a_budget_holds_over_conditions_of_the_vehicle(load: Callable[..., Study
     assert found.status == expected.status
     assert found.value == pytest.approx(expected.value, rel=1e-9)
     assert found.value > 5.0
+
+
+@pytest.mark.parametrize(
+    ("model", "limit", "value", "outputs"),
+    [
+        ("half-car", "J3", "600 N", {"front tyre": "tyre_front_load", "rear tyre": "tyre_rear_load"}),
+        ("half-car", "suspension-travel", "3.5 mm", {"front strut": "front_travel", "rear strut": "rear_travel"}),
+        pytest.param(
+            *("full-car", "tyre-load", "1500 N"),
+            {
+                f"{end} {side} tyre": f"tyre_{end}_{side}_load"
+                for end in ("front", "rear")
+                for side in ("left", "right")
+            },
+            marks=pytest.mark.campaign,
+        ),
+        ("quarter-car", "J3", "700 N", {}),
+    ],
+)
+def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
+    load: Callable[..., Study], tmp_path: Path, model: str, limit: str, value: str, outputs: dict[str, str]
+) -> None:
+    """The value that is shown is of the part that is named, by an index of that output alone; a total is larger."""
+    car = "\n".join(f'{key} = "{number!r} {unit}"' for key, (number, unit) in CARS[model].items())
+    settings = f'indices = ["J1"]\noptimise = "norm"\nsubject_to = {{ {limit} = {{ at_most = "{value}" }} }}'
+    parts = {
+        "elements": FREE.replace("10 kN/m", "5 kN/m"),
+        "vehicle": car,
+        "layouts": 'S1 = "k | c"',
+    }
+    text = study_text(settings, **parts).replace("quarter-car", model)
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    study = load_study(tmp_path / "own.toml")
+    result = run_study(study, tmp_path / "out")
+    best = result.data.sel(layout="S1", index="J1").squeeze("method")
+    assert str(best["status"].item()) == "ok"
+    kind = next(iter(outputs), "").rpartition(" ")[2]
+    assert result.data["limit.each"].values.tolist() == [f"each {kind}" if kind else ""]
+    design = study.design("S1").with_values(
+        {name: float(best["parameter_value"].sel(parameter=name)) for name in study.design("S1").free_values()}
+    )
+    alone = {
+        part: it.evaluate(design, it.RandomResponse({output: 1.0}, study.road), it.Norm()).value
+        for part, output in outputs.items()
+    }
+    found, part = float(best["limit_value"].item()), str(best["limit.part"].item())
+    if alone:
+        assert found == pytest.approx(alone[part], rel=1e-6)
+        assert found == pytest.approx(max(alone.values()), rel=1e-6)
+        assert it.evaluate(design, study.index(limit), it.Norm()).value > 1.1 * found
+    said, told = limit.replace("-", " "), summary_table(result.data)
+    assert max(map(len, told.splitlines())) <= WIDTH
+    named = f"{said}, each {kind}, at most" if kind else f"{said} at most"
+    page = report(result.data, study, tmp_path)
+    for shown in (" ".join(told.split()), " ".join(answers(result.data, study)), page):
+        assert named in shown
+        assert not kind or f"{said} at most" not in shown
+    for shown in (told, page):
+        assert not kind or f"({part})" in shown
+    with (tmp_path / "out" / "summary.csv").open(encoding="utf-8", newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    assert float(row[f"{limit} at most [{study.limits[0].unit}]"]) == found
+    assert row.get(f"part of {limit} at most") == (part or None)
+    (data,) = json.loads("".join(as_text(result)))["designs"]
+    (entry,) = data["limits"]
+    assert (entry["each"], entry["part"], entry["value"]) == (f"each {kind}" if kind else "", part, found)
+    (shown,) = limits_at(study, design_of(study, "S1", data["parameters"]), "norm")
+    assert shown["part"] in (outputs or {"": ""})
+    named = f"{limit}, {shown['part']}, at most " if kind else f"{limit} at most "
+    assert shown["title"].startswith(named)

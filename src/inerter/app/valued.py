@@ -10,13 +10,13 @@ from typing import Any
 from inerter.app.designs import Design
 from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import FAILURES
-from inerter.files.study.limits import StudyLimit, limits_in
+from inerter.files.study.limits import StudyLimit, limits_in, part_words
 from inerter.files.study.study import Study
 from inerter.methods.asking import Asked
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.optimisation.constrained import KEPT_COSTLY
 from inerter.optimisation.held import Held
-from inerter.optimisation.limits import Limit, for_each
+from inerter.optimisation.limits import Limit, for_each, output_of
 from inerter.units import format_quantity
 from inerter.vehicle.vehicle import Vehicle
 
@@ -53,15 +53,17 @@ def _limit(said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Met
     try:
         single = [replace(limit, of=one) for limit in several for one in for_each(limit.of, vehicle)]
         held = [Held(limit, valued(vehicle, limit.of, method), False, 0.0) for limit in single]
-        worst = max(held, key=lambda one: inf if isnan(one.value) else one.excess).estimate
+        closest = max(held, key=lambda one: inf if isnan(one.value) else one.excess)
+        worst, part = closest.estimate, part_words(vehicle, output_of(closest.limit.of))
         kept = None if isnan(worst.value) else all(one.excess <= KEPT_COSTLY for one in held)
     except FAILURES as error:
-        worst, kept = Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error))), None
+        part, worst, kept = "", Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error))), None
     return {
         "of": said.of,
         "sense": said.sense,
         "limit": said.value,
-        "title": said.label,
+        "title": said.label if not part else said.label.replace(said.of, f"{said.of}, {part},", 1),
+        "part": part,
         "unit": said.unit,
         "value": worst.value,
         "text": "" if kept is None else format_quantity(worst.value, said.unit),

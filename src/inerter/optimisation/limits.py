@@ -97,6 +97,15 @@ class OneOutput(OfIndex):
         return replace(whole, outputs=(whole.outputs[i],), filter=(whole.filters[i],))
 
 
+def output_of(index: object) -> str:
+    """The one output of an index, in whatever way it is taken, that a limit holds for by itself; else empty."""
+    while not isinstance(index, OneOutput):
+        if (inner := getattr(index, "index", None)) is None:
+            return ""
+        index = inner
+    return index.output
+
+
 def for_each(index: Asked, vehicle: Vehicle) -> Sequence[Asked]:
     """What a limit is put on: each output of an index that has several, unless motions of coordinates are among them.
 

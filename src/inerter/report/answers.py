@@ -18,7 +18,7 @@ from inerter.report.budgets import end_of_range
 from inerter.report.findings import Wording, Writer, best_layouts, headlines
 from inerter.report.fronts import front_sentences
 from inerter.report.plausibility import result_warnings
-from inerter.report.question import spoken
+from inerter.report.question import limit_words, of_each
 from inerter.report.speeds import speed_sentences
 from inerter.report.tolerances import tolerance_sentences
 
@@ -53,7 +53,7 @@ def _of_limits(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str
     """What the limits are, and which layouts have no design that keeps them."""
     swept = {sweep.words for sweep in study.sweeps}
     limits = [
-        f"{spoken(one.words)} {'what is swept' if one.words in swept else _number(one.value, one.unit, write)}"
+        f"{limit_words(study, one)} {'what is swept' if one.words in swept else _number(one.value, one.unit, write)}"
         for one in study.limits
     ]
     missed = infeasible(results)
@@ -90,9 +90,10 @@ def _nearest(results: xr.Dataset, study: Study, write: Writer) -> str:
         return ""
     best = int(np.nanargmin(missed))
     of = str(values["design"].values[best][0])
+    parts = results["limit.part"].stack(design=("layout", "index")).transpose("design", "limit").values[best].tolist()
     told = [
-        f"{spoken(limit.of)} {_number(float(value), limit.unit, write)}"
-        for limit, value in zip(study.limits, values.values[best], strict=True)
+        f"{of_each(limit.of, part)} {_number(float(value), limit.unit, write)}"
+        for limit, value, part in zip(study.limits, values.values[best], parts, strict=True)
     ]
     return f"; the nearest, one of {of}, has {listed(told)}"
 

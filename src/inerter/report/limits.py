@@ -26,7 +26,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.report.findings import Writer
-from inerter.report.question import spoken
+from inerter.report.question import of_each
 from inerter.report.tables import Cell, Row, Table
 
 _MOST_RANGES = 3  # of swept values, in a remark
@@ -37,7 +37,7 @@ def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
     if "limit" not in results.dims:
         return
     for limit in results["limit"].values.tolist():
-        yield from wrap(f"within {_spoken(limit)}:", width, initial_indent="  ", subsequent_indent="    ")
+        yield from wrap(f"within {_spoken(results, limit)}:", width, initial_indent="  ", subsequent_indent="    ")
         for name in layouts(results):
             told = ", ".join(filter(None, _told(_entry(results, name, index, limit), index)))
             yield from wrap(f"{name}: {told}", width, initial_indent="    ", subsequent_indent="      ")
@@ -67,14 +67,16 @@ def _table(results: xr.Dataset, index: str) -> Table:
     caption = f"Limits of the designs that are best for {titled(index_title(results, index), index)}"
     over = f", over {' and '.join(swept_words(results))}" if swept else ""
     return Table(
-        f"{caption}{over}", ["Layout", *map(_spoken, limits), *(["No design keeps all"] if swept else [])], rows
+        f"{caption}{over}",
+        ["Layout", *(_spoken(results, limit) for limit in limits), *(["No design keeps all"] if swept else [])],
+        rows,
     )
 
 
-def _spoken(limit: str) -> str:
-    """A limit as it is said: its first word is a name of the file."""
+def _spoken(results: xr.Dataset, limit: str) -> str:
+    """A limit as it is said: its first word is a name of the file, and of what it holds by itself follows that."""
     name, space, value = limit.partition(" ")
-    return f"{spoken(name)}{space}{typeset(value)}"
+    return f"{of_each(name, str(results['limit.each'].sel(limit=limit).item()))}{space}{typeset(value)}"
 
 
 def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = None) -> xr.Dataset:
@@ -88,7 +90,8 @@ def _told(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str
         where, which = _where(entry, entry["limit_active"].values & ~_missed(entry), write)
         return (f"at its limit {where}", which) if where else ("nowhere at its limit", "")
     value, cost = float(entry["limit_value"]), float(entry["limit_cost"])
-    text = with_unit(value, str(entry["limit_unit"].item())).strip()
+    part = str(entry["limit.part"].item())
+    text = with_unit(value, str(entry["limit_unit"].item())).strip() + (f" ({part})" if part else "")
     if bool(infeasible(entry)):
         return text, "the nearest design"
     if not bool(entry["limit_active"]):

@@ -13,6 +13,7 @@ from inerter.fields import Field, fields_of
 from inerter.figures.labels import capital, index_title, indices, infeasible, listed, titled
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.conditions import OVER
+from inerter.files.study.limits import StudyLimit, each_of
 from inerter.files.study.places import places
 from inerter.files.study.study import Study
 from inerter.files.study.ways import ways
@@ -110,7 +111,7 @@ def further_rows(study: Study) -> list[tuple[str, str]]:
     """What is asked beyond the least value of each index: limits, a trade-off, tolerances, budgets."""
     spread = [f"{label} ± {100.0 * part:.4g} %" for label, part in study.tolerance.items()]
     given = {
-        "Limits": [f"{spoken(limit.words)} {_given(study, limit.value, limit.unit)}" for limit in study.limits],
+        "Limits": [f"{limit_words(study, limit)} {_given(study, limit.value, limit.unit)}" for limit in study.limits],
         "Trade-off": [" against ".join(map(spoken, study.trade_off))] if study.trade_off else [],
         "Tolerances": spread,
         "Best at": [f"the {100.0 * study.quantile:.4g} % quantile"] if study.quantile is not None else [],
@@ -122,6 +123,16 @@ def further_rows(study: Study) -> list[tuple[str, str]]:
 def spoken(words: str) -> str:
     """Words of a file as they are said: static-stiffness.strut is the static stiffness of strut."""
     return words.replace("-", " ").replace(".", " of ")
+
+
+def of_each(name: str, each: str) -> str:
+    """What is limited, as it is said; with of what it is by itself, so that it is not taken for the index of all."""
+    return f"{spoken(name)}, {each}," if each else spoken(name)
+
+
+def limit_words(study: Study, limit: StudyLimit) -> str:
+    """What is limited, and on which side, as it is said."""
+    return f"{of_each(limit.of, each_of(study, limit))} {limit.sense.replace('_', ' ')}"
 
 
 def condition_rows(study: Study) -> list[tuple[str, str, str]]:
@@ -170,7 +181,9 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
             what = brief_words_of(study.optimise)
             yield f"What was made smallest is the value by {what}: {words_of(study.optimise)}."
     if study.limits:
-        limits = "; ".join(f"{spoken(limit.words)} {_given(study, limit.value, limit.unit)}" for limit in study.limits)
+        limits = "; ".join(
+            f"{limit_words(study, limit)} {_given(study, limit.value, limit.unit)}" for limit in study.limits
+        )
         yield f"Every design {'has to keep' if bool(infeasible(results).any()) else 'keeps'} these limits: {limits}."
     if study.conditions:
         how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"

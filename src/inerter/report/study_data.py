@@ -8,6 +8,7 @@ from textwrap import indent
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from inerter.figures.labels import decimals_of
 from inerter.files.study.journal import Further
@@ -59,9 +60,28 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
             "improvement_percent": json_data(arrays["improvement"][place].item()),
             **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
             **({"at_speeds": at_speeds(data, names)} if "at_speeds.value" in data else {}),
+            **({"limits": _limits(data, names)} if "limit" in data.dims else {}),
             "status": arrays["status"][design],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }
+
+
+def _limits(data: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """What is limited in one design, each with the tyre or strut that it is about where it holds for each."""
+    entry = data[["limit_value", "limit_active", "limit_cost", "limit.part"]].sel(
+        {name: value for name, value in names.items() if name in data["limit_value"].dims}
+    )
+    return [
+        {
+            "limit": limit,
+            "each": str(data["limit.each"].values[i]),
+            "part": str(entry["limit.part"].values[i]),
+            "value": json_data(float(entry["limit_value"].values[i])),
+            "active": bool(entry["limit_active"].values[i]),
+            "cost_percent": json_data(float(entry["limit_cost"].values[i])),
+        }
+        for i, limit in enumerate(data["limit"].values.tolist())
+    ]
 
 
 def _decimals(arrays: Mapping[str, Any], place: tuple[int, ...]) -> int | None:

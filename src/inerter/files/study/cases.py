@@ -113,7 +113,7 @@ class Outcome:
     notes: list[list[str | float]] = field(default_factory=list)  # the parts of each: words, and numbers between them
     realisations: dict[str, int] = field(default_factory=dict)  # method -> roads of the case's own index
     samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
-    limits: list[list[float]] = field(default_factory=list)  # of each: value, whether it holds back, its cost
+    limits: list[list[Any]] = field(default_factory=list)  # of each: value, whether it holds back, its cost, its part
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
     speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`

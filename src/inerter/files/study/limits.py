@@ -19,7 +19,7 @@ from inerter.methods.asking import Asked
 from inerter.methods.method import asked_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.held import Held
-from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each
+from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each, output_of
 from inerter.units import PURE, are_alike, format_quantity, parse_quantity, shown, unit_in
 from inerter.vehicle.vehicle import Vehicle
 
@@ -149,8 +149,29 @@ def limits_in(study: Study) -> list[list[Limit]]:
     ]
 
 
-def kept(study: Study, vehicle: Vehicle, held: tuple[Held, ...]) -> list[tuple[float, bool, float]]:
-    """Of each limit: the value that comes closest, whether it holds the optimum back, and the per cent that 1 % gives.
+def each_of(study: Study, limit: StudyLimit) -> str:
+    """Of what a limit holds by itself where its index is a sum over several, such as "each tyre"; else empty."""
+    vehicle = study.design(next(iter(study.layouts)))
+    for index in study.in_each(quantity_limited(study, limit.of)):
+        several = for_each(index, vehicle)
+        if outputs := list(filter(None, map(output_of, several))):
+            return f"each {part_words(vehicle, outputs[0]).rpartition(' ')[2]}"
+    return ""
+
+
+def part_words(vehicle: Vehicle, output: str) -> str:
+    """The tyre or strut that an output is about, in words: "front tyre" of "tyre_front_load"; empty for no output."""
+    mechanism = vehicle.mechanism()
+    for parts, kind in ((mechanism.tyres, "tyre"), (mechanism.struts, "strut")):
+        for part in parts:
+            if output.startswith(f"{part.name}_"):
+                return f"{part.name.removeprefix(f'{kind}_').replace('_', ' ')} {kind}"
+    return output.replace("_", " ")
+
+
+def kept(study: Study, vehicle: Vehicle, held: tuple[Held, ...]) -> list[tuple[float, bool, float, str]]:
+    """Of each limit: the value that comes closest, whether it holds the optimum back, the per cent that 1 % gives, and
+    of which tyre or strut the value is where the limit holds for each.
 
     `held` are all limited quantities of an optimum of `vehicle`, in the order of `limits_in`.
     """
@@ -160,7 +181,8 @@ def kept(study: Study, vehicle: Vehicle, held: tuple[Held, ...]) -> list[tuple[f
         own, rest = rest[:count], rest[count:]
         worst = max(own, key=lambda one: one.excess)
         active = [one for one in own if one.active]
-        found.append((worst.value, bool(active), float(sum(one.sensitivity for one in active))))
+        cost = float(sum(one.sensitivity for one in active))
+        found.append((worst.value, bool(active), cost, part_words(vehicle, output_of(worst.limit.of))))
     return found
 
 

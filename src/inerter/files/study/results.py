@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import inerter
 from inerter.errors import StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
+from inerter.files.study.limits import each_of
 from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
 from inerter.files.study.speeds import BESIDE, asks_at_one_speed
@@ -228,6 +229,7 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         swept_words = {sweep.words for sweep in study.sweeps}
         coords["limit"] = [f"{one.words} (swept)" if one.words in swept_words else one.label for one in study.limits]
         coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
+        coords["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
     if beside and study.road is not None:
         coords["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
     for sweep in study.sweeps:
@@ -276,6 +278,7 @@ LIMITED: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "limit_value": (("limit",), np.nan, "what is limited, where it comes closest to its limit"),
     "limit_active": (("limit",), False, "whether the limit holds the optimum back"),
     "limit_cost": (("limit",), np.nan, "change of the index for one per cent more of the limit"),
+    "limit.part": (("limit",), "", "tyre or strut that comes closest, of a limit on each"),
 }
 UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "improvement_error": (("method",), np.nan, "standard error of the improvement"),

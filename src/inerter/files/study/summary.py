@@ -42,7 +42,13 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
             for limit in study.limits
             for text in (headed(limit.words, limit.unit), f"cost of {limit.words}_percent")
         ),
+        *(f"part of {study.limits[i].words}" for i in _on_parts(data)),
     ]
+
+
+def _on_parts(data: xr.Dataset) -> list[int]:
+    """The numbers of the limits that hold for each tyre or strut by itself."""
+    return [i for i, each in enumerate(data["limit.each"].values.tolist()) if each] if "limit.each" in data else []
 
 
 def _more(study: Study) -> list[str]:
@@ -50,7 +56,7 @@ def _more(study: Study) -> list[str]:
 
 
 def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
-    everything, more = cases(study), _more(study)
+    everything, more, parts = cases(study), _more(study), _on_parts(data)
     parameters = data.parameter.values.tolist()
     units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
     by_method = {name for name in data.data_vars if "method" in data[name].dims}
@@ -81,6 +87,7 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
                         for i in range(len(study.limits))
                         for name in ("limit_value", "limit_cost")
                     ),
+                    *(row["limit.part"][i] for i in parts),
                 ]
 
 

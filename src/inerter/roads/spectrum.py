@@ -100,7 +100,7 @@ def road_spectrum(
     if not np.any(density[1:] > 0.0):
         raise RecordError(f"{profile.source!r} is flat: there is no spectrum to lay a line through.")
     whole = slice(_FIRST, (size + 1) // 2)  # without the line at half of a cycle in an interval, which is two in one
-    leaked = _leakage(np.arange(_FIRST, whole.stop))
+    leaked = _leakage(np.arange(_FIRST, whole.stop, dtype=float))
     n, smooth, lines = _bands(wavenumber[whole], density[whole] / leaked, lowest, highest)
     if n.size < _FEWEST:
         raise RecordError(

@@ -133,7 +133,7 @@ def main() -> None:
         def tested(mutant: Mutant) -> Outcome:
             copy = copies.get()
             try:
-                return test(mutant, copy, executed.get((mutant.file, header_line(mutant)), []))
+                return test(mutant, copy, executed.get((mutant.file, header_line(mutant, copy)), []))
             finally:
                 copies.put(copy)
 
@@ -289,9 +289,9 @@ def tests_by_line(copy: Path, folder: Path) -> dict[tuple[str, int], list[str]]:
     return executed
 
 
-def header_line(mutant: Mutant) -> int:
+def header_line(mutant: Mutant, copy: Path) -> int:
     """The first line of the statement that holds a mutant, which is executed whenever the mutant is."""
-    tree = ast.parse((ROOT / mutant.file).read_text(encoding="utf-8"))
+    tree = ast.parse((copy / mutant.file).read_text(encoding="utf-8"))
     lines = [node.lineno for node in ast.walk(tree) if isinstance(node, ast.stmt) and node.lineno <= mutant.line]
     return max(lines)
 

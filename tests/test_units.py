@@ -276,6 +276,11 @@ def test_an_interval_is_in_the_unit_of_its_value_or_of_its_upper_end_if_that_is_
     assert interval.endswith(f" {unit}")
 
 
+def test_an_interval_through_decades_has_a_unit_at_each_end():
+    assert format_with_interval(50.0, 0.002, 5e5, "N") == ("50 N", "0.002 N to 500 kN")
+    assert format_with_interval(50.0, 0.0, 60.0, "N") == ("50 N", "0 N to 60 N")
+
+
 @pytest.mark.parametrize("value", ["x" * 500, 10**400, "a\nb\x7f\x85\u2028", '"' * 500])
 def test_shown_is_one_short_line(value):
     assert len(shown(value)) < 70

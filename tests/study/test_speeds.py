@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from campaigns import sampled
 from combinations import CARS
 from study_text import study_text
 
@@ -204,7 +205,16 @@ def test_what_cannot_be_computed_at_another_speed_is_said(why, factor, tmp_path,
         assert all(words in one["message"] for one in design["at_speeds"])
 
 
-@pytest.mark.parametrize("name", ["speed", "speed_value", "speed_message", "at_speeds", "v"])
+def test_what_takes_more_digits_than_double_precision_is_not_asked_at_other_speeds(tmp_path):
+    """A norm without rounding takes up to seconds: one is worth it, and six more of each design are not."""
+    text = re.sub(r'\nunsprung_mass_front = "[^"]*"', '\nunsprung_mass_front = "1e30 kg"', half_car(3))
+    _, results = found(tmp_path, text)
+    assert np.isnan(results["at_speeds.value"].sel(layout="S1")).all()
+    assert "more digits than double precision" in str(results["at_speeds.message"].sel(layout="S1").item())
+    assert np.isfinite(results["value"].sel(layout="S1")).all()
+
+
+@pytest.mark.parametrize("name", sampled(["speed", "speed_value", "speed_message", "at_speeds", "v"], ["speed"]))
 def test_an_element_of_any_name_that_results_do_not_use_can_be_swept(name, tmp_path):
     """Also one that is called as what results say of other speeds is."""
     text = half_car(2, f'indices = ["J1"]\nsweep = {{ {name} = ["20 kN/m", "40 kN/m"] }}')

@@ -11,7 +11,7 @@ from inerter.files.study.places import place_of, with_numbers
 from inerter.methods.asking import Asked
 from inerter.methods.counterpart import has_play
 from inerter.methods.equivalent import has_friction
-from inerter.methods.method import asked_of, evaluate
+from inerter.methods.method import Doubting, asked_of, evaluate
 from inerter.methods.registry import averages, is_blind, without_roads
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
@@ -36,13 +36,17 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
 
     The study is one that `asks_at_one_speed`. At another speed the road is rougher or smoother, and no more, unless
     several axles meet it or the design has friction. A method that averages random roads is replaced by the quickest
-    that sees as much friction. A value that cannot be computed is nan, and the message says why.
+    that sees as much friction. A value that cannot be computed, or takes more digits than double precision has, is
+    nan, and the message says why.
     """
     if not study.needs_road(index):
         return {}, ""
-    method = quick_method(study, vehicle)
-    if not (_is_late(vehicle, study.asked(index, layout)) or (not is_blind(method) and _rubs(vehicle))):
+    asked, method = study.asked(index, layout), quick_method(study, vehicle)
+    if not (_is_late(vehicle, asked) or (not is_blind(method) and _rubs(vehicle))):
         return {}, ""
+    way = study.method(method)
+    if isinstance(way, Doubting) and any(way.share_unsure(*one, {}) for one in asked_of(vehicle, asked)):
+        return {method: [np.nan] * len(BESIDE)}, "it takes more digits than double precision has"
     found = [_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
     values, messages = [value for value, _ in found], [message for _, message in found if message]
     return {method: values}, "; ".join(dict.fromkeys(messages))

@@ -341,6 +341,8 @@ def failing(copy: Path, tests: list[str]) -> str:
         return "a time limit"
     if done.returncode == 0:
         return ""
+    if done.returncode < 0:
+        return f"ended by signal {-done.returncode}"
     if done.returncode not in (1, 2):  # neither a failure nor an error of collection
         raise RuntimeError(f"pytest ended with {done.returncode}: {done.stdout[-500:]}{done.stderr[-500:]}")
     found = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
